@@ -1,0 +1,2 @@
+//! The halfgap command.
+fn main() {}
