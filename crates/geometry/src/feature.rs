@@ -1,0 +1,252 @@
+//! Features: the vertices, arcs and lines between which gaps are measured, and where each is valid.
+
+use glam::DVec2;
+
+/// Index of a feature in its shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FeatureId(pub u32);
+
+/// The four kinds of features.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FeatureKind {
+    /// A corner that points outwards.
+    Vertex,
+    /// An arc that bulges outwards.
+    ConvexArc,
+    /// An arc that is hollow.
+    ConcaveArc,
+    /// A straight edge.
+    Line,
+}
+
+/// Which part of the outline a feature is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FeatureSource {
+    /// Index of the path.
+    pub path: u32,
+    /// Index of the edge; for a vertex, of the edge that starts at it.
+    pub edge: u32,
+    /// What the feature is.
+    pub kind: FeatureKind,
+}
+
+/// A vertex or an arc: everything at one distance from a center, seen from it in a range of directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundFeature {
+    /// Center in body coordinates [m].
+    pub center: DVec2,
+    /// Signed radius [m]: vertex 0, convex arc positive, concave arc negative.
+    pub radius: f64,
+    /// Directions, in body coordinates and seen from the center, of the points of an arc; of the outward normals of a
+    /// vertex (its normal cone).
+    pub range: DirectionRange,
+}
+
+impl RoundFeature {
+    /// +1 where the outward normal points away from the center, -1 for a concave arc.
+    #[must_use]
+    #[inline]
+    pub fn sign(&self) -> f64 {
+        if self.radius < 0.0 { -1.0 } else { 1.0 }
+    }
+}
+
+/// A straight edge as a half-plane's border between two bounds along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineFeature {
+    /// Outward unit normal in body coordinates.
+    pub normal: DVec2,
+    /// Unit vector of travel in body coordinates: the normal turned +90 degrees.
+    pub direction: DVec2,
+    /// Offset [m] of the line from the body's origin along the normal.
+    pub offset: f64,
+    /// Where the edge starts [m], measured along `direction` from the foot of the body's origin.
+    pub start: f64,
+    /// Where the edge ends [m]; more than `start`.
+    pub end: f64,
+}
+
+impl LineFeature {
+    /// The point of the line at the given place along it [m], in body coordinates.
+    #[must_use]
+    #[inline]
+    pub fn point_at(&self, along: f64) -> DVec2 {
+        self.normal * self.offset + self.direction * along
+    }
+}
+
+/// A part of a shape that can touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Feature {
+    /// A vertex or an arc.
+    Round(RoundFeature),
+    /// A straight edge.
+    Line(LineFeature),
+}
+
+impl Feature {
+    /// Which of the four kinds this is.
+    #[must_use]
+    pub fn kind(&self) -> FeatureKind {
+        match self {
+            Feature::Line(_) => FeatureKind::Line,
+            Feature::Round(round) if round.radius == 0.0 => FeatureKind::Vertex,
+            Feature::Round(round) if round.radius > 0.0 => FeatureKind::ConvexArc,
+            Feature::Round(_) => FeatureKind::ConcaveArc,
+        }
+    }
+
+    /// Signed radius of curvature [m]; `None` for a straight edge.
+    #[must_use]
+    pub fn radius(&self) -> Option<f64> {
+        match self {
+            Feature::Line(_) => None,
+            Feature::Round(round) => Some(round.radius),
+        }
+    }
+
+    /// Largest distance [m] of a point of the feature from `place`, in body coordinates.
+    #[must_use]
+    pub fn farthest(&self, place: DVec2) -> f64 {
+        match self {
+            Feature::Line(line) => {
+                let to_start = (line.point_at(line.start) - place).length();
+                to_start.max((line.point_at(line.end) - place).length())
+            }
+            Feature::Round(round) => {
+                let offset = round.center - place;
+                let (distance, radius) = (offset.length(), round.radius.abs());
+                let away = if distance > 0.0 { offset / distance } else { DVec2::X };
+                match round.range.ends() {
+                    Some(ends) if radius > 0.0 && !round.range.contains(away) => {
+                        ends.map(|end| (offset + end * radius).length()).into_iter().fold(0.0, f64::max)
+                    }
+                    _ => distance + radius,
+                }
+            }
+        }
+    }
+}
+
+/// A range of directions, run counter-clockwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DirectionRange {
+    /// All directions.
+    Full,
+    /// Between two unit vectors at most a quarter turn apart.
+    Narrow {
+        /// First direction.
+        from: DVec2,
+        /// Last direction.
+        to: DVec2,
+    },
+    /// Between two unit vectors more than a quarter and at most half a turn apart.
+    Wide {
+        /// First direction.
+        from: DVec2,
+        /// Last direction.
+        to: DVec2,
+    },
+    /// Between two unit vectors more than half a turn apart.
+    Major {
+        /// First direction.
+        from: DVec2,
+        /// Last direction.
+        to: DVec2,
+    },
+}
+
+impl DirectionRange {
+    /// The range from one unit vector counter-clockwise to another, which are `sweep` [rad] apart.
+    #[must_use]
+    pub fn between(from: DVec2, to: DVec2, sweep: f64) -> Self {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        if sweep <= FRAC_PI_2 {
+            DirectionRange::Narrow { from, to }
+        } else if sweep <= PI {
+            DirectionRange::Wide { from, to }
+        } else {
+            DirectionRange::Major { from, to }
+        }
+    }
+
+    /// True if the unit vector lies in the range, ends included.
+    #[must_use]
+    #[inline]
+    pub fn contains(&self, direction: DVec2) -> bool {
+        match *self {
+            DirectionRange::Full => true,
+            DirectionRange::Narrow { from, to } => {
+                from.perp_dot(direction) >= 0.0
+                    && direction.perp_dot(to) >= 0.0
+                    && direction.dot(from + to) > 0.0
+            }
+            DirectionRange::Wide { from, to } => {
+                from.perp_dot(direction) >= 0.0 && direction.perp_dot(to) >= 0.0
+            }
+            DirectionRange::Major { from, to } => {
+                from.perp_dot(direction) >= 0.0 || direction.perp_dot(to) >= 0.0
+            }
+        }
+    }
+
+    /// Angle [rad] by which a unit vector lies outside of the range: 0 inside, at most half a turn.
+    #[must_use]
+    #[inline]
+    pub fn excess(&self, direction: DVec2) -> f64 {
+        if self.contains(direction) {
+            return 0.0;
+        }
+        self.ends().map_or(0.0, |[from, to]| angle_between(from, direction).min(angle_between(to, direction)))
+    }
+
+    /// The two ends; `None` for all directions.
+    #[must_use]
+    pub fn ends(&self) -> Option<[DVec2; 2]> {
+        match *self {
+            DirectionRange::Full => None,
+            DirectionRange::Narrow { from, to }
+            | DirectionRange::Wide { from, to }
+            | DirectionRange::Major { from, to } => Some([from, to]),
+        }
+    }
+}
+
+fn angle_between(a: DVec2, b: DVec2) -> f64 {
+    libm::atan2(a.perp_dot(b).abs(), a.dot(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn at(angle: f64) -> DVec2 {
+        DVec2::new(angle.cos(), angle.sin())
+    }
+
+    #[test]
+    fn ranges_of_every_width_contain_what_lies_between_their_ends() {
+        for width in [1e-9, 0.3, 1.5, 1.6, 3.1, 3.2, 5.0, 6.28] {
+            let range = DirectionRange::between(at(1.0), at(1.0 + width), width);
+            for step in 0..200 {
+                let turn = (f64::from(step) + 0.5) / 200.0 * TAU;
+                let expected_excess = if turn < width { 0.0 } else { (turn - width).min(TAU - turn) };
+                let excess = range.excess(at(1.0 + turn));
+                assert!((excess - expected_excess).abs() < 1e-12, "width {width}, turn {turn}: {excess}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_farthest_point_of_an_arc_may_be_an_end() {
+        let arc = RoundFeature {
+            center: DVec2::ZERO,
+            radius: 1.0,
+            range: DirectionRange::between(at(0.0), at(1.0), 1.0),
+        };
+        let feature = Feature::Round(arc);
+        assert!((feature.farthest(at(0.5) * -3.0) - 4.0).abs() < 1e-15 * 4.0);
+        assert!((feature.farthest(at(0.5) * 3.0) - (at(0.5) * 3.0 - at(0.0)).length()).abs() < 1e-15 * 4.0);
+    }
+}

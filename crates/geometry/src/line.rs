@@ -1,0 +1,91 @@
+//! A straight edge.
+
+use crate::error::LineError;
+use glam::DVec2;
+
+/// A straight edge from one point to another, with the solid on its left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    from: DVec2,
+    to: DVec2,
+    direction: DVec2,
+    length: f64,
+}
+
+impl Line {
+    /// The edge between two points [m].
+    ///
+    /// # Errors
+    /// A point that is not finite, or two points that coincide.
+    pub fn new(from: DVec2, to: DVec2) -> Result<Self, LineError> {
+        if !(from.is_finite() && to.is_finite()) {
+            return Err(LineError::NotFinite);
+        }
+        let length = (to - from).length();
+        if length == 0.0 {
+            return Err(LineError::ZeroLength(from.x, from.y));
+        }
+        Ok(Self { from, to, direction: (to - from) / length, length })
+    }
+
+    /// First point [m].
+    #[must_use]
+    pub fn from(&self) -> DVec2 {
+        self.from
+    }
+
+    /// Last point [m].
+    #[must_use]
+    pub fn to(&self) -> DVec2 {
+        self.to
+    }
+
+    /// Unit vector of travel.
+    #[must_use]
+    pub fn direction(&self) -> DVec2 {
+        self.direction
+    }
+
+    /// Outward unit normal: on the right of the direction of travel.
+    #[must_use]
+    pub fn normal(&self) -> DVec2 {
+        DVec2::new(self.direction.y, -self.direction.x)
+    }
+
+    /// Length [m].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// The same edge run the other way.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self { from: self.to, to: self.from, direction: -self.direction, length: self.length }
+    }
+
+    /// The edge shifted by `shift` [m].
+    #[must_use]
+    pub fn translated(&self, shift: DVec2) -> Self {
+        Self { from: self.from + shift, to: self.to + shift, ..*self }
+    }
+
+    /// Signed distance [m] of a point from the infinite line, positive outside.
+    #[must_use]
+    pub fn signed_distance(&self, point: DVec2) -> f64 {
+        self.normal().dot(point - self.from)
+    }
+
+    /// Point of the edge nearest to `point` [m].
+    #[must_use]
+    pub fn nearest(&self, point: DVec2) -> DVec2 {
+        let along = self.direction.dot(point - self.from);
+        if along <= 0.0 {
+            self.from
+        } else if along >= self.length {
+            self.to
+        } else {
+            self.from + self.direction * along
+        }
+    }
+}

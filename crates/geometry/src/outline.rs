@@ -1,0 +1,31 @@
+//! From path specifications to oriented paths: nesting by the even-odd rule, the solid on the left of every edge.
+
+use crate::error::ShapeError;
+use crate::path::{Path, PathSpec, build_path, outline_size};
+
+/// Builds the paths of an outline, turned so that the solid lies on the left of every edge.
+pub(crate) fn build_outline(specs: &[PathSpec]) -> Result<Vec<Path>, ShapeError> {
+    if specs.is_empty() {
+        return Err(ShapeError::NoPaths);
+    }
+    let size = outline_size(specs);
+    let drawn: Vec<Path> = specs
+        .iter()
+        .enumerate()
+        .map(|(index, spec)| build_path(spec, index, size))
+        .collect::<Result<_, _>>()?;
+    Ok(drawn.iter().enumerate().map(|(index, path)| oriented(path, index, &drawn)).collect())
+}
+
+/// The path run so that the solid is on its left: inside of it if an even number of others surround it.
+fn oriented(path: &Path, index: usize, all: &[Path]) -> Path {
+    let start = path.edges()[0].from();
+    let depth =
+        all.iter().enumerate().filter(|&(other, around)| other != index && around.surrounds(start)).count();
+    let solid_inside = depth % 2 == 0;
+    if runs_counter_clockwise(path) == solid_inside { path.clone() } else { path.reversed() }
+}
+
+fn runs_counter_clockwise(path: &Path) -> bool {
+    crate::mass::MassProperties::of_paths(std::slice::from_ref(path), path.bounds().center()).area > 0.0
+}

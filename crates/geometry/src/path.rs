@@ -1,0 +1,295 @@
+//! Closed paths of edges, and the specification from which they are made.
+
+use crate::arc::Arc;
+use crate::bounds::Aabb;
+use crate::edge::Edge;
+use crate::error::{ArcError, LineError, ShapeError};
+use crate::line::Line;
+use glam::DVec2;
+
+/// End points and arc radii may be off by this part of the outline's size; they are then made exact.
+const FIT: f64 = 1e-6;
+/// Vertices closer than this part of the outline's size are one point.
+const COINCIDENT: f64 = 1e-9;
+
+/// An edge as a person writes it: it starts where the last one ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EdgeSpec {
+    /// A straight edge.
+    Line {
+        /// Where it ends [m].
+        to: DVec2,
+    },
+    /// An arc about a center.
+    Arc {
+        /// Where it ends [m].
+        to: DVec2,
+        /// Center of the circle [m].
+        center: DVec2,
+        /// Which way it runs.
+        clockwise: bool,
+    },
+    /// An arc given by its bulge, the tangent of a quarter of its sweep; positive counter-clockwise, 0 a straight edge.
+    Bulge {
+        /// Where it ends [m].
+        to: DVec2,
+        /// Tangent of a quarter of the sweep.
+        bulge: f64,
+    },
+}
+
+impl EdgeSpec {
+    /// Where the edge ends [m].
+    #[must_use]
+    pub fn to(&self) -> DVec2 {
+        match *self {
+            EdgeSpec::Line { to } | EdgeSpec::Arc { to, .. } | EdgeSpec::Bulge { to, .. } => to,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.to().is_finite()
+            && match *self {
+                EdgeSpec::Line { .. } => true,
+                EdgeSpec::Arc { center, .. } => center.is_finite(),
+                EdgeSpec::Bulge { bulge, .. } => bulge.is_finite(),
+            }
+    }
+}
+
+/// A closed path as a person writes it: the last edge ends at `start`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathSpec {
+    /// Where the first edge starts and the last one ends [m].
+    pub start: DVec2,
+    /// The edges in order.
+    pub edges: Vec<EdgeSpec>,
+}
+
+impl PathSpec {
+    /// The closed polygon through the given vertices [m].
+    #[must_use]
+    pub fn polygon(vertices: &[DVec2]) -> Self {
+        let Some((&start, rest)) = vertices.split_first() else {
+            return Self { start: DVec2::ZERO, edges: Vec::new() };
+        };
+        let edges = rest.iter().chain([&start]).map(|&to| EdgeSpec::Line { to }).collect();
+        Self { start, edges }
+    }
+
+    /// The full counter-clockwise circle about `center` [m].
+    #[must_use]
+    pub fn circle(center: DVec2, radius: f64) -> Self {
+        let start = center + DVec2::X * radius;
+        Self { start, edges: vec![EdgeSpec::Arc { to: start, center, clockwise: false }] }
+    }
+
+    /// Box around all end points and all circles of full-circle edges: what "the size of the outline" is measured on.
+    fn rough_bounds(&self) -> Aabb {
+        self.edges.iter().fold(Aabb::around(self.start), |bounds, edge| {
+            let bounds = bounds.including(edge.to());
+            match *edge {
+                EdgeSpec::Arc { center, .. } if self.edges.len() == 1 => {
+                    bounds.union(Aabb::around_disc(center, (self.start - center).length()))
+                }
+                _ => bounds,
+            }
+        })
+    }
+}
+
+/// A closed path of edges, each starting exactly where the one before it ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    edges: Vec<Edge>,
+}
+
+impl Path {
+    /// The edges in order.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Smallest axis-aligned box around the path.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        let start = Aabb::around(self.edges[0].from());
+        self.edges.iter().fold(start, |bounds, edge| bounds.union(edge.bounds()))
+    }
+
+    /// True if the path runs around the point, whichever way. On the path itself the answer is either.
+    #[must_use]
+    pub fn surrounds(&self, point: DVec2) -> bool {
+        self.edges.iter().map(|edge| winding(edge, point)).sum::<i32>() != 0
+    }
+
+    pub(crate) fn reversed(&self) -> Self {
+        Self { edges: self.edges.iter().rev().map(Edge::reversed).collect() }
+    }
+
+    pub(crate) fn translated(&self, shift: DVec2) -> Self {
+        Self { edges: self.edges.iter().map(|edge| edge.translated(shift)).collect() }
+    }
+}
+
+/// Size [m] of an outline: the larger side of the box around all its paths.
+pub(crate) fn outline_size(specs: &[PathSpec]) -> f64 {
+    let boxes = specs.iter().map(PathSpec::rough_bounds);
+    boxes.reduce(Aabb::union).map_or(0.0, |bounds| bounds.size().max_element())
+}
+
+/// Two points are one when closer than this [m], in an outline of the given size [m].
+pub(crate) fn coincidence_tol(size: f64) -> f64 {
+    COINCIDENT * size
+}
+
+/// Builds the path with index `path` of an outline of the given size [m].
+pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path, ShapeError> {
+    let Some(last) = spec.edges.len().checked_sub(1) else {
+        return Err(ShapeError::EmptyPath { path });
+    };
+    if let Some(edge) = spec.edges.iter().position(|edge| !edge.is_finite()) {
+        return Err(ShapeError::NotFinite { path, edge });
+    }
+    if !spec.start.is_finite() {
+        return Err(ShapeError::NotFinite { path, edge: 0 });
+    }
+    let gap = (spec.edges[last].to() - spec.start).length();
+    if gap > FIT * size {
+        return Err(ShapeError::OpenPath { path, edge: last, gap });
+    }
+    if let [EdgeSpec::Arc { center, clockwise, .. }] = spec.edges[..] {
+        let circle = Arc::circle(center, spec.start, clockwise);
+        let circle = circle.map_err(|source| ShapeError::Arc { path, edge: 0, source })?;
+        return Ok(Path { edges: vec![Edge::Arc(circle)] });
+    }
+    let mut edges = Vec::with_capacity(spec.edges.len());
+    let mut from = spec.start;
+    for (edge, part) in spec.edges.iter().enumerate() {
+        let to = if edge == last { spec.start } else { part.to() };
+        let length = (to - from).length();
+        if length <= coincidence_tol(size) {
+            return Err(ShapeError::CoincidentVertices { path, edge, length });
+        }
+        edges.push(build_edge(from, to, part, FIT * size).map_err(|error| error.at(path, edge))?);
+        from = to;
+    }
+    Ok(Path { edges })
+}
+
+fn build_edge(from: DVec2, to: DVec2, spec: &EdgeSpec, fit_tol: f64) -> Result<Edge, EdgeFault> {
+    Ok(match *spec {
+        EdgeSpec::Line { .. } => Edge::Line(Line::new(from, to)?),
+        EdgeSpec::Bulge { bulge: 0.0, .. } => Edge::Line(Line::new(from, to)?),
+        EdgeSpec::Arc { center, clockwise, .. } => {
+            Edge::Arc(Arc::between(from, to, center, clockwise, fit_tol)?)
+        }
+        EdgeSpec::Bulge { bulge, .. } => {
+            // The center lies on the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
+            let chord = to - from;
+            let center = from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
+            Edge::Arc(Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)?)
+        }
+    })
+}
+
+enum EdgeFault {
+    Line(LineError),
+    Arc(ArcError),
+}
+
+impl From<LineError> for EdgeFault {
+    fn from(error: LineError) -> Self {
+        EdgeFault::Line(error)
+    }
+}
+
+impl From<ArcError> for EdgeFault {
+    fn from(error: ArcError) -> Self {
+        EdgeFault::Arc(error)
+    }
+}
+
+impl EdgeFault {
+    fn at(self, path: usize, edge: usize) -> ShapeError {
+        match self {
+            EdgeFault::Arc(source) => ShapeError::Arc { path, edge, source },
+            EdgeFault::Line(LineError::NotFinite) => ShapeError::NotFinite { path, edge },
+            EdgeFault::Line(LineError::ZeroLength(..)) => {
+                ShapeError::CoincidentVertices { path, edge, length: 0.0 }
+            }
+        }
+    }
+}
+
+/// Crossings of the ray from `point` towards +x by the edge, upward ones counted +1 and downward ones -1.
+///
+/// An arc is its chord plus the circular segment between them, around which it winds once or not at all.
+fn winding(edge: &Edge, point: DVec2) -> i32 {
+    let (from, to) = (edge.from() - point, edge.to() - point);
+    let chord = match (from.y <= 0.0, to.y <= 0.0) {
+        (true, false) if from.perp_dot(to) > 0.0 => 1,
+        (false, true) if from.perp_dot(to) < 0.0 => -1,
+        _ => 0,
+    };
+    let Edge::Arc(arc) = edge else { return chord };
+    let in_circle = (point - arc.center()).length_squared() < arc.radius() * arc.radius();
+    let turn = if arc.is_convex() { 1 } else { -1 };
+    let beyond_chord = arc.is_circle() || {
+        // A counter-clockwise arc lies on the right of its chord, however far it sweeps.
+        (to - from).perp_dot(-from) * f64::from(turn) < 0.0
+    };
+    chord + if in_circle && beyond_chord { turn } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn pie(sweep: f64) -> Path {
+        let at = |angle: f64| DVec2::new(angle.cos(), angle.sin());
+        let spec = PathSpec {
+            start: DVec2::ZERO,
+            edges: vec![
+                EdgeSpec::Line { to: DVec2::X },
+                EdgeSpec::Arc { to: at(sweep), center: DVec2::ZERO, clockwise: false },
+                EdgeSpec::Line { to: DVec2::ZERO },
+            ],
+        };
+        build_path(&spec, 0, 2.0).expect("a fine pie")
+    }
+
+    #[test]
+    fn a_pie_surrounds_what_lies_in_its_sweep() {
+        for sweep in [0.5, 2.0, 3.0, 4.0, 5.5, 6.0] {
+            let path = pie(sweep);
+            for step in 0..100 {
+                let angle = f64::from(step) / 100.0 * TAU + 0.001;
+                for radius in [0.05, 0.5, 0.95, 1.05] {
+                    let point = DVec2::new(angle.cos(), angle.sin()) * radius;
+                    let expected = angle < sweep && radius < 1.0;
+                    assert_eq!(path.surrounds(point), expected, "sweep {sweep}, {radius} m at {angle} rad");
+                    assert_eq!(path.reversed().surrounds(point), expected);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_bulge_of_one_is_a_half_circle() {
+        let spec = PathSpec {
+            start: DVec2::NEG_X,
+            edges: vec![
+                EdgeSpec::Bulge { to: DVec2::X, bulge: 1.0 },
+                EdgeSpec::Bulge { to: DVec2::NEG_X, bulge: 0.0 },
+            ],
+        };
+        let path = build_path(&spec, 0, 2.0).expect("a fine half disc");
+        let Edge::Arc(arc) = path.edges()[0] else { panic!("a bulge is an arc") };
+        assert!(arc.center().length() < 1e-15 && (arc.radius() - 1.0).abs() < 1e-15);
+        assert!((arc.sweep_angle() - TAU / 2.0).abs() < 1e-15 * 4.0);
+        assert!(path.surrounds(DVec2::new(0.0, -0.5)) && !path.surrounds(DVec2::new(0.0, 0.5)));
+    }
+}

@@ -1,0 +1,185 @@
+//! A shape: oriented paths, mass properties, features and their tree, in body coordinates.
+
+use crate::bounds::Aabb;
+use crate::edge::Edge;
+use crate::error::ShapeError;
+use crate::feature::{
+    DirectionRange, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
+};
+use crate::mass::MassProperties;
+use crate::outline::build_outline;
+use crate::path::{Path, PathSpec};
+use crate::pose::Pose;
+use crate::tree::FeatureTree;
+use glam::DVec2;
+
+/// A corner whose edges' directions differ by less than this angle [rad] is smooth: the edges carry all contacts there.
+const SMOOTH_CORNER: f64 = 1e-9;
+
+/// A flat, rigid shape with holes, in body coordinates.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    paths: Vec<Path>,
+    mass: MassProperties,
+    bounds: Aabb,
+    reach: f64,
+    features: Vec<Feature>,
+    sources: Vec<FeatureSource>,
+    tree: FeatureTree,
+}
+
+impl Shape {
+    /// The shape that the given closed paths outline: what an odd number of them surrounds is solid, whichever way they
+    /// run.
+    ///
+    /// End points and arc radii may be off by 1e-6 of the shape's size, and are then made exact.
+    ///
+    /// # Errors
+    /// Open, empty, crossing or degenerate paths; the error names path and edge.
+    pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
+        Ok(Self::from_oriented(build_outline(specs)?))
+    }
+
+    /// The shape moved by `shift` [m] in body coordinates.
+    #[must_use]
+    pub fn translated(&self, shift: DVec2) -> Self {
+        if shift == DVec2::ZERO {
+            return self.clone();
+        }
+        Self::from_oriented(self.paths.iter().map(|path| path.translated(shift)).collect())
+    }
+
+    /// The closed paths, each with the solid on its left.
+    #[must_use]
+    pub fn paths(&self) -> &[Path] {
+        &self.paths
+    }
+
+    /// All edges of all paths.
+    pub fn edges(&self) -> impl Iterator<Item = &Edge> {
+        self.paths.iter().flat_map(Path::edges)
+    }
+
+    /// Area, centroid and second moment.
+    #[must_use]
+    pub fn mass_properties(&self) -> MassProperties {
+        self.mass
+    }
+
+    /// Smallest axis-aligned box around the shape in body coordinates.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Smallest axis-aligned box around the posed shape.
+    #[must_use]
+    pub fn bounds_at(&self, pose: &Pose) -> Aabb {
+        let x_axis = pose.vector_to_body(DVec2::X);
+        let y_axis = pose.vector_to_body(DVec2::Y);
+        let max = DVec2::new(self.extent(x_axis), self.extent(y_axis));
+        let min = DVec2::new(-self.extent(-x_axis), -self.extent(-y_axis));
+        Aabb { min: pose.position + min, max: pose.position + max }
+    }
+
+    /// Largest distance [m] of a point of the shape from the body's origin.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Farthest point of the shape along a unit vector of the body: its distance [m] from the origin along the vector.
+    #[must_use]
+    pub fn extent(&self, direction: DVec2) -> f64 {
+        let far = |edge: &Edge| {
+            let ends = edge.from().dot(direction).max(edge.to().dot(direction));
+            match edge {
+                Edge::Arc(arc) if arc.is_convex() && arc.directions().contains(direction) => {
+                    ends.max(arc.center().dot(direction) + arc.radius())
+                }
+                _ => ends,
+            }
+        };
+        self.edges().map(far).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The parts of the shape that can touch.
+    #[must_use]
+    pub fn features(&self) -> &[Feature] {
+        &self.features
+    }
+
+    /// One of the features.
+    #[must_use]
+    #[inline]
+    pub fn feature(&self, id: FeatureId) -> &Feature {
+        &self.features[id.0 as usize]
+    }
+
+    /// Which part of the outline a feature is.
+    #[must_use]
+    pub fn source(&self, id: FeatureId) -> FeatureSource {
+        self.sources[id.0 as usize]
+    }
+
+    /// The bounding tree over the features.
+    #[must_use]
+    pub fn tree(&self) -> &FeatureTree {
+        &self.tree
+    }
+
+    fn from_oriented(paths: Vec<Path>) -> Self {
+        let boxes = paths.iter().map(Path::bounds);
+        let bounds = boxes.reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
+        let mass = MassProperties::of_paths(&paths, bounds.center());
+        let (features, sources): (Vec<_>, Vec<_>) = paths.iter().enumerate().flat_map(path_features).unzip();
+        let tree = FeatureTree::build(&features);
+        let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
+        Self { paths, mass, bounds, reach, features, sources, tree }
+    }
+}
+
+/// The features of a path, each edge after the vertex at which it starts.
+fn path_features((index, path): (usize, &Path)) -> Vec<(Feature, FeatureSource)> {
+    let edges = path.edges();
+    let mut found = Vec::with_capacity(2 * edges.len());
+    for (place, edge) in edges.iter().enumerate() {
+        let source = |kind| FeatureSource {
+            path: u32::try_from(index).unwrap_or(u32::MAX),
+            edge: u32::try_from(place).unwrap_or(u32::MAX),
+            kind,
+        };
+        let before = &edges[(place + edges.len() - 1) % edges.len()];
+        if let Some(vertex) = corner(before, edge) {
+            found.push((Feature::Round(vertex), source(FeatureKind::Vertex)));
+        }
+        let feature = edge_feature(edge);
+        found.push((feature, source(feature.kind())));
+    }
+    found
+}
+
+/// The vertex between two edges, if it points outwards.
+fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
+    let (arriving, leaving) = (before.end_direction(), after.start_direction());
+    let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+    // The outward normal is the direction of travel turned by -90 degrees.
+    let range = DirectionRange::between(-arriving.perp(), -leaving.perp(), turn.abs());
+    (turn > SMOOTH_CORNER).then_some(RoundFeature { center: after.from(), radius: 0.0, range })
+}
+
+fn edge_feature(edge: &Edge) -> Feature {
+    match edge {
+        Edge::Line(line) => {
+            let (normal, direction) = (line.normal(), line.direction());
+            let start = direction.dot(line.from());
+            // Both ends lie on the line to rounding; the middle is as far from either as can be.
+            let offset = normal.dot(0.5 * (line.from() + line.to()));
+            Feature::Line(LineFeature { normal, direction, offset, start, end: start + line.length() })
+        }
+        Edge::Arc(arc) => {
+            let radius = if arc.is_convex() { arc.radius() } else { -arc.radius() };
+            Feature::Round(RoundFeature { center: arc.center(), radius, range: arc.directions() })
+        }
+    }
+}

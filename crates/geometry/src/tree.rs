@@ -1,0 +1,184 @@
+//! A bounding tree over the features of a shape, so that finding what is near costs a logarithm.
+//!
+//! Each node keeps a box in body coordinates and a circle: of two posed trees, the circles of one are compared with the
+//! boxes of the other, in the other's coordinates, so that no box ever needs turning.
+
+use crate::bounds::Aabb;
+use crate::feature::{Feature, FeatureId};
+use crate::pose::Pose;
+use glam::DVec2;
+
+/// A node of the tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Box around all features below, in body coordinates.
+    pub bounds: Aabb,
+    /// Centre of a circle around all features below, in body coordinates [m].
+    pub center: DVec2,
+    /// Radius of that circle [m].
+    pub radius: f64,
+    content: Content,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Content {
+    Leaf(FeatureId),
+    /// The first child follows its parent; this is the second.
+    Branch(u32),
+}
+
+/// A binary tree over features; the root is node 0.
+#[derive(Clone, Debug)]
+pub struct FeatureTree {
+    nodes: Vec<Node>,
+}
+
+impl FeatureTree {
+    pub(crate) fn build(features: &[Feature]) -> Self {
+        let mut items: Vec<Item> = features.iter().enumerate().map(Item::new).collect();
+        let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()) };
+        if !items.is_empty() {
+            tree.add(&mut items, features);
+        }
+        tree
+    }
+
+    /// The root: `None` only for a shape without features.
+    #[must_use]
+    pub fn root(&self) -> Option<&Node> {
+        self.nodes.first()
+    }
+
+    /// Visits every feature whose bounds come within `distance` [m] of a point in body coordinates.
+    pub fn visit_near_point(&self, point: DVec2, distance: f64, visit: &mut impl FnMut(FeatureId)) {
+        if !self.nodes.is_empty() {
+            self.near_point(0, point, distance, visit);
+        }
+    }
+
+    /// Visits every pair of features, of this tree at `pose` and of another at its own, whose bounds come within
+    /// `distance` [m] of each other.
+    pub fn visit_near_pairs(
+        &self,
+        pose: &Pose,
+        other: &FeatureTree,
+        other_pose: &Pose,
+        distance: f64,
+        visit: &mut impl FnMut(FeatureId, FeatureId),
+    ) {
+        if !self.nodes.is_empty() && !other.nodes.is_empty() {
+            let pair = PosedTrees { a: self, pose_a: pose, b: other, pose_b: other_pose, distance };
+            pair.descend(0, 0, visit);
+        }
+    }
+
+    fn near_point(&self, node: usize, point: DVec2, distance: f64, visit: &mut impl FnMut(FeatureId)) {
+        let here = &self.nodes[node];
+        if here.bounds.distance_to(point) > distance {
+            return;
+        }
+        match here.content {
+            Content::Leaf(feature) => visit(feature),
+            Content::Branch(second) => {
+                self.near_point(node + 1, point, distance, visit);
+                self.near_point(second as usize, point, distance, visit);
+            }
+        }
+    }
+
+    /// Adds the subtree over `items`; its root is the next node.
+    fn add(&mut self, items: &mut [Item], features: &[Feature]) {
+        let bounds =
+            items.iter().map(|item| item.bounds).reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
+        let center = bounds.center();
+        let radius =
+            items.iter().map(|item| features[item.id.0 as usize].farthest(center)).fold(0.0, f64::max);
+        let node = self.nodes.len();
+        let content = Content::Leaf(items[0].id);
+        self.nodes.push(Node { bounds, center, radius, content });
+        if items.len() == 1 {
+            return;
+        }
+        let size = bounds.size();
+        let axis = if size.x >= size.y { DVec2::X } else { DVec2::Y };
+        let half = items.len() / 2;
+        items.sort_by(|p, q| {
+            let (p_place, q_place) = (p.bounds.center().dot(axis), q.bounds.center().dot(axis));
+            p_place.total_cmp(&q_place).then(p.id.cmp(&q.id))
+        });
+        let (low, high) = items.split_at_mut(half);
+        self.add(low, features);
+        let second = self.nodes.len();
+        self.nodes[node].content = Content::Branch(u32::try_from(second).unwrap_or(u32::MAX));
+        self.add(high, features);
+    }
+}
+
+struct Item {
+    id: FeatureId,
+    bounds: Aabb,
+}
+
+impl Item {
+    fn new((index, feature): (usize, &Feature)) -> Self {
+        Self { id: FeatureId(u32::try_from(index).unwrap_or(u32::MAX)), bounds: feature_bounds(feature) }
+    }
+}
+
+fn feature_bounds(feature: &Feature) -> Aabb {
+    match feature {
+        Feature::Line(line) => Aabb::around(line.point_at(line.start)).including(line.point_at(line.end)),
+        Feature::Round(round) => {
+            let radius = round.radius.abs();
+            let Some(ends) = round.range.ends() else { return Aabb::around_disc(round.center, radius) };
+            let axes = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+            let inner = axes.into_iter().filter(|&axis| round.range.contains(axis));
+            let points = inner.chain(ends).map(|direction| round.center + direction * radius);
+            let first = round.center + ends[0] * radius;
+            points.fold(Aabb::around(first), Aabb::including)
+        }
+    }
+}
+
+struct PosedTrees<'a> {
+    a: &'a FeatureTree,
+    pose_a: &'a Pose,
+    b: &'a FeatureTree,
+    pose_b: &'a Pose,
+    distance: f64,
+}
+
+impl PosedTrees<'_> {
+    fn descend(&self, node_a: usize, node_b: usize, visit: &mut impl FnMut(FeatureId, FeatureId)) {
+        let (a, b) = (&self.a.nodes[node_a], &self.b.nodes[node_b]);
+        if self.are_apart(a, b) {
+            return;
+        }
+        match (a.content, b.content) {
+            (Content::Leaf(feature_a), Content::Leaf(feature_b)) => visit(feature_a, feature_b),
+            (Content::Branch(second), Content::Leaf(_)) => {
+                self.descend(node_a + 1, node_b, visit);
+                self.descend(second as usize, node_b, visit);
+            }
+            (Content::Branch(second), Content::Branch(_)) if a.radius >= b.radius => {
+                self.descend(node_a + 1, node_b, visit);
+                self.descend(second as usize, node_b, visit);
+            }
+            (_, Content::Branch(second)) => {
+                self.descend(node_a, node_b + 1, visit);
+                self.descend(node_a, second as usize, visit);
+            }
+        }
+    }
+
+    fn are_apart(&self, a: &Node, b: &Node) -> bool {
+        let center_a = self.pose_a.point_to_world(a.center);
+        let center_b = self.pose_b.point_to_world(b.center);
+        let reach = a.radius + b.radius + self.distance;
+        if (center_a - center_b).length_squared() > reach * reach {
+            return true;
+        }
+        b.bounds.distance_to(self.pose_b.point_to_body(center_a)) > a.radius + self.distance
+            || a.bounds.distance_to(self.pose_a.point_to_body(center_b)) > b.radius + self.distance
+    }
+}
