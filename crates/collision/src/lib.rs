@@ -1,1 +1,50 @@
-//! (outline)
+//! Moving bodies: which pairs touch, how, and when first.
+//!
+//! *Invariant*: this crate knows bodies, motions and thresholds, but no forces and no solvers.
+//!
+//! # Conventions
+//!
+//! SI units, radians, counter-clockwise positive. Every contact is a gap between a *primary* body and a *normal* body;
+//! the unit normal points from the normal body to the primary one, and a negative normal velocity closes the gap.
+//! Times within a motion are offsets [s] from its start, so that long runs lose no digits.
+//!
+//! # Code map
+//!
+//! `motion` and `flight` say where a body is during an interval, `body` what it is. `record` is the collision record,
+//! with its `zone` predicates and its time `estimate`; `kinematics` gives the gap's rate, Jacobian and acceleration
+//! term. `detect` finds the records of two bodies at one moment and `merge` drops doubles. `first_contact` finds when
+//! two moving bodies first close to their target gap: by `closed` forms where motions are polynomial, by the `march`
+//! along second-order bounds otherwise. `broad` keeps the pairs that are near enough to matter.
+
+mod body;
+mod broad;
+mod closed;
+mod detect;
+mod estimate;
+mod first_contact;
+mod flight;
+mod kinematics;
+mod march;
+mod merge;
+mod motion;
+mod quadratic;
+mod record;
+mod tolerances;
+mod zone;
+
+pub use body::{Body, BodyId};
+pub use broad::BroadPhase;
+pub use detect::{Moment, detect_pair};
+pub use estimate::{EstimatePoint, estimate_target_time};
+pub use first_contact::{FirstContact, MovingShape, Search, SearchSettings, first_contact, search_step};
+pub use flight::Flight;
+pub use kinematics::{Arms, GapKinematics, Spin};
+pub use merge::{is_same_collision, merge_collisions};
+pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
+pub use quadratic::first_closing_time;
+pub use record::{
+    Collision, CollisionError, ContactGeometry, ContactMotion, Detection, Detector, Participant, Parties,
+    Response,
+};
+pub use tolerances::Tolerances;
+pub use zone::Zone;

@@ -1,0 +1,37 @@
+//! A body as collisions see it: a shape about its centre of mass, its inertia, its bounciness.
+
+use halfgap_geometry::Shape;
+
+/// Index of a body in its world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId(pub u32);
+
+impl BodyId {
+    /// The index as a number to look up with.
+    #[must_use]
+    #[inline]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A rigid body. The origin of its shape's coordinates is the centre of mass.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Shape in body coordinates.
+    pub shape: Shape,
+    /// 1/mass [1/kg]; 0 for a fixed body.
+    pub inverse_mass: f64,
+    /// 1/moment of inertia about the centre of mass [1/(kg m^2)]; 0 for a fixed body.
+    pub inverse_moment: f64,
+    /// Share of the closing speed with which the body leaves an impact, 0 to 1; a pair uses the lesser.
+    pub elasticity: f64,
+}
+
+impl Body {
+    /// True for a body that nothing moves.
+    #[must_use]
+    pub fn is_fixed(&self) -> bool {
+        self.inverse_mass == 0.0 && self.inverse_moment == 0.0
+    }
+}

@@ -1,0 +1,262 @@
+//! Which bodies are near each other: a dynamic tree of fat boxes.
+//!
+//! Each body has a box with room to move; only when it leaves the box is the tree touched. A query costs the logarithm of
+//! the number of bodies plus what it finds. The tree keeps itself balanced by rotations, as an AVL tree does (G. Adelson-
+//! Velsky and E. Landis, 1962), and chooses where to insert by the least growth of half perimeters (J. Goldsmith and
+//! J. Salmon, "Automatic creation of object hierarchies for ray tracing", 1987).
+
+use crate::body::BodyId;
+use halfgap_geometry::Aabb;
+
+const NONE: u32 = u32::MAX;
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    bounds: Aabb,
+    parent: u32,
+    children: [u32; 2],
+    /// 0 for a leaf.
+    height: u32,
+    body: BodyId,
+}
+
+/// A balanced tree of boxes, one for each body.
+#[derive(Clone, Debug, Default)]
+pub struct BroadPhase {
+    nodes: Vec<Node>,
+    root: Option<u32>,
+    free: Vec<u32>,
+    /// Leaf of each body, by index.
+    leaves: Vec<Option<u32>>,
+}
+
+impl BroadPhase {
+    /// A tree without bodies.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The box of a body, if it has one.
+    #[must_use]
+    pub fn bounds(&self, body: BodyId) -> Option<&Aabb> {
+        let leaf = self.leaves.get(body.index()).copied().flatten()?;
+        Some(&self.nodes[leaf as usize].bounds)
+    }
+
+    /// Gives a body its box [m], in place of the one it had.
+    pub fn set(&mut self, body: BodyId, bounds: Aabb) {
+        self.remove(body);
+        if self.leaves.len() <= body.index() {
+            self.leaves.resize(body.index() + 1, None);
+        }
+        let leaf = self.allocate(Node { bounds, parent: NONE, children: [NONE; 2], height: 0, body });
+        self.leaves[body.index()] = Some(leaf);
+        self.insert(leaf);
+    }
+
+    /// Takes a body's box away; nothing happens if it has none.
+    pub fn remove(&mut self, body: BodyId) {
+        let Some(leaf) = self.leaves.get_mut(body.index()).and_then(Option::take) else { return };
+        self.free.push(leaf);
+        let parent = self.nodes[leaf as usize].parent;
+        if parent == NONE {
+            self.root = None;
+            return;
+        }
+        let [left, right] = self.nodes[parent as usize].children;
+        let sibling = if left == leaf { right } else { left };
+        let above = self.nodes[parent as usize].parent;
+        self.free.push(parent);
+        self.replace_child(above, parent, sibling);
+        self.refit_from(above);
+    }
+
+    /// Visits every body whose box overlaps the given one.
+    pub fn visit_overlapping(&self, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
+        if let Some(root) = self.root {
+            self.visit_below(root, bounds, visit);
+        }
+    }
+
+    fn visit_below(&self, node: u32, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
+        let here = &self.nodes[node as usize];
+        if !here.bounds.overlaps(bounds) {
+            return;
+        }
+        if here.height == 0 {
+            visit(here.body);
+        } else {
+            self.visit_below(here.children[0], bounds, visit);
+            self.visit_below(here.children[1], bounds, visit);
+        }
+    }
+
+    fn allocate(&mut self, node: Node) -> u32 {
+        if let Some(index) = self.free.pop() {
+            self.nodes[index as usize] = node;
+            return index;
+        }
+        self.nodes.push(node);
+        u32::try_from(self.nodes.len() - 1)
+            .expect("a tree has fewer than 2^32 nodes: bodies are counted in 32 bits")
+    }
+
+    fn insert(&mut self, leaf: u32) {
+        let Some(root) = self.root else {
+            self.root = Some(leaf);
+            return;
+        };
+        let bounds = self.nodes[leaf as usize].bounds;
+        let sibling = self.best_sibling(root, &bounds);
+        let above = self.nodes[sibling as usize].parent;
+        let parent = self.allocate(Node {
+            bounds: self.nodes[sibling as usize].bounds.union(bounds),
+            parent: above,
+            children: [sibling, leaf],
+            height: self.nodes[sibling as usize].height + 1,
+            body: BodyId(0),
+        });
+        self.replace_child(above, sibling, parent);
+        self.nodes[sibling as usize].parent = parent;
+        self.nodes[leaf as usize].parent = parent;
+        self.refit_from(above);
+    }
+
+    /// Descends to where a new box makes the boxes above grow least.
+    fn best_sibling(&self, root: u32, bounds: &Aabb) -> u32 {
+        let mut node = root;
+        loop {
+            let here = &self.nodes[node as usize];
+            if here.height == 0 {
+                return node;
+            }
+            let together = here.bounds.union(*bounds).half_perimeter();
+            let growth = together - here.bounds.half_perimeter();
+            let [left, right] = here.children.map(|child| self.descent_cost(child, bounds) + growth);
+            if together <= left && together <= right {
+                return node;
+            }
+            node = here.children[usize::from(right < left)];
+        }
+    }
+
+    fn descent_cost(&self, child: u32, bounds: &Aabb) -> f64 {
+        let child = &self.nodes[child as usize];
+        let together = child.bounds.union(*bounds).half_perimeter();
+        if child.height == 0 { together } else { together - child.bounds.half_perimeter() }
+    }
+
+    /// Puts `new` where `old` was below `parent`, or at the root.
+    fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
+        self.nodes[new as usize].parent = parent;
+        if parent == NONE {
+            self.root = Some(new);
+            return;
+        }
+        let children = &mut self.nodes[parent as usize].children;
+        children[usize::from(children[1] == old)] = new;
+    }
+
+    /// Mends boxes, heights and balance from a node up to the root.
+    fn refit_from(&mut self, mut node: u32) {
+        while node != NONE {
+            let node_now = self.balance(node);
+            self.refit(node_now);
+            node = self.nodes[node_now as usize].parent;
+        }
+    }
+
+    fn refit(&mut self, node: u32) {
+        let [left, right] = self.nodes[node as usize].children.map(|child| &self.nodes[child as usize]);
+        let (bounds, height) = (left.bounds.union(right.bounds), 1 + left.height.max(right.height));
+        let here = &mut self.nodes[node as usize];
+        (here.bounds, here.height) = (bounds, height);
+    }
+
+    /// Rotates the higher child up if it is higher by two; returns the root of the subtree.
+    fn balance(&mut self, node: u32) -> u32 {
+        let [left, right] = self.nodes[node as usize].children;
+        let (left_height, right_height) =
+            (self.nodes[left as usize].height, self.nodes[right as usize].height);
+        let (high, side) = match () {
+            () if left_height > right_height + 1 => (left, 0),
+            () if right_height > left_height + 1 => (right, 1),
+            () => return node,
+        };
+        // The high child takes the node's place; its lower child moves under the node.
+        let [first, second] = self.nodes[high as usize].children;
+        let first_is_lower = self.nodes[first as usize].height <= self.nodes[second as usize].height;
+        let (lower, higher) = if first_is_lower { (first, second) } else { (second, first) };
+        let above = self.nodes[node as usize].parent;
+        self.replace_child(above, node, high);
+        self.nodes[high as usize].children = [node, higher];
+        self.nodes[node as usize].parent = high;
+        self.nodes[node as usize].children[side] = lower;
+        self.nodes[lower as usize].parent = node;
+        self.refit(node);
+        high
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    /// A cheap generator of places that look random.
+    fn place(index: u32) -> DVec2 {
+        let turn = f64::from(index) * 0.618_033_988_749_895;
+        DVec2::new(turn.fract() * 100.0, (turn * 7.1).fract() * 100.0)
+    }
+
+    fn found(broad: &BroadPhase, bounds: &Aabb) -> Vec<u32> {
+        let mut bodies = Vec::new();
+        broad.visit_overlapping(bounds, &mut |body| bodies.push(body.0));
+        bodies.sort_unstable();
+        bodies
+    }
+
+    #[test]
+    fn queries_find_what_brute_force_finds_while_boxes_move() {
+        let mut broad = BroadPhase::new();
+        let mut boxes: Vec<Aabb> = (0..300).map(|index| Aabb::around_disc(place(index), 1.5)).collect();
+        for (index, bounds) in boxes.iter().enumerate() {
+            broad.set(BodyId(index as u32), *bounds);
+        }
+        for round in 0..20 {
+            for index in (round..300).step_by(7) {
+                boxes[index] = Aabb::around_disc(place(index as u32 + 1000 * (round as u32 + 1)), 2.0);
+                broad.set(BodyId(index as u32), boxes[index]);
+            }
+            for (index, query) in boxes.iter().enumerate().step_by(11) {
+                let expected: Vec<u32> =
+                    (0..300).filter(|&other| boxes[other as usize].overlaps(query)).collect();
+                assert_eq!(found(&broad, query), expected, "box {index} in round {round}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_tree_stays_as_shallow_as_a_balanced_one() {
+        let mut broad = BroadPhase::new();
+        for index in 0..1024 {
+            broad.set(BodyId(index), Aabb::around_disc(DVec2::new(f64::from(index), 0.0), 0.4));
+        }
+        let root = broad.root.expect("there are bodies");
+        assert!(broad.nodes[root as usize].height <= 15, "height {}", broad.nodes[root as usize].height);
+    }
+
+    #[test]
+    fn removed_bodies_are_not_found() {
+        let mut broad = BroadPhase::new();
+        for index in 0..10 {
+            broad.set(BodyId(index), Aabb::around_disc(DVec2::ZERO, 1.0));
+        }
+        for index in 0..10 {
+            broad.remove(BodyId(index));
+            assert_eq!(found(&broad, &Aabb::around(DVec2::ZERO)).len(), 9 - index as usize);
+            assert_eq!(broad.bounds(BodyId(index)), None);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! First contact of a feature pair whose gap is a quadratic in time.
+//!
+//! Two cases have closed forms: two centres in uniform relative motion, for which |d|^2 is a quadratic, and a centre on a
+//! parabola against a line that does not turn, for which the gap itself is one. A centre moves on its body's parabola if
+//! it is the centre of mass or if the body does not turn.
+
+use crate::motion::{Motion, Polynomial};
+use crate::quadratic::first_closing_time;
+use glam::DVec2;
+use halfgap_geometry::{Feature, LineFeature, PairKind, Pose, RoundFeature};
+
+/// The gap of a feature pair, less its target, as c + v t + a t^2/2 in some unit whose zero is the target.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quadratic {
+    c: f64,
+    v: f64,
+    a: f64,
+    /// The unit of c per metre of gap near the target: turns c back into a distance.
+    scale: f64,
+}
+
+impl Quadratic {
+    /// First time at which the pair is at or below its target and closes.
+    ///
+    /// A pair that starts deeper than `depth` [m] lies behind: it must rise to its target before it can close to it.
+    pub(crate) fn first_closing(&self, depth: f64) -> Option<f64> {
+        let deepest = -depth * self.scale;
+        if self.c < deepest {
+            let rises = self.v > 0.0 && self.a < 0.0 && self.c - 0.5 * self.v * self.v / self.a >= deepest;
+            if !rises {
+                return None;
+            }
+        }
+        first_closing_time(self.c, self.v, self.a)
+    }
+}
+
+/// The quadratic of a feature pair, if it has one; `offsets` [s] say where in their motions the bodies start.
+pub(crate) fn quadratic<A: Motion, B: Motion>(
+    kind: PairKind,
+    (feature_a, motion_a): (&Feature, &A),
+    (feature_b, motion_b): (&Feature, &B),
+    offsets: [f64; 2],
+    target: f64,
+) -> Option<Quadratic> {
+    match (kind, feature_a, feature_b) {
+        (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
+            let center = center_path(round, motion_a, offsets[0])?;
+            of_line(center, round.radius, line, motion_b, offsets[1], target)
+        }
+        (PairKind::LineRound, Feature::Line(line), Feature::Round(round)) => {
+            let center = center_path(round, motion_b, offsets[1])?;
+            of_line(center, round.radius, line, motion_a, offsets[0], target)
+        }
+        (_, Feature::Round(round_a), Feature::Round(round_b)) => {
+            let a = center_path(round_a, motion_a, offsets[0])?;
+            let b = center_path(round_b, motion_b, offsets[1])?;
+            let radii = round_a.radius + round_b.radius;
+            of_centers(&a, &b, radii, kind == PairKind::Inner, target)
+        }
+        _ => None,
+    }
+}
+
+/// The parabola of a feature's centre, if it follows one.
+fn center_path<M: Motion>(round: &RoundFeature, motion: &M, offset: f64) -> Option<Polynomial> {
+    let body = motion.polynomial_from(offset)?;
+    if round.center == DVec2::ZERO {
+        return Some(body);
+    }
+    motion.is_rotation_free().then(|| {
+        let arm = motion.moving_at(offset).pose.vector_to_world(round.center);
+        Polynomial { position: body.position + arm, ..body }
+    })
+}
+
+fn of_centers(a: &Polynomial, b: &Polynomial, radii: f64, inner: bool, target: f64) -> Option<Quadratic> {
+    if a.acceleration != b.acceleration {
+        return None;
+    }
+    let d = a.position - b.position;
+    let u = a.velocity - b.velocity;
+    let sign = if inner { -1.0 } else { 1.0 };
+    // sign (|d|^2 - reach^2) by the product, in which the gap's digits survive.
+    let reach = sign * (radii + target);
+    let distance = d.length();
+    let c = sign * (distance - reach) * (distance + reach);
+    Some(Quadratic { c, v: 2.0 * sign * d.dot(u), a: 2.0 * sign * u.length_squared(), scale: 2.0 * reach })
+}
+
+fn of_line<M: Motion>(
+    center: Polynomial,
+    radius: f64,
+    line: &LineFeature,
+    motion: &M,
+    offset: f64,
+    target: f64,
+) -> Option<Quadratic> {
+    let body = motion.polynomial_from(offset)?;
+    if !motion.is_rotation_free() {
+        return None;
+    }
+    let Pose { position, rotation } = motion.moving_at(offset).pose;
+    let normal = rotation.apply(line.normal);
+    let height = normal.dot(center.position - position);
+    let c = height - line.offset - radius - target;
+    let v = normal.dot(center.velocity - body.velocity);
+    let a = normal.dot(center.acceleration - body.acceleration);
+    Some(Quadratic { c, v, a, scale: 1.0 })
+}

@@ -1,0 +1,138 @@
+//! The collision records of two bodies at one moment.
+
+use crate::body::{Body, BodyId};
+use crate::merge::merge_collisions;
+use crate::motion::Moving;
+use crate::record::{Collision, Detector, Participant, Parties};
+use crate::tolerances::{ANGLE_SLACK, Tolerances};
+use halfgap_geometry::{Feature, FeatureId, FeatureKind, GapSample, Shape};
+
+/// A body at the moment of detection.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// Which body.
+    pub id: BodyId,
+    /// What it is.
+    pub body: &'a Body,
+    /// Where it is and how it moves.
+    pub moving: Moving,
+}
+
+/// Adds to `found` a record for every place where the two bodies are within `distance_tol` of each other, overlapping by
+/// at most `depth` [m]; the same place found twice is recorded once.
+pub fn detect_pair(
+    a: &Moment<'_>,
+    b: &Moment<'_>,
+    tolerances: &Tolerances,
+    depth: f64,
+    time: f64,
+    found: &mut Vec<Collision>,
+) {
+    let first = found.len();
+    let distance = tolerances.distance_tol().max(depth);
+    a.body.shape.tree().visit_near_pairs(
+        &a.moving.pose,
+        b.body.shape.tree(),
+        &b.moving.pose,
+        distance,
+        &mut |feature_a, feature_b| {
+            found.extend(detect_features([a, b], [feature_a, feature_b], tolerances, depth, time));
+        },
+    );
+    if found.len() > first + 1 {
+        let mut fresh = found.split_off(first);
+        merge_collisions(&mut fresh);
+        found.append(&mut fresh);
+    }
+}
+
+fn detect_features(
+    [a, b]: [&Moment<'_>; 2],
+    [feature_a, feature_b]: [FeatureId; 2],
+    tolerances: &Tolerances,
+    depth: f64,
+    time: f64,
+) -> Option<Collision> {
+    let (shape_a, shape_b) = (a.body.shape.feature(feature_a), b.body.shape.feature(feature_b));
+    let sample = GapSample::measure(shape_a, &a.moving.pose, shape_b, &b.moving.pose)?;
+    let tolerances = pair_tolerances(shape_a, shape_b, tolerances);
+    if sample.gap > tolerances.distance_tol() || sample.gap < -depth {
+        return None;
+    }
+    if !is_within(&sample, [(&a.body.shape, feature_a), (&b.body.shape, feature_b)], &tolerances) {
+        return None;
+    }
+    let (primary, normal, primary_feature, normal_feature) =
+        if sample.primary_is_a { (a, b, feature_a, feature_b) } else { (b, a, feature_b, feature_a) };
+    let sides = [
+        Participant::new(primary.id, &primary.body.shape, primary_feature),
+        Participant::new(normal.id, &normal.body.shape, normal_feature),
+    ];
+    let parties = Parties {
+        primary: sides[0],
+        normal: sides[1],
+        bilateral: false,
+        detector: detector(sides[0].kind, sides[1].kind),
+    };
+    let radii = [
+        primary.body.shape.feature(primary_feature).radius(),
+        normal.body.shape.feature(normal_feature).radius(),
+    ];
+    let elasticity = a.body.elasticity.min(b.body.elasticity);
+    Some(Collision::new(
+        parties,
+        (&sample, radii),
+        [&primary.moving, &normal.moving],
+        tolerances,
+        elasticity,
+        time,
+    ))
+}
+
+fn detector(primary: FeatureKind, normal: FeatureKind) -> Detector {
+    match (primary, normal) {
+        (FeatureKind::Vertex, FeatureKind::Vertex) => Detector::CornerCorner,
+        (FeatureKind::Vertex, _) | (_, FeatureKind::Vertex) => Detector::VertexEdge,
+        _ => Detector::EdgeEdge,
+    }
+}
+
+/// The thresholds of a pair of features: a convex arc in a hollow barely larger has its own.
+pub(crate) fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tolerances {
+    match (a, b) {
+        (Feature::Round(a), Feature::Round(b)) if a.radius < 0.0 || b.radius < 0.0 => {
+            tolerances.for_clearance(-(a.radius + b.radius))
+        }
+        _ => *tolerances,
+    }
+}
+
+/// True if the contact lies within both features, or outside by so little that it cannot be told.
+///
+/// A vertex outside of its normal cone is not the nearest point of its body: its neighbour along an edge is. While the
+/// neighbour is nearer by less than the accuracy, both touch: so a block lands flat on two corners.
+fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &Tolerances) -> bool {
+    let excess = if sample.primary_is_a {
+        [sample.excess_primary, sample.excess_normal]
+    } else {
+        [sample.excess_normal, sample.excess_primary]
+    };
+    let leans = |side: usize| {
+        let (shape, feature) = sides[side];
+        excess[side] <= ANGLE_SLACK || excess[side] <= lean_slack(shape, feature, tolerances)
+    };
+    sample.overrun <= tolerances.accuracy && leans(0) && leans(1)
+}
+
+/// Angle [rad] by which a vertex may lean out of its normal cone: over its shorter edge that makes up the accuracy. 0 for
+/// an edge.
+fn lean_slack(shape: &Shape, feature: FeatureId, tolerances: &Tolerances) -> f64 {
+    let source = shape.source(feature);
+    if source.kind != FeatureKind::Vertex {
+        return 0.0;
+    }
+    let edges = shape.paths()[source.path as usize].edges();
+    let (after, count) = (source.edge as usize, edges.len());
+    let shorter = edges[after].length().min(edges[(after + count - 1) % count].length());
+    tolerances.accuracy / shorter
+}

@@ -1,0 +1,329 @@
+//! When do two moving shapes first come so near that a feature pair closes to its target gap?
+//!
+//! Nothing is missed: the search moves through windows of time, in each of which bounds on the motion leave only feature
+//! pairs that can come near; each of these is decided by a closed form or by a march that never passes a contact.
+
+use crate::closed::quadratic;
+use crate::detect::pair_tolerances;
+use crate::march::{MarchEnd, Pair, Window, reach_circle};
+use crate::motion::Motion;
+use crate::tolerances::{ANGLE_SLACK, Tolerances};
+use halfgap_geometry::{Feature, FeatureId, GapSample, PairKind, Shape, pair_kind};
+
+/// A shape in motion, as the search sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingShape<'a, M> {
+    /// The shape in body coordinates.
+    pub shape: &'a Shape,
+    /// Its motion.
+    pub motion: &'a M,
+    /// Offset [s] in the motion at which the search's time is 0.
+    pub offset: f64,
+}
+
+/// Limits of a search that do not change what it finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchSettings {
+    /// Steps of one march before the search pauses; the next call goes on from there.
+    pub march_steps: u32,
+    /// Feature pairs up to which all are tried by closed form over the whole span at once.
+    pub direct_pairs: usize,
+    /// Feature pairs in a window above which the next window is shorter.
+    pub crowded: usize,
+    /// Windows of one call of [`search_step`].
+    pub windows: u32,
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4 }
+    }
+}
+
+/// The first contact of two shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstContact {
+    /// Time [s] of the search at which the pair is at its target gap and closes.
+    pub time: f64,
+    /// Feature of the first shape.
+    pub feature_a: FeatureId,
+    /// Feature of the second shape.
+    pub feature_b: FeatureId,
+}
+
+/// What a search over a span of time found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Search {
+    /// The first contact.
+    Contact(FirstContact),
+    /// Proof that there is none before this time [s].
+    NoneBefore(f64),
+}
+
+/// Finds the first time in [0, `span`), `span` finite [s], at which a feature pair of the two shapes is at or below its target gap and closes.
+///
+/// Pairs that start at their target and open do not count until they close again. Total: ends with a contact or with
+/// `NoneBefore(span)`.
+#[must_use]
+pub fn first_contact<A: Motion, B: Motion>(
+    a: &MovingShape<'_, A>,
+    b: &MovingShape<'_, B>,
+    span: f64,
+    tolerances: &Tolerances,
+    settings: &SearchSettings,
+) -> Search {
+    let mut from = 0.0;
+    loop {
+        match search_step(a, b, from, span, tolerances, settings) {
+            Search::NoneBefore(time) if time < span => from = time,
+            end => return end,
+        }
+    }
+}
+
+/// Goes on with a search from a time [s] before which there is known to be no contact; may pause early, with proof for
+/// the part it has searched. Every call makes progress.
+#[must_use]
+pub fn search_step<A: Motion, B: Motion>(
+    a: &MovingShape<'_, A>,
+    b: &MovingShape<'_, B>,
+    from: f64,
+    span: f64,
+    tolerances: &Tolerances,
+    settings: &SearchSettings,
+) -> Search {
+    let search = PairSearch { a, b, tolerances, settings };
+    search.directly(from, span).unwrap_or_else(|| search.by_windows(from, span))
+}
+
+struct PairSearch<'a, A, B> {
+    a: &'a MovingShape<'a, A>,
+    b: &'a MovingShape<'a, B>,
+    tolerances: &'a Tolerances,
+    settings: &'a SearchSettings,
+}
+
+/// The earliest contact so far, and how far everything has been searched.
+struct Progress {
+    contact: Option<FirstContact>,
+    /// No contact before this time [s], other than `contact`.
+    clear: f64,
+}
+
+impl Progress {
+    fn none_before(clear: f64) -> Self {
+        Self { contact: None, clear }
+    }
+
+    fn offer(&mut self, contact: FirstContact) {
+        self.clear = self.clear.min(contact.time);
+        self.contact = Some(contact);
+    }
+
+    fn pause_at(&mut self, time: f64) {
+        self.clear = self.clear.min(time);
+    }
+
+    fn into_search(self) -> Search {
+        match self.contact {
+            Some(contact) if contact.time <= self.clear => Search::Contact(contact),
+            _ => Search::NoneBefore(self.clear),
+        }
+    }
+}
+
+impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
+    /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
+    fn directly(&self, from: f64, span: f64) -> Option<Search> {
+        let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
+        if features_a.len() * features_b.len() > self.settings.direct_pairs {
+            return None;
+        }
+        let mut progress = Progress::none_before(span);
+        for (index_a, a) in features_a.iter().enumerate() {
+            for (index_b, b) in features_b.iter().enumerate() {
+                let Some(kind) = pair_kind(a, b) else { continue };
+                let ids = [feature_id(index_a), feature_id(index_b)];
+                let pair = self.pair(kind, a, b);
+                if let Some(contact) =
+                    self.closed_form(&pair, ids, from)?.filter(|found| found.time < progress.clear)
+                {
+                    progress.offer(contact);
+                }
+            }
+        }
+        Some(progress.into_search())
+    }
+
+    /// The contact of one pair after `from` by closed form: outer `None` if it has none, inner if it does not touch.
+    fn closed_form(&self, pair: &Pair<'_>, ids: [FeatureId; 2], from: f64) -> Option<Option<FirstContact>> {
+        let offsets = [self.a.offset + from, self.b.offset + from];
+        let (a, b) = ((pair.feature_a, self.a.motion), (pair.feature_b, self.b.motion));
+        let curve = quadratic(pair.kind, a, b, offsets, pair.target)?;
+        let Some(wait) = curve.first_closing(pair.depth) else { return Some(None) };
+        let time = from + wait;
+        Some(self.touches_at(pair, time).then_some(FirstContact {
+            time,
+            feature_a: ids[0],
+            feature_b: ids[1],
+        }))
+    }
+
+    /// True if the contact point lies within both features at that time.
+    fn touches_at(&self, pair: &Pair<'_>, time: f64) -> bool {
+        let pose_a = self.a.motion.moving_at(self.a.offset + time).pose;
+        let pose_b = self.b.motion.moving_at(self.b.offset + time).pose;
+        GapSample::measure(pair.feature_a, &pose_a, pair.feature_b, &pose_b).is_some_and(|sample| {
+            let size = sample.center_primary.abs().max(sample.center_normal.abs()).max_element();
+            sample.excess_primary <= ANGLE_SLACK
+                && sample.excess_normal <= ANGLE_SLACK
+                && sample.overrun <= crate::tolerances::rounding(size)
+        })
+    }
+
+    fn pair<'p>(&self, kind: PairKind, a: &'p Feature, b: &'p Feature) -> Pair<'p> {
+        let tolerances = pair_tolerances(a, b, self.tolerances);
+        Pair {
+            kind,
+            feature_a: a,
+            feature_b: b,
+            target: tolerances.target_gap,
+            depth: tolerances.distance_tol(),
+        }
+    }
+
+    fn by_windows(&self, from: f64, span: f64) -> Search {
+        let mut start = from;
+        let mut length = None;
+        for _ in 0..self.settings.windows {
+            if start >= span {
+                break;
+            }
+            let near = self.skip_far(start, span);
+            if near >= span {
+                return Search::NoneBefore(span);
+            }
+            start = near;
+            let whole =
+                Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, span);
+            let wanted = length.unwrap_or_else(|| self.first_length(&whole));
+            let end = span.min(start + wanted);
+            // A window shorter than the clock resolves: let it be one tick.
+            let end = if end > start { end } else { start.next_up() };
+            let (progress, tried) = self.search_window(start, end);
+            match progress.into_search() {
+                Search::NoneBefore(time) if time >= end => start = end,
+                Search::NoneBefore(time) => return Search::NoneBefore(time),
+                contact => return contact,
+            }
+            length = Some(if tried > self.settings.crowded {
+                0.5 * wanted
+            } else if tried == 0 {
+                2.0 * wanted
+            } else {
+                wanted
+            });
+        }
+        Search::NoneBefore(start)
+    }
+
+    /// A time before which the circles around the two bodies do not meet.
+    fn skip_far(&self, start: f64, span: f64) -> f64 {
+        let circles = [reach_circle(self.a.shape.reach()), reach_circle(self.b.shape.reach())];
+        let [circle_a, circle_b] = &circles;
+        let target = self.tolerances.target_gap;
+        // However deep the circles overlap, they do.
+        let pair = Pair {
+            kind: PairKind::Outer,
+            feature_a: circle_a,
+            feature_b: circle_b,
+            target,
+            depth: f64::INFINITY,
+        };
+        let offsets = [self.a.offset + start, self.b.offset + start];
+        let (a, b) = ((circle_a, self.a.motion), (circle_b, self.b.motion));
+        let distance = {
+            let pose_a = self.a.motion.moving_at(offsets[0]).pose;
+            let pose_b = self.b.motion.moving_at(offsets[1]).pose;
+            (pose_a.position - pose_b.position).length()
+        };
+        if distance <= self.a.shape.reach() + self.b.shape.reach() + target {
+            return start;
+        }
+        match quadratic(PairKind::Outer, a, b, offsets, target) {
+            Some(curve) => curve.first_closing(f64::INFINITY).map_or(span, |wait| start + wait),
+            None => {
+                let whole =
+                    Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, span);
+                match whole.march(&pair, start, span, self.settings.march_steps) {
+                    MarchEnd::Closes(time) | MarchEnd::NoneBefore(time) => time,
+                }
+            }
+        }
+    }
+
+    /// A first window in which the bodies move by about a quarter of the smaller one.
+    fn first_length(&self, whole: &Window<'_, A, B>) -> f64 {
+        let (reach_a, reach_b) = (self.a.shape.reach(), self.b.shape.reach());
+        let speed = whole.speed + whole.spin_a.speed * reach_a + whole.spin_b.speed * reach_b;
+        if speed > 0.0 { 0.5 * reach_a.min(reach_b) / speed } else { f64::INFINITY }
+    }
+
+    /// Searches one window; also tells how many feature pairs had to be tried.
+    fn search_window(&self, start: f64, end: f64) -> (Progress, usize) {
+        let window = Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, end);
+        let half = 0.5 * (end - start);
+        let (at_a, at_b) = window.at(start + half);
+        // A point turns by at most its arm times the angle, and never farther than across its circle.
+        let turned = |spin: f64, reach: f64| (spin * half).min(2.0) * reach;
+        let moved = window.speed * half
+            + turned(window.spin_a.speed, self.a.shape.reach())
+            + turned(window.spin_b.speed, self.b.shape.reach());
+        let reach = self.tolerances.target_gap + moved;
+        let mut progress = Progress::none_before(end);
+        let mut tried = 0;
+        self.a.shape.tree().visit_near_pairs(
+            &at_a.pose,
+            self.b.shape.tree(),
+            &at_b.pose,
+            reach,
+            &mut |a, b| {
+                let (feature_a, feature_b) = (self.a.shape.feature(a), self.b.shape.feature(b));
+                if let Some(kind) = pair_kind(feature_a, feature_b) {
+                    tried += 1;
+                    let pair = self.pair(kind, feature_a, feature_b);
+                    self.try_pair(&window, &pair, [a, b], start, &mut progress);
+                }
+            },
+        );
+        (progress, tried)
+    }
+
+    fn try_pair(
+        &self,
+        window: &Window<'_, A, B>,
+        pair: &Pair<'_>,
+        ids: [FeatureId; 2],
+        start: f64,
+        progress: &mut Progress,
+    ) {
+        let limit = progress.clear;
+        if let Some(found) = self.closed_form(pair, ids, start) {
+            if let Some(contact) = found.filter(|contact| contact.time < limit) {
+                progress.offer(contact);
+            }
+            return;
+        }
+        match window.march(pair, start, limit, self.settings.march_steps) {
+            MarchEnd::Closes(time) if time < limit => {
+                progress.offer(FirstContact { time, feature_a: ids[0], feature_b: ids[1] });
+            }
+            MarchEnd::Closes(_) => {}
+            MarchEnd::NoneBefore(time) => progress.pause_at(time),
+        }
+    }
+}
+
+fn feature_id(index: usize) -> FeatureId {
+    FeatureId(u32::try_from(index).unwrap_or(u32::MAX))
+}

@@ -1,0 +1,345 @@
+//! First contact of a feature pair along any motions, by marching with second-order bounds.
+//!
+//! At a time t the gap less its target, c, and its rate v are known, and over the window its acceleration is bounded from
+//! below by -K. Then c + v s - K s^2/2 > 0 proves that nothing happens before the first root s: the march steps there and
+//! asks again. It never passes a contact and, since the bound touches the gap to second order, it converges to a
+//! transversal one as Newton's method does, from before.
+//!
+//! Over a window, with a_rel and u bounding the relative acceleration and velocity of the two centres:
+//!
+//! * vertices and convex arcs: the distance of the centres is convex but for their acceleration, K = a_rel;
+//! * inside a concave arc H = R^2 - |d|^2 replaces the gap, which is singular at the centre: H'' >= -2 (u^2 + |d| a_rel);
+//! * a line that turns with wB about the centre of mass xB: with E = cA - xB the gap is n.E less constants, so that
+//!   K = (|alphaB| + wB^2) |E| + 2 |wB| |E'| + |E''|. The place of the foot along the line obeys the same bound.
+//!
+//! A pair whose contact point lies outside of its features does nothing before that point can come within them; a pair
+//! deeper than `depth` lies on the far side of a body (its gap is negative, but nothing touches) and does nothing before
+//! it can come back.
+//!
+//! Source: the one-sided bound is conservative advancement (B. Mirtich, "Impulse-based dynamic simulation of rigid body
+//! systems", 1996, 2.3) carried to second order.
+
+use crate::motion::{Motion, MotionBounds, Moving};
+use crate::tolerances::{ANGLE_SLACK, rounding};
+use glam::DVec2;
+use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, RoundFeature};
+
+/// Two bodies' motions over a window, with bounds that hold in all of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Window<'a, A, B> {
+    pub(crate) motion_a: &'a A,
+    pub(crate) motion_b: &'a B,
+    /// Offsets [s] of the search's time 0 in the two motions.
+    pub(crate) offsets: [f64; 2],
+    /// Bounds over the window on the relative velocity and acceleration of the centres of mass.
+    pub(crate) speed: f64,
+    pub(crate) acceleration: f64,
+    pub(crate) spin_a: SpinBound,
+    pub(crate) spin_b: SpinBound,
+}
+
+/// Bounds on a body's turning.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpinBound {
+    /// Angular speed [rad/s].
+    pub(crate) speed: f64,
+    /// Angular acceleration [rad/s^2].
+    pub(crate) acceleration: f64,
+}
+
+impl SpinBound {
+    fn of(bounds: &MotionBounds) -> Self {
+        Self { speed: bounds.angular_speed, acceleration: bounds.angular_acceleration }
+    }
+
+    /// Acceleration [m/s^2] of a point with the given arm [m] against the centre of mass.
+    fn arm_acceleration(&self, arm: f64) -> f64 {
+        (self.acceleration + self.speed * self.speed) * arm
+    }
+}
+
+/// How a march ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MarchEnd {
+    /// The pair closes to its target at this time [s].
+    Closes(f64),
+    /// Nothing happens before this time [s], at which the march stopped.
+    NoneBefore(f64),
+}
+
+/// What is known of a pair at one time.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    /// Gap less target, or H for an inner pair.
+    value: f64,
+    /// Its rate.
+    rate: f64,
+    /// Bound on its downward acceleration, and on the upward one while behind.
+    curvature: f64,
+    /// Gap less target [m].
+    height: f64,
+    /// Values and rates below these are rounding.
+    value_rounding: f64,
+    rate_rounding: f64,
+    /// In this time [s] nothing moves by more than rounding.
+    resolution: f64,
+    /// For how long [s] the contact point surely stays outside of the features; `None` if it is within.
+    outside_for: Option<f64>,
+}
+
+/// One feature pair under search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair<'a> {
+    pub(crate) kind: PairKind,
+    pub(crate) feature_a: &'a Feature,
+    pub(crate) feature_b: &'a Feature,
+    /// Target gap [m].
+    pub(crate) target: f64,
+    /// A pair deeper than this [m] lies behind.
+    pub(crate) depth: f64,
+}
+
+impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
+    /// The window from `start` to `end` [s].
+    pub(crate) fn new(motion_a: &'a A, motion_b: &'a B, offsets: [f64; 2], start: f64, end: f64) -> Self {
+        let bounds_a = motion_a.bounds(offsets[0] + start, offsets[0] + end);
+        let bounds_b = motion_b.bounds(offsets[1] + start, offsets[1] + end);
+        Self {
+            motion_a,
+            motion_b,
+            offsets,
+            speed: bounds_a.velocity.largest_difference(&bounds_b.velocity),
+            acceleration: bounds_a.acceleration.largest_difference(&bounds_b.acceleration),
+            spin_a: SpinBound::of(&bounds_a),
+            spin_b: SpinBound::of(&bounds_b),
+        }
+    }
+
+    /// Where the two bodies are at a time [s] of the search.
+    #[inline]
+    pub(crate) fn at(&self, time: f64) -> (Moving, Moving) {
+        (self.motion_a.moving_at(self.offsets[0] + time), self.motion_b.moving_at(self.offsets[1] + time))
+    }
+
+    /// Marches one pair from `start` to `end` [s], at most `steps` steps.
+    pub(crate) fn march(&self, pair: &Pair<'_>, start: f64, end: f64, steps: u32) -> MarchEnd {
+        let mut time = start;
+        for _ in 0..steps {
+            let look = self.look(pair, time, end - time);
+            if look.is_closing(pair.depth) {
+                return MarchEnd::Closes(time);
+            }
+            let next = time + look.quiet_for(pair.depth).max(look.resolution);
+            // Below the resolution of the clock what is left of the gap is rounding.
+            let next = if next > time { next } else { time.next_up() };
+            if next >= end {
+                return MarchEnd::NoneBefore(end);
+            }
+            time = next;
+        }
+        MarchEnd::NoneBefore(time)
+    }
+
+    fn look(&self, pair: &Pair<'_>, time: f64, ahead: f64) -> Look {
+        let (a, b) = self.at(time);
+        match (pair.kind, pair.feature_a, pair.feature_b) {
+            (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
+                self.look_at_line(pair, (round, &a, self.spin_a), (line, &b, self.spin_b), ahead)
+            }
+            (PairKind::LineRound, Feature::Line(line), Feature::Round(round)) => {
+                self.look_at_line(pair, (round, &b, self.spin_b), (line, &a, self.spin_a), ahead)
+            }
+            (kind, Feature::Round(round_a), Feature::Round(round_b)) => {
+                self.look_at_centers(pair, (round_a, &a), (round_b, &b), kind == PairKind::Inner, ahead)
+            }
+            (_, Feature::Line(_), Feature::Line(_))
+            | (PairKind::Outer | PairKind::Inner | PairKind::RoundLine, Feature::Line(_), _)
+            | (PairKind::Outer | PairKind::Inner | PairKind::LineRound, _, Feature::Line(_)) => Look::NEVER,
+        }
+    }
+
+    fn look_at_centers(
+        &self,
+        pair: &Pair<'_>,
+        (round_a, a): (&RoundFeature, &Moving),
+        (round_b, b): (&RoundFeature, &Moving),
+        inner: bool,
+        ahead: f64,
+    ) -> Look {
+        let gap = CenterGap::measure(round_a, &a.pose, round_b, &b.pose, inner);
+        let height = gap.gap - pair.target;
+        let arms = [round_a.center.length(), round_b.center.length()];
+        let u_max = self.speed + self.spin_a.speed * arms[0] + self.spin_b.speed * arms[1];
+        let a_max =
+            self.acceleration + self.spin_a.arm_acceleration(arms[0]) + self.spin_b.arm_acceleration(arms[1]);
+        let u = a.velocity_at(gap.center_a - a.pose.position) - b.velocity_at(gap.center_b - b.pose.position);
+        let size = gap.center_a.abs().max(gap.center_b.abs()).max_element()
+            + round_a.radius.abs()
+            + round_b.radius.abs();
+        let mut look = Look {
+            value: height,
+            rate: gap.normal.dot(u),
+            curvature: a_max,
+            height,
+            value_rounding: rounding(size),
+            rate_rounding: rounding(u.length()),
+            resolution: quotient(rounding(size), u_max),
+            outside_for: self.outside_ranges(&gap, (round_a, a), (round_b, b), u_max),
+        };
+        if inner || look.is_behind(pair.depth) {
+            // In terms of H = +-(|d|^2 - reach^2), whose acceleration +-2 (|u|^2 + d.d'') is bounded at the centre too.
+            let distance = gap.center_distance;
+            let reach = (round_a.radius + round_b.radius + pair.target).abs();
+            let d_max =
+                if look.is_behind(pair.depth) { distance + u_max * ahead } else { reach.max(distance) };
+            look.value *= distance + reach;
+            look.rate *= 2.0 * distance;
+            look.curvature = 2.0 * (u_max * u_max + d_max.max(reach) * a_max);
+            look.value_rounding *= distance + reach;
+            look.rate_rounding *= 2.0 * distance.max(reach);
+        }
+        look
+    }
+
+    fn look_at_line(
+        &self,
+        pair: &Pair<'_>,
+        (round, a, spin_a): (&RoundFeature, &Moving, SpinBound),
+        (line, b, spin_b): (&LineFeature, &Moving, SpinBound),
+        ahead: f64,
+    ) -> Look {
+        let gap = LineGap::measure(round, &a.pose, line, &b.pose);
+        let height = gap.gap - pair.target;
+        let arm = round.center.length();
+        let e = gap.center - b.pose.position;
+        let e_rate = a.velocity_at(gap.center - a.pose.position) - b.velocity;
+        let e_speed = self.speed + spin_a.speed * arm;
+        let e_max = e.length() + e_speed * ahead;
+        let curvature = (spin_b.acceleration + spin_b.speed * spin_b.speed) * e_max
+            + 2.0 * spin_b.speed * e_speed
+            + self.acceleration
+            + spin_a.arm_acceleration(arm);
+        let (n, w) = (gap.normal, b.angular_velocity);
+        let rate = n.dot(e_rate) + w * n.perp().dot(e);
+        let along_rate = n.perp().dot(e_rate) - w * n.dot(e);
+        let size = gap.center.abs().max(b.pose.position.abs()).max_element() + e.length() + round.radius;
+        let beyond = overrun_for(gap.along, along_rate, line, curvature, rounding(size));
+        let excess = gap.excess(round, &a.pose);
+        let turning = spin_a.speed + spin_b.speed;
+        let askew = (excess > ANGLE_SLACK).then(|| quotient(excess, turning));
+        Look {
+            value: height,
+            rate,
+            curvature,
+            height,
+            value_rounding: rounding(size),
+            rate_rounding: rounding(e_rate.length() + w.abs() * e.length()),
+            resolution: quotient(rounding(size), e_speed + spin_b.speed * e_max),
+            outside_for: longer(beyond, askew),
+        }
+    }
+
+    /// For how long [s] the direction between two centres surely stays outside of one of the ranges.
+    fn outside_ranges(
+        &self,
+        gap: &CenterGap,
+        (round_a, a): (&RoundFeature, &Moving),
+        (round_b, b): (&RoundFeature, &Moving),
+        u_max: f64,
+    ) -> Option<f64> {
+        let [excess_a, excess_b] = gap.excess(round_a, &a.pose, round_b, &b.pose);
+        if excess_a <= ANGLE_SLACK && excess_b <= ANGLE_SLACK {
+            return None;
+        }
+        // While the centres keep half of their distance the direction turns by at most u/(d/2).
+        let half_way = quotient(0.5 * gap.center_distance, u_max);
+        let direction_turn = quotient(2.0 * u_max, gap.center_distance);
+        let wait = |excess: f64, spin: SpinBound| {
+            (excess > ANGLE_SLACK).then(|| half_way.min(quotient(excess, direction_turn + spin.speed)))
+        };
+        longer(wait(excess_a, self.spin_a), wait(excess_b, self.spin_b))
+    }
+}
+
+impl Look {
+    const NEVER: Look = Look {
+        value: f64::INFINITY,
+        rate: 0.0,
+        curvature: 0.0,
+        height: f64::INFINITY,
+        value_rounding: 0.0,
+        rate_rounding: 0.0,
+        resolution: f64::INFINITY,
+        outside_for: Some(f64::INFINITY),
+    };
+
+    fn is_behind(&self, depth: f64) -> bool {
+        self.height < -depth
+    }
+
+    /// At or below the target, closing, and within both features.
+    fn is_closing(&self, depth: f64) -> bool {
+        !self.is_behind(depth)
+            && self.value <= self.value_rounding
+            && self.rate < -self.rate_rounding
+            && self.outside_for.is_none()
+    }
+
+    /// For how long [s] nothing happens.
+    fn quiet_for(&self, depth: f64) -> f64 {
+        let by_value = if self.is_behind(depth) {
+            // Mirrored: before the value could rise to the target, nothing comes back.
+            first_descent(-self.value, -self.rate, self.curvature)
+        } else if self.value > self.value_rounding {
+            first_descent(self.value, self.rate, self.curvature)
+        } else if self.rate >= 0.0 {
+            // At the target and opening: nothing fires before the rate could turn.
+            quotient(self.rate, self.curvature)
+        } else {
+            0.0
+        };
+        self.outside_for.map_or(by_value, |wait| wait.max(by_value))
+    }
+}
+
+/// First root of c + v s - K s^2/2 for c > 0, K >= 0; infinite if there is none.
+#[inline]
+fn first_descent(c: f64, v: f64, curvature: f64) -> f64 {
+    let root = (v * v + 2.0 * curvature * c).sqrt();
+    if v <= 0.0 { quotient(2.0 * c, root - v) } else { quotient(v + root, curvature) }
+}
+
+/// A quotient of numbers that are not negative, infinite over 0.
+#[inline]
+fn quotient(numerator: f64, denominator: f64) -> f64 {
+    if denominator > 0.0 { numerator / denominator } else { f64::INFINITY }
+}
+
+/// For how long [s] the foot surely stays beyond the ends of the line, given its place, rate and bounded acceleration.
+fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, rounding: f64) -> Option<f64> {
+    let (before, after) = (line.start - along, along - line.end);
+    if before > rounding {
+        Some(first_descent(before, -rate, curvature))
+    } else if after > rounding {
+        Some(first_descent(after, rate, curvature))
+    } else {
+        None
+    }
+}
+
+/// The longer of two waits, either of which may be absent.
+fn longer(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.max(b)),
+        (only, None) | (None, only) => only,
+    }
+}
+
+/// The round feature that stands for a whole body far away: its reach about its centre of mass.
+pub(crate) fn reach_circle(reach: f64) -> Feature {
+    Feature::Round(RoundFeature {
+        center: DVec2::ZERO,
+        radius: reach,
+        range: halfgap_geometry::DirectionRange::Full,
+    })
+}

@@ -1,0 +1,52 @@
+//! Two detectors can find one spot twice; the more exact record stays.
+
+use crate::record::Collision;
+use std::cmp::Ordering;
+
+/// Two normals are one when their directions agree to this sine [-]: far more than rounding, far less than a corner.
+const PARALLEL: f64 = 1e-6;
+
+/// True if two records are the same physical collision: the same two bodies touch at one place along one normal.
+///
+/// Places are one when they lie within `distance_tol` of each other: that is what cannot be told apart.
+#[must_use]
+pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
+    let bodies = |c: &Collision| {
+        let (p, n) = (c.parties.primary.body, c.parties.normal.body);
+        (p.min(n), p.max(n))
+    };
+    if bodies(a) != bodies(b) || a.parties.bilateral != b.parties.bilateral {
+        return false;
+    }
+    let swapped = a.parties.primary.body != b.parties.primary.body;
+    let normal_b = if swapped { -b.geometry.normal } else { b.geometry.normal };
+    let normal_a = a.geometry.normal;
+    let parallel = normal_a.dot(normal_b) > 0.0 && normal_a.perp_dot(normal_b).abs() < PARALLEL;
+    let middle = |c: &Collision| 0.5 * (c.geometry.point_primary + c.geometry.point_normal);
+    let near = a.tolerances.distance_tol().max(b.tolerances.distance_tol());
+    parallel && (middle(a) - middle(b)).length() <= near
+}
+
+/// Drops records that are the same physical collision as a more exact one: edge-edge wins over vertex-edge over
+/// corner-corner, then the lesser distance, then the earlier place in the list. Keeps the order.
+pub fn merge_collisions(records: &mut Vec<Collision>) {
+    let mut kept = 0;
+    for index in 0..records.len() {
+        let candidate = records[index];
+        match records[..kept].iter().position(|other| is_same_collision(other, &candidate)) {
+            None => {
+                records[kept] = candidate;
+                kept += 1;
+            }
+            Some(place) if is_better(&candidate, &records[place]) => records[place] = candidate,
+            Some(_) => {}
+        }
+    }
+    records.truncate(kept);
+}
+
+fn is_better(candidate: &Collision, other: &Collision) -> bool {
+    let by_detector = candidate.parties.detector.cmp(&other.parties.detector);
+    let by_distance = other.geometry.distance.total_cmp(&candidate.geometry.distance);
+    by_detector.then(by_distance) == Ordering::Greater
+}

@@ -1,0 +1,114 @@
+//! Where a body is and how it moves, at a moment and over an interval.
+
+use glam::DVec2;
+use halfgap_geometry::Pose;
+
+/// Position and velocity of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyState {
+    /// Centre of mass [m].
+    pub position: DVec2,
+    /// Angle [rad], not reduced.
+    pub angle: f64,
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: DVec2,
+    /// Angular velocity [rad/s].
+    pub angular_velocity: f64,
+}
+
+impl BodyState {
+    /// The placement that goes with the state.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        Pose::new(self.position, self.angle)
+    }
+}
+
+/// A body at one moment, its rotation already taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moving {
+    /// Where it is.
+    pub pose: Pose,
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: DVec2,
+    /// Angular velocity [rad/s].
+    pub angular_velocity: f64,
+}
+
+impl Moving {
+    /// Velocity [m/s] of the material point with the given arm from the centre of mass [m].
+    #[must_use]
+    #[inline]
+    pub fn velocity_at(&self, arm: DVec2) -> DVec2 {
+        self.velocity + arm.perp() * self.angular_velocity
+    }
+}
+
+impl From<&BodyState> for Moving {
+    fn from(state: &BodyState) -> Self {
+        Self { pose: state.pose(), velocity: state.velocity, angular_velocity: state.angular_velocity }
+    }
+}
+
+/// All vectors within some distance of a centre: bounds that keep their direction, so that what is common to two bodies
+/// cancels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ball {
+    /// Centre, in the unit of the bounded quantity.
+    pub center: DVec2,
+    /// Radius, in the same unit.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// Largest size of the difference between a vector of one ball and a vector of the other.
+    #[must_use]
+    #[inline]
+    pub fn largest_difference(&self, other: &Ball) -> f64 {
+        (self.center - other.center).length() + self.radius + other.radius
+    }
+}
+
+/// Bounds on a body's motion over an interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MotionBounds {
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: Ball,
+    /// Acceleration of the centre of mass [m/s^2].
+    pub acceleration: Ball,
+    /// Largest angular speed [rad/s].
+    pub angular_speed: f64,
+    /// Largest angular acceleration in size [rad/s^2].
+    pub angular_acceleration: f64,
+}
+
+/// A motion in which the centre of mass follows a parabola: position + velocity t + acceleration t^2/2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial {
+    /// Position at the start [m].
+    pub position: DVec2,
+    /// Velocity at the start [m/s].
+    pub velocity: DVec2,
+    /// Acceleration [m/s^2].
+    pub acceleration: DVec2,
+}
+
+/// The motion of a body along a segment, to be asked at any offset [s] from the segment's start.
+pub trait Motion {
+    /// Position and velocity at an offset [s].
+    fn state_at(&self, offset: f64) -> BodyState;
+
+    /// Placement and velocities at an offset [s].
+    fn moving_at(&self, offset: f64) -> Moving {
+        Moving::from(&self.state_at(offset))
+    }
+
+    /// Bounds that hold between two offsets [s].
+    fn bounds(&self, from: f64, to: f64) -> MotionBounds;
+
+    /// The parabola of the centre of mass as it goes on from an offset [s]; `None` if it follows another curve.
+    fn polynomial_from(&self, offset: f64) -> Option<Polynomial>;
+
+    /// True if the body does not turn during the segment.
+    fn is_rotation_free(&self) -> bool;
+}

@@ -1,0 +1,68 @@
+//! When a parabola first closes to zero, without cancellation.
+
+/// First time t >= 0 at which c + v t + a t^2/2 is at most 0 while not growing (v + a t <= 0).
+///
+/// That is 0 if it starts there and closes; `None` if it never happens, nor if it stays at 0 for ever. Roots are taken in the form in which
+/// nothing cancels, so that a = 0 and a double root need no special care.
+#[must_use]
+#[inline]
+pub fn first_closing_time(c: f64, v: f64, a: f64) -> Option<f64> {
+    if c <= 0.0 {
+        // At the target already: at once if closing, else when the parabola turns back below it or comes down to it.
+        if v < 0.0 || (v == 0.0 && a < 0.0) {
+            return Some(0.0);
+        }
+        if a >= 0.0 {
+            return None;
+        }
+        let top = v * v - 2.0 * a * c;
+        return Some(if top <= 0.0 { v / -a } else { (v + top.sqrt()) / -a });
+    }
+    let discriminant = v * v - 2.0 * a * c;
+    if discriminant < 0.0 || (v >= 0.0 && a >= 0.0) {
+        return None;
+    }
+    let root = discriminant.sqrt();
+    Some(if v <= 0.0 { 2.0 * c / (root - v) } else { (v + root) / -a })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_falling_ball_lands() {
+        assert_eq!(first_closing_time(5.0, 0.0, -10.0), Some(1.0));
+        let thrown = first_closing_time(0.0, 10.0, -10.0).expect("it comes down");
+        assert!((thrown - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_recedes_never_closes() {
+        assert_eq!(first_closing_time(1.0, 0.0, 0.0), None);
+        assert_eq!(first_closing_time(1.0, 2.0, 1.0), None);
+        assert_eq!(first_closing_time(1.0, -1.0, 1.0), None);
+        assert_eq!(first_closing_time(-1.0, 1.0, 0.0), None);
+    }
+
+    #[test]
+    fn a_start_at_the_target_counts_if_it_closes() {
+        assert_eq!(first_closing_time(0.0, -1.0, 5.0), Some(0.0));
+        assert_eq!(first_closing_time(0.0, 0.0, -1.0), Some(0.0));
+        assert_eq!(first_closing_time(0.0, 1.0, 1.0), None);
+        assert_eq!(first_closing_time(0.0, 0.0, 0.0), None);
+    }
+
+    #[test]
+    fn a_start_below_the_target_turns_back_at_the_top() {
+        assert_eq!(first_closing_time(-1.0, 1.0, -1.0), Some(1.0));
+        let over = first_closing_time(-0.375, 1.0, -1.0).expect("it rises above and falls back");
+        assert!((over - 1.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn nothing_cancels_for_tiny_accelerations() {
+        let t = first_closing_time(1.0, -1.0, 1e-18).expect("it closes");
+        assert!((t - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,108 @@
+//! Zones of distance around the target gap, and the predicates built on them.
+
+use crate::record::Collision;
+use crate::tolerances::Tolerances;
+
+/// Where a distance lies relative to the target gap, from far to overlapping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Zone {
+    /// 0: farther than `distance_tol`.
+    OutOfRange,
+    /// 1: in range, but beyond the target zone.
+    BeyondTarget,
+    /// 2: in the target zone, within `accuracy` of the target gap.
+    Target,
+    /// 3: nearer than the target zone, not overlapping.
+    Near,
+    /// 4: overlapping.
+    Penetrating,
+}
+
+impl Zone {
+    /// The zone of a distance [m], negative for overlap.
+    #[must_use]
+    pub fn of(distance: f64, tolerances: &Tolerances) -> Self {
+        let Tolerances { target_gap, accuracy, .. } = *tolerances;
+        if distance < 0.0 {
+            Zone::Penetrating
+        } else if distance < target_gap - accuracy {
+            Zone::Near
+        } else if distance <= target_gap + accuracy {
+            Zone::Target
+        } else if distance <= tolerances.distance_tol() {
+            Zone::BeyondTarget
+        } else {
+            Zone::OutOfRange
+        }
+    }
+}
+
+/// Predicates on a record; all follow from its zone, its normal velocity, and whether it is bilateral.
+impl Collision {
+    /// The zone of the distance.
+    #[must_use]
+    pub fn zone(&self) -> Zone {
+        Zone::of(self.geometry.distance, &self.tolerances)
+    }
+
+    /// A contact: in range and slow, or bilateral.
+    #[must_use]
+    pub fn is_contact(&self) -> bool {
+        let in_range = matches!(self.zone(), Zone::BeyondTarget | Zone::Target | Zone::Near);
+        self.parties.bilateral
+            || (in_range && self.motion.normal_velocity.abs() < self.tolerances.velocity_tol)
+    }
+
+    /// Within `distance_tol`, or bilateral.
+    #[must_use]
+    pub fn is_touching(&self) -> bool {
+        self.parties.bilateral || self.zone() != Zone::OutOfRange
+    }
+
+    /// Near enough to its target to be handled now; `allow_tiny` also admits what lies nearer than the target zone.
+    #[must_use]
+    pub fn is_close_enough(&self, allow_tiny: bool) -> bool {
+        let zone = self.zone();
+        self.is_contact() || zone == Zone::Target || (allow_tiny && zone == Zone::Near)
+    }
+
+    /// Overlapping, or nearer than the target zone and closing; never when bilateral.
+    #[must_use]
+    pub fn is_colliding(&self) -> bool {
+        let closing = self.motion.normal_velocity < -self.tolerances.velocity_tol;
+        !self.parties.bilateral
+            && match self.zone() {
+                Zone::Penetrating => true,
+                Zone::Near => closing,
+                Zone::OutOfRange | Zone::BeyondTarget | Zone::Target => false,
+            }
+    }
+
+    /// Overlapping, and not bilateral.
+    #[must_use]
+    pub fn is_illegal(&self) -> bool {
+        !self.parties.bilateral && self.zone() == Zone::Penetrating
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_follow_the_distance_inwards() {
+        let tolerances = Tolerances { target_gap: 0.005, accuracy: 0.003, velocity_tol: 0.5 };
+        let zones = [0.0101, 0.0099, 0.0081, 0.0079, 0.0021, 0.0019, 0.0, -1e-9];
+        let expected = [
+            Zone::OutOfRange,
+            Zone::BeyondTarget,
+            Zone::BeyondTarget,
+            Zone::Target,
+            Zone::Target,
+            Zone::Near,
+            Zone::Near,
+            Zone::Penetrating,
+        ];
+        assert_eq!(zones.map(|distance| Zone::of(distance, &tolerances)), expected);
+    }
+}
