@@ -1,1 +1,23 @@
-//! (outline)
+//! Event-driven advance: which event is next, and what is handled in which order?
+//!
+//! *Invariant*: this crate knows no force laws and no scene files; without the feature `rigid` (on by default) it does
+//! not even know bodies, and has no dependencies but an error macro.
+//!
+//! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in an
+//! [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`]. Outputs are read from segments and change
+//! nothing.
+//!
+//! # Code map
+//!
+//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; `rigid` implements
+//! the trait for bodies in free flight with impacts.
+
+mod queue;
+#[cfg(feature = "rigid")]
+pub mod rigid;
+mod system;
+mod time;
+
+pub use queue::{EventQueue, Scheduled, SourceId};
+pub use system::{EventDriven, advance_until};
+pub use time::Time;

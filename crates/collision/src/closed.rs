@@ -6,6 +6,7 @@
 
 use crate::motion::{Motion, Polynomial};
 use crate::quadratic::first_closing_time;
+use crate::tolerances::rounding;
 use glam::DVec2;
 use halfgap_geometry::{Feature, LineFeature, PairKind, Pose, RoundFeature};
 
@@ -17,6 +18,8 @@ pub(crate) struct Quadratic {
     a: f64,
     /// The unit of c per metre of gap near the target: turns c back into a distance.
     scale: f64,
+    /// A rate below this is rounding.
+    v_rounding: f64,
 }
 
 impl Quadratic {
@@ -31,7 +34,9 @@ impl Quadratic {
                 return None;
             }
         }
-        first_closing_time(self.c, self.v, self.a)
+        // At the target a rate that is only rounding neither closes nor opens: the acceleration decides.
+        let still = self.c <= 0.0 && self.v.abs() <= self.v_rounding;
+        first_closing_time(self.c, if still { 0.0 } else { self.v }, self.a)
     }
 }
 
@@ -85,7 +90,14 @@ fn of_centers(a: &Polynomial, b: &Polynomial, radii: f64, inner: bool, target: f
     let reach = sign * (radii + target);
     let distance = d.length();
     let c = sign * (distance - reach) * (distance + reach);
-    Some(Quadratic { c, v: 2.0 * sign * d.dot(u), a: 2.0 * sign * u.length_squared(), scale: 2.0 * reach })
+    let v_rounding = 2.0 * distance * rounding(a.velocity.length() + b.velocity.length());
+    Some(Quadratic {
+        c,
+        v: 2.0 * sign * d.dot(u),
+        a: 2.0 * sign * u.length_squared(),
+        scale: 2.0 * reach,
+        v_rounding,
+    })
 }
 
 fn of_line<M: Motion>(
@@ -106,5 +118,6 @@ fn of_line<M: Motion>(
     let c = height - line.offset - radius - target;
     let v = normal.dot(center.velocity - body.velocity);
     let a = normal.dot(center.acceleration - body.acceleration);
-    Some(Quadratic { c, v, a, scale: 1.0 })
+    let v_rounding = rounding(center.velocity.length() + body.velocity.length());
+    Some(Quadratic { c, v, a, scale: 1.0, v_rounding })
 }

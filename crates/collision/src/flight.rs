@@ -64,6 +64,19 @@ impl Flight {
             && self.acceleration == DVec2::ZERO
     }
 
+    /// A speed [m/s] that the centre of mass never exceeds from an offset [s] on; infinite under acceleration without
+    /// damping.
+    #[must_use]
+    pub fn top_speed(&self, offset: f64) -> f64 {
+        if self.linear_rate == 0.0 && self.acceleration != DVec2::ZERO {
+            return f64::INFINITY;
+        }
+        // Damped velocities run straight towards their final value.
+        let last =
+            if self.linear_rate > 0.0 { self.acceleration / self.linear_rate } else { self.start.velocity };
+        self.velocity_at(offset).length().max(last.length())
+    }
+
     fn position_at(&self, t: f64) -> DVec2 {
         if self.linear_rate == 0.0 {
             return self.start.position + (self.start.velocity + self.acceleration * (0.5 * t)) * t;

@@ -1,0 +1,82 @@
+//! A body's room to move: a fat box in the broad phase, and when the body could leave it.
+//!
+//! While a body stays in its box, only bodies whose boxes overlap can meet it. How fat a box is follows what it finds:
+//! many neighbours make it shrink, few make it grow, between bounds that depend on the body's size.
+
+use super::flyer::Flyer;
+use crate::time::Time;
+use halfgap_collision::{Motion, Polynomial, first_closing_time};
+use halfgap_geometry::Aabb;
+
+/// More neighbours than this make a box shrink.
+const MANY: usize = 10;
+/// Fewer neighbours than this make a box grow.
+const FEW: usize = 5;
+/// By how much a box grows or shrinks at a time.
+const FACTOR: f64 = 1.5;
+/// A margin is at least this part of the body's reach, and at most its inverse.
+const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
+
+/// The room a body has around the circle of its reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Room {
+    /// Distance [m] that the centre of mass may move from where the box was set, along either axis.
+    margin: f64,
+    reach: f64,
+    /// Bodies nearer than this [m] are neighbours.
+    skin: f64,
+}
+
+impl Room {
+    pub(crate) fn new(reach: f64, skin: f64) -> Self {
+        Self { margin: reach, reach, skin }
+    }
+
+    /// The box around the body at a time, with the room that it has.
+    pub(crate) fn fat_box(&self, flyer: &Flyer, time: Time) -> Aabb {
+        if flyer.flight().is_at_rest() {
+            return flyer.body().shape.bounds_at(&flyer.moving_at(time).pose).grown(self.skin);
+        }
+        Aabb::around_disc(flyer.state_at(time).position, self.reach + self.margin + self.skin)
+    }
+
+    /// Fits the margin to the number of neighbours found.
+    pub(crate) fn adapt(&mut self, neighbours: usize) {
+        if neighbours > MANY {
+            self.margin = (self.margin / FACTOR).max(self.reach * SMALLEST_MARGIN);
+        } else if neighbours < FEW {
+            self.margin = (self.margin * FACTOR).min(self.reach / SMALLEST_MARGIN);
+        }
+    }
+
+    /// A time before which the body surely stays in the given box; `None` if it stays for ever.
+    pub(crate) fn stays_until(&self, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
+        if flyer.flight().is_at_rest() {
+            return None;
+        }
+        let core = fat_box.grown(-(self.reach + self.skin));
+        let offset = flyer.offset(time);
+        match flyer.flight().polynomial_from(offset) {
+            Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
+            None => {
+                let position = flyer.flight().state_at(offset).position;
+                let slack = (position - core.min).min(core.max - position).min_element().max(0.0);
+                Some(time.plus(slack / flyer.flight().top_speed(offset)))
+            }
+        }
+    }
+}
+
+/// When a point on a parabola first leaves a box, in seconds from its start.
+fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
+    let (x, v, a) = (path.position, path.velocity, path.acceleration);
+    [
+        first_closing_time(core.max.x - x.x, -v.x, -a.x),
+        first_closing_time(x.x - core.min.x, v.x, a.x),
+        first_closing_time(core.max.y - x.y, -v.y, -a.y),
+        first_closing_time(x.y - core.min.y, v.y, a.y),
+    ]
+    .into_iter()
+    .flatten()
+    .min_by(f64::total_cmp)
+}

@@ -1,0 +1,90 @@
+//! One body with the segment that it flies.
+
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{Body, BodyState, Flight, Motion, Moving, Spin};
+
+/// What acts on a body in free flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlightLaw {
+    /// Uniform acceleration [m/s^2].
+    pub acceleration: DVec2,
+    /// Rate [1/s] at which damping takes the velocity.
+    pub linear_rate: f64,
+    /// Rate [1/s] at which damping takes the angular velocity.
+    pub angular_rate: f64,
+}
+
+/// A body and its segment: a flight and when it started.
+#[derive(Clone, Debug)]
+pub struct Flyer {
+    body: Body,
+    law: FlightLaw,
+    start: Time,
+    flight: Flight,
+}
+
+impl Flyer {
+    pub(crate) fn new(body: Body, law: FlightLaw, state: BodyState, time: Time) -> Self {
+        // Nothing moves a fixed body, not even its own velocity.
+        let law = if body.is_fixed() { FlightLaw::default() } else { law };
+        let flight = if body.is_fixed() {
+            Flight::fixed(state.position, state.angle)
+        } else {
+            Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
+        };
+        Self { body, law, start: time, flight }
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// What acts on it.
+    #[must_use]
+    pub fn law(&self) -> &FlightLaw {
+        &self.law
+    }
+
+    /// State at a time of the present segment.
+    #[must_use]
+    pub fn state_at(&self, time: Time) -> BodyState {
+        self.flight.state_at(self.offset(time))
+    }
+
+    pub(crate) fn moving_at(&self, time: Time) -> Moving {
+        self.flight.moving_at(self.offset(time))
+    }
+
+    /// Accelerations at a time [m/s^2, rad/s^2].
+    pub(crate) fn accelerations_at(&self, time: Time) -> Spin {
+        let offset = self.offset(time);
+        Spin {
+            linear: self.flight.acceleration_at(offset),
+            angular: self.flight.angular_acceleration_at(offset),
+        }
+    }
+
+    /// Offset [s] of a time in the present segment.
+    pub(crate) fn offset(&self, time: Time) -> f64 {
+        time.since(self.start)
+    }
+
+    pub(crate) fn flight(&self) -> &Flight {
+        &self.flight
+    }
+
+    /// Cuts the segment at a time and starts another with changed velocities.
+    pub(crate) fn cut(&mut self, time: Time, velocity_change: DVec2, spin_change: f64) {
+        let state = self.state_at(time);
+        let state = BodyState {
+            velocity: state.velocity + velocity_change,
+            angular_velocity: state.angular_velocity + spin_change,
+            ..state
+        };
+        self.start = time;
+        self.flight = Flight::new(state, self.law.acceleration, self.law.linear_rate, self.law.angular_rate);
+    }
+}

@@ -1,0 +1,213 @@
+//! One impact: the touching rows of a connected group, their impulses, and what becomes of the bodies.
+
+use super::error::{AdvanceError, Between};
+use super::system::RigidSystem;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, Collision, Moment, Zone, detect_pair};
+use halfgap_contact::{Impact, InverseInertia, Row};
+
+/// Rates and accelerations below this many machine epsilons of what they were computed from are zero.
+const ROUNDINGS: f64 = 64.0;
+
+/// One row of an impact, as told to the outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowReport {
+    /// The record, with its impulse.
+    pub collision: Collision,
+    /// Rate of the gap before [m/s].
+    pub rate_before: f64,
+    /// Rate of the gap after [m/s].
+    pub rate_after: f64,
+    /// Impulse along the normal [N s].
+    pub impulse: f64,
+}
+
+/// An impact, as told to the outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImpactReport {
+    /// When.
+    pub time: Time,
+    /// The rows that carried an impulse.
+    pub rows: Vec<RowReport>,
+    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2.
+    pub energy_change: f64,
+}
+
+/// Buffers of the handling of an impact, kept from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ImpactWork {
+    records: Vec<Collision>,
+    group: Vec<BodyId>,
+    impact: Impact,
+}
+
+impl ImpactWork {
+    /// The movable bodies that take part.
+    pub(crate) fn group(&self) -> &[BodyId] {
+        &self.group
+    }
+}
+
+impl RigidSystem {
+    /// Collects the touching rows of the group around two bodies and resolves their impact at a time.
+    ///
+    /// The bodies' segments are cut at that time; predictions are left to the caller. `None` if no row needed an impulse.
+    pub(crate) fn resolve_impact(
+        &mut self,
+        work: &mut ImpactWork,
+        bodies: [BodyId; 2],
+        time: Time,
+    ) -> Result<Option<ImpactReport>, AdvanceError> {
+        self.collect_group(work, bodies, time);
+        let inertia = |body: BodyId| {
+            let body = self.flyer(body).body();
+            InverseInertia { mass: body.inverse_mass, moment: body.inverse_moment }
+        };
+        let rows = work.records.iter().map(|record| {
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            Row::of_collision(record, sides.map(inertia))
+        });
+        work.impact.set_rows(rows);
+        let random = self.counts.impacts;
+        self.settings.law.resolve(&mut work.impact, self.settings.order, random).map_err(|source| {
+            let mut named: Vec<u32> = work
+                .records
+                .iter()
+                .flat_map(|record| [record.parties.primary.body.0, record.parties.normal.body.0])
+                .collect();
+            named.sort_unstable();
+            named.dedup();
+            AdvanceError::Impact { time: time.seconds(), bodies: named, source }
+        })?;
+        self.counts.contact_solves += work.impact.solves();
+        self.apply_impulses(work, time);
+        let report = report(work, time);
+        self.refuse_resting(work, time)?;
+        Ok((!report.rows.is_empty()).then_some(report))
+    }
+
+    /// The bodies that touch each other around two given ones, and their records in the target zone or nearer.
+    fn collect_group(&mut self, work: &mut ImpactWork, bodies: [BodyId; 2], time: Time) {
+        work.records.clear();
+        work.group.clear();
+        work.group.extend(bodies.into_iter().filter(|&body| !self.flyer(body).body().is_fixed()));
+        let mut next = 0;
+        while next < work.group.len() {
+            let body = work.group[next];
+            for &pair in self.pairs.of_body(body) {
+                let [a, b] = self.pairs.get(pair).bodies;
+                let other = if a == body { b } else { a };
+                // A pair within the group was collected with its first body.
+                if work.group[..next].contains(&other) {
+                    continue;
+                }
+                let before = work.records.len();
+                self.detect([a, b], time, &mut work.records);
+                let touches = work.records.len() > before;
+                if touches && !self.flyer(other).body().is_fixed() && !work.group.contains(&other) {
+                    work.group.push(other);
+                }
+            }
+            next += 1;
+        }
+    }
+
+    fn detect(&self, [a, b]: [BodyId; 2], time: Time, records: &mut Vec<Collision>) {
+        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
+        let moment_a = Moment { id: a, body: flyer_a.body(), moving: flyer_a.moving_at(time) };
+        let moment_b = Moment { id: b, body: flyer_b.body(), moving: flyer_b.moving_at(time) };
+        let tolerances = &self.settings.tolerances;
+        let reach = flyer_a.body().shape.reach() + flyer_b.body().shape.reach() + tolerances.distance_tol();
+        let distance_sq = (moment_a.moving.pose.position - moment_b.moving.pose.position).length_squared();
+        if distance_sq > reach * reach {
+            return;
+        }
+        let first = records.len();
+        detect_pair(&moment_a, &moment_b, tolerances, tolerances.distance_tol(), time.seconds(), records);
+        let mut index = first;
+        while index < records.len() {
+            // Farther than the target zone a row fires in its own time.
+            if records[index].zone() < Zone::Target { _ = records.remove(index) } else { index += 1 }
+        }
+    }
+
+    fn apply_impulses(&mut self, work: &mut ImpactWork, time: Time) {
+        for &body in &work.group {
+            let (mut velocity, mut spin) = (DVec2::ZERO, 0.0);
+            for (row, &impulse) in work.impact.rows().iter().zip(work.impact.impulses()) {
+                for (side, _) in
+                    row.bodies.iter().enumerate().filter(|&(_, &taking_part)| taking_part == body)
+                {
+                    let change = &row.response[3 * side..];
+                    velocity += DVec2::new(change[0], change[1]) * impulse;
+                    spin += change[2] * impulse;
+                }
+            }
+            self.flyer_mut(body).cut(time, velocity, spin);
+        }
+        for (record, &impulse) in work.records.iter_mut().zip(work.impact.impulses()) {
+            record.response.impulse = Some(impulse);
+            self.counts.note_gap(record.geometry.distance);
+        }
+    }
+
+    /// A row that neither opens nor accelerates away would need a contact force.
+    fn refuse_resting(&self, work: &ImpactWork, time: Time) -> Result<(), AdvanceError> {
+        for (record, &rate) in work.records.iter().zip(work.impact.rates()) {
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            let [a, b] = sides.map(|body| self.flyer(body));
+            let moving = [a.moving_at(time), b.moving_at(time)];
+            let arms = [record.geometry.arms.primary.length(), record.geometry.arms.normal.length()];
+            let speed = |side: usize| {
+                moving[side].velocity.length() + moving[side].angular_velocity.abs() * arms[side]
+            };
+            let still =
+                ROUNDINGS * f64::EPSILON * (speed(0) + speed(1) + record.motion.normal_velocity.abs());
+            if rate > still {
+                continue;
+            }
+            let spins = [a.accelerations_at(time), b.accelerations_at(time)];
+            let mut after = *record;
+            self.remeasure(&mut after, &moving, time);
+            let acceleration = after.motion.kinematics.acceleration(&spins[0], &spins[1]);
+            let push = |side: usize| {
+                let spin = moving[side].angular_velocity;
+                spins[side].linear.length() + (spins[side].angular.abs() + spin * spin) * arms[side]
+            };
+            if acceleration < -ROUNDINGS * f64::EPSILON * (push(0) + push(1)) {
+                let between = Between { primary: sides[0], normal: sides[1] };
+                return Err(AdvanceError::RestingContact { time: time.seconds(), between });
+            }
+        }
+        Ok(())
+    }
+
+    /// Brings a record to the bodies' velocities after the impulses.
+    fn remeasure(&self, record: &mut Collision, moving: &[halfgap_collision::Moving; 2], time: Time) {
+        let [primary, normal] = [&record.parties.primary, &record.parties.normal]
+            .map(|side| self.flyer(side.body).body().shape.feature(side.feature));
+        let sample = halfgap_geometry::GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
+        if let Some(sample) = sample.filter(|sample| sample.primary_is_a) {
+            record.update(
+                (&sample, [primary.radius(), normal.radius()]),
+                [&moving[0], &moving[1]],
+                time.seconds(),
+            );
+        }
+    }
+}
+
+fn report(work: &ImpactWork, time: Time) -> ImpactReport {
+    let mut energy_change = 0.0;
+    let mut rows = Vec::new();
+    for (index, record) in work.records.iter().enumerate() {
+        let impulse = work.impact.impulses()[index];
+        let (rate_before, rate_after) = (work.impact.rows()[index].rate, work.impact.rates()[index]);
+        if impulse != 0.0 {
+            energy_change += 0.5 * impulse * (rate_before + rate_after);
+            rows.push(RowReport { collision: *record, rate_before, rate_after, impulse });
+        }
+    }
+    ImpactReport { time, rows, energy_change }
+}

@@ -1,0 +1,37 @@
+//! What a system must be able to do to be advanced event by event, and the loop that does it.
+
+use crate::time::Time;
+
+/// A system that predicts its events and handles them one by one.
+pub trait EventDriven {
+    /// What is told of a handled event.
+    type Report;
+    /// Why an event could not be handled.
+    type Error;
+
+    /// Time of the earliest event; `None` if nothing will ever happen.
+    fn next_event(&self) -> Option<Time>;
+
+    /// Handles the earliest event; `None` if it was of no interest to anyone outside.
+    ///
+    /// # Errors
+    /// The event cannot be handled; the system stays at the time of the event.
+    fn handle_next(&mut self) -> Result<Option<Self::Report>, Self::Error>;
+}
+
+/// Handles all events up to and including `until`, in order, telling `on_report` of each.
+///
+/// # Errors
+/// The first event that cannot be handled; what was told before stands.
+pub fn advance_until<S: EventDriven>(
+    system: &mut S,
+    until: Time,
+    mut on_report: impl FnMut(&S, &S::Report),
+) -> Result<(), S::Error> {
+    while system.next_event().is_some_and(|time| time <= until) {
+        if let Some(report) = system.handle_next()? {
+            on_report(system, &report);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! Constraint rows made from collision records: the only module here that sees collisions.
+
+use halfgap_collision::{BodyId, Collision};
+
+/// One scalar constraint between two bodies: its rate is J v over (vA, wA, vB, wB).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// The primary and the normal body.
+    pub bodies: [BodyId; 2],
+    /// J: [1, 1, m, 1, 1, m], three entries a body.
+    pub jacobian: [f64; 6],
+    /// J M^-1: what a unit impulse changes the six velocities by [1/kg, 1/kg, 1/(kg m), ...].
+    pub response: [f64; 6],
+    /// Share of the closing speed that is given back, 0 to 1.
+    pub elasticity: f64,
+    /// Closing speed [m/s] below which the elasticity no longer acts.
+    pub velocity_tol: f64,
+    /// True if the rate must be zero, false if it must not be negative.
+    pub bilateral: bool,
+    /// Rate [m/s], negative when closing.
+    pub rate: f64,
+}
+
+/// 1/mass [1/kg] and 1/moment of inertia [1/(kg m^2)] of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InverseInertia {
+    /// 1/mass [1/kg].
+    pub mass: f64,
+    /// 1/moment of inertia about the centre of mass [1/(kg m^2)].
+    pub moment: f64,
+}
+
+impl Row {
+    /// The row of a collision between two bodies of the given inertia (primary, normal).
+    #[must_use]
+    pub fn of_collision(collision: &Collision, inertia: [InverseInertia; 2]) -> Self {
+        let jacobian = collision.motion.kinematics.jacobian;
+        let [a, b] = inertia;
+        let weights = [a.mass, a.mass, a.moment, b.mass, b.mass, b.moment];
+        Self {
+            bodies: [collision.parties.primary.body, collision.parties.normal.body],
+            jacobian,
+            response: std::array::from_fn(|k| jacobian[k] * weights[k]),
+            elasticity: collision.response.elasticity,
+            velocity_tol: collision.tolerances.velocity_tol,
+            bilateral: collision.parties.bilateral,
+            rate: collision.motion.normal_velocity,
+        }
+    }
+
+    /// Change of this row's rate [m/s] by a unit impulse [N s] along another row: an entry of the Delassus matrix
+    /// J M^-1 J^T [1/kg].
+    #[must_use]
+    pub fn coupling(&self, other: &Row) -> f64 {
+        let mut sum = 0.0;
+        for (side, body) in self.bodies.iter().enumerate() {
+            for (other_side, other_body) in other.bodies.iter().enumerate() {
+                if body == other_body {
+                    let (own, theirs) = (&self.jacobian[3 * side..], &other.response[3 * other_side..]);
+                    sum += own[0] * theirs[0] + own[1] * theirs[1] + own[2] * theirs[2];
+                }
+            }
+        }
+        sum
+    }
+
+    /// True if the rows act on a common body that can move.
+    #[must_use]
+    pub fn shares_movable_body(&self, other: &Row) -> bool {
+        self.coupling_bodies().any(|body| other.coupling_bodies().any(|theirs| theirs == body))
+    }
+
+    fn coupling_bodies(&self) -> impl Iterator<Item = BodyId> + '_ {
+        (0..2)
+            .filter(|&side| self.response[3 * side..3 * side + 3].iter().any(|&x| x != 0.0))
+            .map(|side| self.bodies[side])
+    }
+}
