@@ -1,0 +1,320 @@
+//! Building a world in code: bodies, gravity, damping, settings.
+
+use crate::scales::{Scales, ToleranceOverrides};
+use crate::start::lift_overlaps;
+use crate::world::{Inertia, Named, World, WorldResult};
+use glam::DVec2;
+use halfgap_advance::Time;
+use halfgap_advance::rigid::{FlightLaw, RigidSettings, RigidSystem};
+use halfgap_collision::{Body, BodyId, BodyState, SearchSettings};
+use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_geometry::{Aabb, Shape};
+
+/// Relative accuracy asked for unless said otherwise.
+pub const DEFAULT_TOLERANCE: f64 = 1e-8;
+/// Part of the smallest movable body's radius by which bodies may overlap at the start unless said otherwise.
+const DEFAULT_START_OVERLAP: f64 = 1e-6;
+
+/// A body to be added to a world.
+#[derive(Clone, Debug)]
+pub struct BodySpec {
+    /// Its name, unique in the world.
+    pub name: String,
+    /// Its shape, in shape coordinates.
+    pub shape: Shape,
+    /// Centre of mass in shape coordinates [m]; the shape's centroid if `None`.
+    pub center_of_mass: Option<DVec2>,
+    /// Mass and moment of inertia; `None` for a fixed body.
+    pub inertia: Option<Inertia>,
+    /// State at the start; the position is that of the centre of mass.
+    pub state: BodyState,
+    /// Share of the closing speed with which it leaves an impact; a pair uses the lesser.
+    pub elasticity: f64,
+}
+
+impl BodySpec {
+    /// A fixed body of full elasticity.
+    #[must_use]
+    pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
+        let state = BodyState { position, ..BodyState::default() };
+        Self { name: name.to_owned(), shape, center_of_mass: None, inertia: None, state, elasticity: 1.0 }
+    }
+
+    /// A movable body of full elasticity and of uniform density with the given mass [kg].
+    #[must_use]
+    pub fn movable(name: &str, shape: Shape, mass: f64, state: BodyState) -> Self {
+        let inertia = Inertia { mass, moment: mass * shape.mass_properties().moment_per_mass };
+        Self { name: name.to_owned(), shape, center_of_mass: None, inertia: Some(inertia), state, elasticity: 1.0 }
+    }
+}
+
+/// Why a world could not be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// Two bodies have one name.
+    #[error("there are two bodies named \"{name}\"")]
+    DoubleName {
+        /// The name.
+        name: String,
+    },
+    /// A number is out of range.
+    #[error("body \"{body}\": {quantity} must be {rule}, got {value}")]
+    BadNumber {
+        /// Name of the body.
+        body: String,
+        /// Which quantity.
+        quantity: &'static str,
+        /// What it must be.
+        rule: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// A setting is out of range.
+    #[error("{setting} must be {rule}, got {value}")]
+    BadSetting {
+        /// Which setting.
+        setting: &'static str,
+        /// What it must be.
+        rule: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// Two bodies overlap at the start by more than is allowed.
+    #[error("bodies \"{first}\" and \"{second}\" overlap by {depth} m at the start; at most {allowed} m are allowed")]
+    Overlap {
+        /// Name of one body.
+        first: String,
+        /// Name of the other body.
+        second: String,
+        /// How deep [m].
+        depth: f64,
+        /// How deep would be allowed [m].
+        allowed: f64,
+    },
+    /// Gaps at the start cannot all be lifted to the target gap.
+    #[error("bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {gap} m remain between them")]
+    CannotLift {
+        /// Name of one body.
+        first: String,
+        /// Name of the other body.
+        second: String,
+        /// The gap [m].
+        gap: f64,
+    },
+}
+
+/// Collects what a world is made of.
+#[derive(Clone, Debug)]
+pub struct WorldBuilder {
+    bodies: Vec<BodySpec>,
+    laws: Vec<FlightLaw>,
+    gravity: Vec<DVec2>,
+    excluded: Vec<(BodyId, BodyId)>,
+    /// Time at the start [s].
+    pub start_time: f64,
+    /// Relative accuracy asked for.
+    pub tolerance: f64,
+    /// Thresholds given in place of derived ones.
+    pub overrides: ToleranceOverrides,
+    /// How deep bodies may overlap at the start [m]; 1e-6 of the smallest movable body's radius if `None`.
+    pub start_overlap: Option<f64>,
+    /// The impact law.
+    pub impact_law: ImpactLaw,
+    /// The order in which serial laws take the rows.
+    pub impact_order: ImpactOrder,
+    /// False if bodies pass through each other.
+    pub collisions: bool,
+}
+
+impl Default for WorldBuilder {
+    fn default() -> Self {
+        Self {
+            bodies: Vec::new(),
+            laws: Vec::new(),
+            gravity: Vec::new(),
+            excluded: Vec::new(),
+            start_time: 0.0,
+            tolerance: DEFAULT_TOLERANCE,
+            overrides: ToleranceOverrides::default(),
+            start_overlap: None,
+            impact_law: ImpactLaw::default(),
+            impact_order: ImpactOrder::default(),
+            collisions: true,
+        }
+    }
+}
+
+impl WorldBuilder {
+    /// An empty world with default settings.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a body.
+    pub fn add(&mut self, body: BodySpec) -> BodyId {
+        self.bodies.push(body);
+        self.laws.push(FlightLaw::default());
+        self.gravity.push(DVec2::ZERO);
+        BodyId(u32::try_from(self.bodies.len() - 1).unwrap_or(u32::MAX))
+    }
+
+    /// Lets uniform gravity [m/s^2] act on a body, in addition to what acts already.
+    pub fn add_gravity(&mut self, body: BodyId, acceleration: DVec2) {
+        self.laws[body.index()].acceleration += acceleration;
+        self.gravity[body.index()] += acceleration;
+    }
+
+    /// Lets damping act on a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m].
+    pub fn add_damping(&mut self, body: BodyId, linear: f64, angular: f64) {
+        if let Some(inertia) = self.bodies[body.index()].inertia {
+            let law = &mut self.laws[body.index()];
+            law.linear_rate += linear / inertia.mass;
+            law.angular_rate += angular / inertia.moment;
+        }
+    }
+
+    /// Lets two bodies pass through each other.
+    pub fn let_pass(&mut self, a: BodyId, b: BodyId) {
+        self.excluded.push((a, b));
+    }
+
+    /// Checks everything, lifts small overlaps, and builds the world.
+    ///
+    /// # Errors
+    /// Names that are not unique, numbers out of range, bodies that overlap: the error names the body and the number.
+    pub fn build(self) -> WorldResult {
+        self.check()?;
+        let scales = self.scales();
+        let tolerances = scales.tolerances(self.tolerance, &self.overrides);
+        let mut warnings = Vec::new();
+        if self.overrides.target_gap.is_none() && scales.wanted_gap(self.tolerance) < scales.smallest_gap() {
+            warnings.push(format!(
+                "tolerance {} asks for a target gap of {:e} m, but coordinates of {} m allow no less than {:e} m",
+                self.tolerance,
+                scales.wanted_gap(self.tolerance),
+                scales.coordinate,
+                scales.smallest_gap()
+            ));
+        }
+        let allowed = self
+            .start_overlap
+            .unwrap_or(DEFAULT_START_OVERLAP * scales.smallest_radius.unwrap_or(scales.coordinate));
+        let (named, mut bodies): (Vec<_>, Vec<_>) =
+            self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
+        let start_correction = if self.collisions {
+            lift_overlaps(&mut bodies, &named, &self.excluded, &tolerances, allowed)?
+        } else {
+            0.0
+        };
+        let settings = RigidSettings {
+            tolerances,
+            law: self.impact_law,
+            order: self.impact_order,
+            collisions: self.collisions,
+            search: SearchSettings::default(),
+        };
+        let now = Time::from_seconds(self.start_time);
+        let system = RigidSystem::new(bodies, &self.excluded, settings, now);
+        Ok(World::new(system, named, now, warnings, start_correction))
+    }
+
+    fn check(&self) -> Result<(), WorldError> {
+        for (index, body) in self.bodies.iter().enumerate() {
+            if self.bodies[..index].iter().any(|other| other.name == body.name) {
+                return Err(WorldError::DoubleName { name: body.name.clone() });
+            }
+            check_body(body)?;
+        }
+        let positive = [
+            ("tolerance", Some(self.tolerance)),
+            ("target_gap", self.overrides.target_gap),
+            ("accuracy", self.overrides.accuracy),
+            ("velocity_tol", self.overrides.velocity_tol),
+        ];
+        for (setting, value) in positive {
+            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+                return Err(WorldError::BadSetting { setting, rule: "positive and finite", value });
+            }
+        }
+        Ok(())
+    }
+
+    fn scales(&self) -> Scales {
+        let mut scales = Scales::default();
+        for (body, law) in self.bodies.iter().zip(&self.laws) {
+            let shape = centered(body);
+            let bounds: Aabb = shape.bounds_at(&body.state.pose());
+            let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+            scales.coordinate = scales.coordinate.max(largest);
+            if body.inertia.is_none() {
+                continue;
+            }
+            let reach = shape.reach();
+            scales.smallest_radius = Some(scales.smallest_radius.map_or(reach, |least| least.min(reach)));
+            let speed = body.state.velocity.length() + body.state.angular_velocity.abs() * reach;
+            scales.speed = scales.speed.max(speed);
+            let acceleration = law.acceleration.length() + law.linear_rate * body.state.velocity.length();
+            scales.acceleration = scales.acceleration.max(acceleration);
+        }
+        scales
+    }
+}
+
+fn check_body(body: &BodySpec) -> Result<(), WorldError> {
+    let bad = |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
+    if let Some(Inertia { mass, moment }) = body.inertia {
+        for (quantity, value) in [("mass", mass), ("moment", moment)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return bad(quantity, "positive and finite", value);
+            }
+        }
+    }
+    if !(0.0..=1.0).contains(&body.elasticity) {
+        return bad("elasticity", "between 0 and 1", body.elasticity);
+    }
+    let state = &body.state;
+    let numbers = [
+        ("position", state.position.x),
+        ("position", state.position.y),
+        ("angle", state.angle),
+        ("velocity", state.velocity.x),
+        ("velocity", state.velocity.y),
+        ("angular velocity", state.angular_velocity),
+    ];
+    match numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+        Some((quantity, value)) => bad(quantity, "finite", value),
+        None => Ok(()),
+    }
+}
+
+fn center_of_mass(body: &BodySpec) -> DVec2 {
+    body.center_of_mass.unwrap_or(body.shape.mass_properties().centroid)
+}
+
+/// The shape about the centre of mass.
+fn centered(body: &BodySpec) -> Shape {
+    body.shape.translated(-center_of_mass(body))
+}
+
+type Parts = (Named, (Body, FlightLaw, BodyState));
+
+fn into_parts(((spec, law), gravity): ((BodySpec, FlightLaw), DVec2)) -> Parts {
+    let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
+    let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity };
+    let inverse = |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
+    let body = Body {
+        shape,
+        inverse_mass: inverse(|inertia| inertia.mass),
+        inverse_moment: inverse(|inertia| inertia.moment),
+        elasticity: spec.elasticity,
+    };
+    // A fixed body keeps neither velocity.
+    let state = if spec.inertia.is_some() {
+        spec.state
+    } else {
+        BodyState { velocity: DVec2::ZERO, angular_velocity: 0.0, ..spec.state }
+    };
+    (named, (body, law, state))
+}

@@ -1,0 +1,94 @@
+//! Why a run stopped early, in the words of the world: with the names of bodies.
+
+use halfgap_advance::rigid::{AdvanceError, Between};
+use halfgap_collision::BodyId;
+use halfgap_contact::ImpactError;
+
+/// How a run that stopped early is summed up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopKind {
+    /// The advance cannot go on.
+    Stuck,
+    /// The contact problem has no solution.
+    Infeasible,
+}
+
+/// Why a run stopped early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// Two bodies would stay in contact.
+    #[error("at {time} s \"{primary}\" comes to rest on \"{normal}\": resting contacts are not supported yet")]
+    RestingContact {
+        /// When [s].
+        time: f64,
+        /// Name of one body.
+        primary: String,
+        /// Name of the other body.
+        normal: String,
+    },
+    /// An impact cannot be resolved.
+    #[error("at {time} s in an impact of {}: {source}", quoted(bodies))]
+    Impact {
+        /// When [s].
+        time: f64,
+        /// Names of the bodies that take part.
+        bodies: Vec<String>,
+        /// Why not.
+        source: ImpactError,
+    },
+    /// The same two bodies collide again and again without any time going by.
+    #[error("stuck at {time} s: \"{primary}\" and \"{normal}\" collided {events} times without any time going by")]
+    Stuck {
+        /// When [s].
+        time: f64,
+        /// Name of one body.
+        primary: String,
+        /// Name of the other body.
+        normal: String,
+        /// How many times.
+        events: u32,
+    },
+    /// The advance stopped for a reason that has no name here.
+    #[error(transparent)]
+    Advance(AdvanceError),
+}
+
+impl RunError {
+    /// How the run is summed up.
+    #[must_use]
+    pub fn kind(&self) -> StopKind {
+        StopKind::Stuck
+    }
+
+    /// When it stopped [s].
+    #[must_use]
+    pub fn time(&self) -> Option<f64> {
+        match self {
+            Self::RestingContact { time, .. } | Self::Impact { time, .. } | Self::Stuck { time, .. } => Some(*time),
+            Self::Advance(_) => None,
+        }
+    }
+
+    pub(crate) fn new(error: AdvanceError, name: impl Fn(BodyId) -> String) -> Self {
+        let names = |between: Between| (name(between.primary), name(between.normal));
+        match error {
+            AdvanceError::RestingContact { time, between } => {
+                let (primary, normal) = names(between);
+                Self::RestingContact { time, primary, normal }
+            }
+            AdvanceError::Impact { time, bodies, source } => {
+                Self::Impact { time, bodies: bodies.into_iter().map(|body| name(BodyId(body))).collect(), source }
+            }
+            AdvanceError::Stuck { time, between, events } => {
+                let (primary, normal) = names(between);
+                Self::Stuck { time, primary, normal, events }
+            }
+            other => Self::Advance(other),
+        }
+    }
+}
+
+fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,59 @@
+//! From one relative tolerance and the scene's scales to the thresholds of touching.
+
+use halfgap_collision::Tolerances;
+
+/// Part of the smallest body's radius, times the tolerance, that the target gap takes: the gap is a modelling error that
+/// impacts amplify, so it lies far below the tolerance.
+const GAP_SHARE: f64 = 1e-2;
+/// The target gap is at least so many machine epsilons of the largest coordinate: gaps must be told from rounding.
+const GAP_ROUNDINGS: f64 = 64.0;
+/// Twice that: a body falls through the target gap from rest with a speed that is told from rounding.
+const SPEED_ROUNDINGS: f64 = 128.0;
+
+/// Sizes that occur in a scene at its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Scales {
+    /// Bounding radius [m] of the smallest movable body; `None` if nothing moves.
+    pub(crate) smallest_radius: Option<f64>,
+    /// Largest coordinate in size [m].
+    pub(crate) coordinate: f64,
+    /// Largest speed of a point of a body [m/s].
+    pub(crate) speed: f64,
+    /// Largest acceleration of a body [m/s^2].
+    pub(crate) acceleration: f64,
+}
+
+/// Thresholds that the user gives in place of the derived ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToleranceOverrides {
+    /// Gap [m] at which an approaching pair fires.
+    pub target_gap: Option<f64>,
+    /// Half-width [m] of the target zone.
+    pub accuracy: Option<f64>,
+    /// Normal speed [m/s] below which a collision is a contact.
+    pub velocity_tol: Option<f64>,
+}
+
+impl Scales {
+    /// The smallest target gap [m] that coordinates of this size allow.
+    pub(crate) fn smallest_gap(&self) -> f64 {
+        GAP_ROUNDINGS * f64::EPSILON * self.coordinate
+    }
+
+    /// The target gap [m] that the tolerance asks for.
+    pub(crate) fn wanted_gap(&self, tolerance: f64) -> f64 {
+        tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)
+    }
+
+    pub(crate) fn tolerances(&self, tolerance: f64, given: &ToleranceOverrides) -> Tolerances {
+        let target_gap = given.target_gap.unwrap_or(self.wanted_gap(tolerance).max(self.smallest_gap()));
+        // What falls across the scene reaches this speed, even if all is at rest at the start.
+        let speed = self.speed.max((self.acceleration * self.coordinate).sqrt());
+        let told_from_rounding = (SPEED_ROUNDINGS * f64::EPSILON * self.coordinate * self.acceleration).sqrt();
+        Tolerances {
+            target_gap,
+            accuracy: given.accuracy.unwrap_or(Tolerances::ACCURACY_SHARE * target_gap),
+            velocity_tol: given.velocity_tol.unwrap_or((tolerance * speed).max(told_from_rounding)),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! A world: named bodies, what acts on them, and the clock.
+
+use crate::builder::WorldError;
+use crate::event::{Impact, ImpactRow};
+use crate::run_error::RunError;
+use glam::DVec2;
+use halfgap_advance::rigid::{ImpactReport, RigidSystem};
+use halfgap_advance::{Time, advance_until};
+use halfgap_collision::{BodyId, BodyState, Tolerances};
+use halfgap_geometry::Shape;
+
+/// Kinetic and potential energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+    /// Potential energy [J]: of uniform gravity, 0 with the centre of mass at the world's origin.
+    pub potential: f64,
+}
+
+impl Energy {
+    /// Kinetic plus potential energy [J].
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+}
+
+/// What a run cost, and how close it came.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Segments of motion started.
+    pub steps: u64,
+    /// Evaluations of force laws by an integrator; closed forms need none.
+    pub evaluations: u64,
+    /// Impacts.
+    pub impacts: u64,
+    /// Segments cut short by an impact.
+    pub backups: u64,
+    /// Contact problems solved.
+    pub contact_solves: u64,
+    /// Smallest gap [m] seen at an impact.
+    pub smallest_gap: Option<f64>,
+    /// Largest error of a connector [m].
+    pub largest_connector_error: Option<f64>,
+}
+
+/// What the facade knows of a body beyond what the layers below do.
+#[derive(Clone, Debug)]
+pub(crate) struct Named {
+    pub(crate) name: String,
+    /// Centre of mass in shape coordinates [m].
+    pub(crate) center_of_mass: DVec2,
+    /// Mass [kg] and moment of inertia [kg m^2]; `None` for a fixed body.
+    pub(crate) inertia: Option<Inertia>,
+    /// Sum of the uniform gravities that act on it [m/s^2].
+    pub(crate) gravity: DVec2,
+}
+
+/// Mass and moment of inertia of a movable body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Moment of inertia about the centre of mass [kg m^2].
+    pub moment: f64,
+}
+
+/// Bodies in motion. Made by a [`WorldBuilder`](crate::WorldBuilder) or from a scene.
+#[derive(Clone, Debug)]
+pub struct World {
+    system: RigidSystem,
+    bodies: Vec<Named>,
+    now: Time,
+    warnings: Vec<String>,
+    start_correction: f64,
+}
+
+impl World {
+    pub(crate) fn new(
+        system: RigidSystem,
+        bodies: Vec<Named>,
+        now: Time,
+        warnings: Vec<String>,
+        start_correction: f64,
+    ) -> Self {
+        Self { system, bodies, now, warnings, start_correction }
+    }
+
+    /// The present time [s].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.now.seconds()
+    }
+
+    /// How many bodies there are, fixed ones included.
+    #[must_use]
+    pub fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// All bodies, in the order in which they were added.
+    pub fn bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
+        (0..u32::try_from(self.bodies.len()).unwrap_or(u32::MAX)).map(BodyId)
+    }
+
+    /// The body of a name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<BodyId> {
+        self.bodies().find(|&body| self.name(body) == name)
+    }
+
+    /// A body's name.
+    ///
+    /// # Panics
+    /// As all look-ups here: if the world has no such body.
+    #[must_use]
+    pub fn name(&self, body: BodyId) -> &str {
+        &self.bodies[body.index()].name
+    }
+
+    /// True for a body that nothing moves.
+    #[must_use]
+    pub fn is_fixed(&self, body: BodyId) -> bool {
+        self.bodies[body.index()].inertia.is_none()
+    }
+
+    /// A body's shape in body coordinates, whose origin is the centre of mass.
+    #[must_use]
+    pub fn shape(&self, body: BodyId) -> &Shape {
+        &self.system.flyer(body).body().shape
+    }
+
+    /// A body's centre of mass in the coordinates in which its shape was given [m].
+    #[must_use]
+    pub fn center_of_mass(&self, body: BodyId) -> DVec2 {
+        self.bodies[body.index()].center_of_mass
+    }
+
+    /// A body's mass and moment of inertia; `None` for a fixed body.
+    #[must_use]
+    pub fn inertia(&self, body: BodyId) -> Option<Inertia> {
+        self.bodies[body.index()].inertia
+    }
+
+    /// A body's state at the present time.
+    #[must_use]
+    pub fn state(&self, body: BodyId) -> BodyState {
+        self.system.flyer(body).state_at(self.now)
+    }
+
+    /// Energy at the present time.
+    #[must_use]
+    pub fn energy(&self) -> Energy {
+        let mut energy = Energy::default();
+        for body in self.bodies() {
+            let Named { inertia: Some(inertia), gravity, .. } = &self.bodies[body.index()] else { continue };
+            let state = self.state(body);
+            let spin = state.angular_velocity;
+            energy.kinetic += 0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
+            energy.potential -= inertia.mass * gravity.dot(state.position);
+        }
+        energy
+    }
+
+    /// The thresholds of touching, as derived from the tolerance or given.
+    #[must_use]
+    pub fn tolerances(&self) -> &Tolerances {
+        &self.system.settings().tolerances
+    }
+
+    /// What a user should know although nothing is wrong.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Largest distance [m] by which a body was moved at the start to lift gaps to the target gap.
+    #[must_use]
+    pub fn start_correction(&self) -> f64 {
+        self.start_correction
+    }
+
+    /// What the run has cost so far.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        let counts = self.system.counts();
+        Statistics {
+            steps: counts.segments,
+            evaluations: 0,
+            impacts: counts.impacts,
+            backups: counts.backups,
+            contact_solves: counts.contact_solves,
+            smallest_gap: counts.smallest_gap,
+            largest_connector_error: None,
+        }
+    }
+
+    /// Advances to a time [s], telling of each impact in order; nothing happens if that is in the past.
+    ///
+    /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
+    ///
+    /// # Errors
+    /// Something that cannot be simulated happens; the world stays at the time of that event.
+    pub fn advance_to(&mut self, time: f64, on_impact: &mut dyn FnMut(&Impact)) -> Result<(), RunError> {
+        let until = Time::from_seconds(time);
+        let outcome = advance_until(&mut self.system, until, |_, report| on_impact(&impact(report)));
+        match outcome {
+            Ok(()) => {
+                self.now = self.now.max(until);
+                Ok(())
+            }
+            Err(error) => {
+                self.now = self.now.max(self.system.now());
+                Err(RunError::new(error, |body| self.name(body).to_owned()))
+            }
+        }
+    }
+}
+
+fn impact(report: &ImpactReport) -> Impact {
+    let rows = report.rows.iter().map(|row| ImpactRow {
+        primary: row.collision.parties.primary.body,
+        normal_body: row.collision.parties.normal.body,
+        point: row.collision.geometry.point_primary,
+        normal: row.collision.geometry.normal,
+        gap: row.collision.geometry.distance,
+        velocity_before: row.rate_before,
+        velocity_after: row.rate_after,
+        impulse: row.impulse,
+    });
+    Impact { time: report.time.seconds(), rows: rows.collect(), energy_change: report.energy_change }
+}
+
+/// Result of building a world.
+pub type WorldResult = Result<World, WorldError>;
