@@ -20,7 +20,10 @@
 mod arc;
 mod bounds;
 mod build;
+mod build_mechanism;
+mod crossing;
 mod edge;
+mod edge_distance;
 mod error;
 mod feature;
 mod gap;
@@ -30,11 +33,14 @@ mod outline;
 mod path;
 mod pose;
 mod shape;
+mod simple;
 mod tree;
 
 pub use arc::Arc;
 pub use bounds::Aabb;
+pub use crossing::edge_crossings;
 pub use edge::Edge;
+pub use edge_distance::{ClosestPair, edge_distance};
 pub use error::{ArcError, LineError, ShapeError};
 pub use feature::{
     DirectionRange, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,

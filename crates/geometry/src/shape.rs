@@ -12,6 +12,7 @@ use crate::path::{Path, PathSpec};
 use crate::pose::Pose;
 use crate::tree::FeatureTree;
 use glam::DVec2;
+use std::f64::consts::PI;
 
 /// A corner whose edges' directions differ by less than this angle [rad] is smooth: the edges carry all contacts there.
 const SMOOTH_CORNER: f64 = 1e-9;
@@ -162,7 +163,12 @@ fn path_features((index, path): (usize, &Path)) -> Vec<(Feature, FeatureSource)>
 /// The vertex between two edges, if it points outwards.
 fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
     let (arriving, leaving) = (before.end_direction(), after.start_direction());
-    let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+    let mut turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+    if PI - turn.abs() < SMOOTH_CORNER {
+        // At a cusp the directions are opposite to rounding: which edge lies on the left is for the curvatures to say.
+        let solid_between = before.curvature() + after.curvature() < 0.0;
+        turn = if solid_between { PI } else { -PI };
+    }
     // The outward normal is the direction of travel turned by -90 degrees.
     let range = DirectionRange::between(-arriving.perp(), -leaving.perp(), turn.abs());
     (turn > SMOOTH_CORNER).then_some(RoundFeature { center: after.from(), radius: 0.0, range })

@@ -1,0 +1,3 @@
+//! What the geometry promises, tested through its public API.
+
+mod errors;
