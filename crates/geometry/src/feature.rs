@@ -6,6 +6,15 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FeatureId(pub u32);
 
+/// Which edge of a shape: its path and its place in the path as the shape runs it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeId {
+    /// Index of the path.
+    pub path: u32,
+    /// Index of the edge in the path.
+    pub edge: u32,
+}
+
 /// The four kinds of features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeatureKind {

@@ -4,13 +4,13 @@ use crate::bounds::Aabb;
 use crate::edge::Edge;
 use crate::error::ShapeError;
 use crate::feature::{
-    DirectionRange, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
+    DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
 use crate::mass::MassProperties;
 use crate::outline::build_outline;
 use crate::path::{Path, PathSpec};
 use crate::pose::Pose;
-use crate::tree::FeatureTree;
+use crate::tree::{FeatureTree, Node};
 use glam::DVec2;
 use std::f64::consts::PI;
 
@@ -92,16 +92,30 @@ impl Shape {
     /// Farthest point of the shape along a unit vector of the body: its distance [m] from the origin along the vector.
     #[must_use]
     pub fn extent(&self, direction: DVec2) -> f64 {
-        let far = |edge: &Edge| {
-            let ends = edge.from().dot(direction).max(edge.to().dot(direction));
-            match edge {
-                Edge::Arc(arc) if arc.is_convex() && arc.directions().contains(direction) => {
-                    ends.max(arc.center().dot(direction) + arc.radius())
-                }
-                _ => ends,
-            }
-        };
-        self.edges().map(far).fold(f64::NEG_INFINITY, f64::max)
+        let bound = |node: &Node| -(node.center.dot(direction) + node.radius);
+        let farthest = self.tree.find_least(f64::INFINITY, &bound, &mut |id| {
+            Some((-feature_extent(self.feature(id), direction), ()))
+        });
+        farthest.map_or(0.0, |(least, ())| -least)
+    }
+
+    /// The edge that a feature is, or that starts at the vertex that it is.
+    #[must_use]
+    pub fn edge_of(&self, id: FeatureId) -> &Edge {
+        let source = self.source(id);
+        self.edge(EdgeId { path: source.path, edge: source.edge })
+    }
+
+    /// One of the edges.
+    #[must_use]
+    pub fn edge(&self, id: EdgeId) -> &Edge {
+        &self.paths[id.path as usize].edges()[id.edge as usize]
+    }
+
+    /// The edge that a feature is; `None` for a vertex.
+    pub(crate) fn whole_edge(&self, id: FeatureId) -> Option<EdgeId> {
+        let FeatureSource { path, edge, kind } = self.source(id);
+        (kind != FeatureKind::Vertex).then_some(EdgeId { path, edge })
     }
 
     /// The parts of the shape that can touch.
@@ -137,6 +151,25 @@ impl Shape {
         let tree = FeatureTree::build(&features);
         let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
         Self { paths, mass, bounds, reach, features, sources, tree }
+    }
+}
+
+/// Largest distance [m] from the origin along a unit vector.
+fn feature_extent(feature: &Feature, direction: DVec2) -> f64 {
+    match feature {
+        Feature::Line(line) => {
+            line.point_at(line.start).dot(direction).max(line.point_at(line.end).dot(direction))
+        }
+        Feature::Round(round) => {
+            let (center, radius) = (round.center.dot(direction), round.radius.abs());
+            match round.range.ends() {
+                // A hollow arc has neighbours that reach farther than its inside.
+                Some(ends) if round.radius < 0.0 || !round.range.contains(direction) => {
+                    center + radius * ends[0].dot(direction).max(ends[1].dot(direction))
+                }
+                _ => center + radius,
+            }
+        }
     }
 }
 
