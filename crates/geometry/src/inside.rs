@@ -2,15 +2,13 @@
 //!
 //! Paths run with the solid on their left, so they wind once around each point of the solid and not at all around any
 //! other. The winding number is counted along the ray from the point towards +x; an arc counts as its chord and the
-//! circular segment between them, so that no crossing is ever computed. The tree skips what the ray does not meet.
+//! circular segment between them, so that no crossing is ever computed. The tree skips what the ray does not meet; its boxes hold the
+//! very ends of the edges, so that nothing is lost to rounding.
 
 use crate::path::winding;
 use crate::shape::Shape;
 use crate::tree::Node;
 use glam::DVec2;
-
-/// Boxes are grown by this part of the coordinates, because their rounding must not hide the end of an edge.
-const BOX_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Shape {
     /// True if the point [m], in body coordinates, lies in the solid: not in a hole, and not outside.
@@ -28,12 +26,9 @@ impl Shape {
     /// ```
     #[must_use]
     pub fn contains(&self, point: DVec2) -> bool {
-        let bounds = self.bounds();
-        let slack = BOX_ROUNDING * bounds.min.abs().max(bounds.max.abs()).max_element();
         let is_met = |node: &Node| {
-            node.bounds.max.x + slack >= point.x
-                && node.bounds.min.y - slack <= point.y
-                && node.bounds.max.y + slack >= point.y
+            let bounds = &node.bounds;
+            bounds.max.x >= point.x && bounds.min.y <= point.y && bounds.max.y >= point.y
         };
         let mut turns = 0;
         self.tree().visit_where(&is_met, &mut |feature| {

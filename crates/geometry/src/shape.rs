@@ -148,10 +148,17 @@ impl Shape {
         let bounds = boxes.reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
         let mass = MassProperties::of_paths(&paths, bounds.center());
         let (features, sources): (Vec<_>, Vec<_>) = paths.iter().enumerate().flat_map(path_features).unzip();
-        let tree = FeatureTree::build(&features);
+        let boxes: Vec<Aabb> = sources.iter().map(|source| feature_box(&paths, source)).collect();
+        let tree = FeatureTree::build(&features, &boxes);
         let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
         Self { paths, mass, bounds, reach, features, sources, tree }
     }
+}
+
+/// Box around a feature, taken from the edge: the center of a flat arc would place its ends less exactly.
+fn feature_box(paths: &[Path], source: &FeatureSource) -> Aabb {
+    let edge = &paths[source.path as usize].edges()[source.edge as usize];
+    if source.kind == FeatureKind::Vertex { Aabb::around(edge.from()) } else { edge.bounds() }
 }
 
 /// Largest distance [m] from the origin along a unit vector.

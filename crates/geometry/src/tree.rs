@@ -43,8 +43,11 @@ pub struct FeatureTree {
 }
 
 impl FeatureTree {
-    pub(crate) fn build(features: &[Feature]) -> Self {
-        let mut items: Vec<Item> = features.iter().enumerate().map(Item::new).collect();
+    /// The tree over the features, each in its box.
+    pub(crate) fn build(features: &[Feature], boxes: &[Aabb]) -> Self {
+        let id = |index: usize| FeatureId(u32::try_from(index).unwrap_or(u32::MAX));
+        let mut items: Vec<Item> =
+            boxes.iter().enumerate().map(|(index, &bounds)| Item { id: id(index), bounds }).collect();
         let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()) };
         if !items.is_empty() {
             tree.add(&mut items, features);
@@ -214,27 +217,6 @@ struct Best<T> {
 struct Item {
     id: FeatureId,
     bounds: Aabb,
-}
-
-impl Item {
-    fn new((index, feature): (usize, &Feature)) -> Self {
-        Self { id: FeatureId(u32::try_from(index).unwrap_or(u32::MAX)), bounds: feature_bounds(feature) }
-    }
-}
-
-fn feature_bounds(feature: &Feature) -> Aabb {
-    match feature {
-        Feature::Line(line) => Aabb::around(line.point_at(line.start)).including(line.point_at(line.end)),
-        Feature::Round(round) => {
-            let radius = round.radius.abs();
-            let Some(ends) = round.range.ends() else { return Aabb::around_disc(round.center, radius) };
-            let axes = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
-            let inner = axes.into_iter().filter(|&axis| round.range.contains(axis));
-            let points = inner.chain(ends).map(|direction| round.center + direction * radius);
-            let first = round.center + ends[0] * radius;
-            points.fold(Aabb::around(first), Aabb::including)
-        }
-    }
 }
 
 struct PosedTrees<'a> {
