@@ -2,6 +2,7 @@
 
 use crate::error::ArcError;
 use crate::feature::DirectionRange;
+use crate::pose::Pose;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
@@ -80,20 +81,22 @@ impl Arc {
         let (from_radius, to_radius) = ((from - center).length(), (to - center).length());
         let middle = from + 0.5 * chord;
         let across = chord.perp() / chord.length();
-        let exact_center = middle + across * across.dot(center - middle);
+        let height = across.dot(center - middle);
+        let exact_center = middle + across * height;
         // For more than half a turn a shift of the center moves the far side as much as itself.
-        let beyond_half = clockwise == (across.dot(center - middle) > 0.0);
+        let beyond_half = clockwise == (height > 0.0);
         let moved = (exact_center - center).length();
         let off = (from_radius - to_radius).abs();
         if off > fit_tol || (beyond_half && moved > fit_tol) {
-            return Err(ArcError::RadiusMismatch { from_radius, to_radius, off: off.max(moved) });
+            let off = if off > fit_tol { off } else { moved };
+            return Err(ArcError::RadiusMismatch { from_radius, to_radius, off });
         }
         let radius = (from - exact_center).length();
         check_radius(radius)?;
         let start_angle = angle_of(from - exact_center);
-        let end_angle = angle_of(to - exact_center);
-        let turn = if clockwise { start_angle - end_angle } else { end_angle - start_angle };
-        let size = if turn <= 0.0 { turn + TAU } else { turn };
+        // Half of the sweep is seen from the center over half of the chord: exact for flat and for nearly full arcs.
+        let inwards = if clockwise { -height } else { height };
+        let size = 2.0 * libm::atan2(0.5 * chord.length(), inwards);
         let sweep_angle = if clockwise { -size } else { size };
         Ok(Self { center: exact_center, radius, start_angle, sweep_angle, from, to })
     }
@@ -137,7 +140,7 @@ impl Arc {
     /// True for an arc that is a whole circle.
     #[must_use]
     pub fn is_circle(&self) -> bool {
-        self.from == self.to
+        self.sweep_angle.abs() == TAU
     }
 
     /// True if the arc runs counter-clockwise, which makes an edge with the solid on its left convex.
@@ -199,6 +202,18 @@ impl Arc {
     #[must_use]
     pub fn translated(&self, shift: DVec2) -> Self {
         Self { center: self.center + shift, from: self.from + shift, to: self.to + shift, ..*self }
+    }
+
+    /// The edge turned and shifted, as a body at the given pose carries it.
+    #[must_use]
+    pub fn posed(&self, pose: &Pose) -> Self {
+        Self {
+            center: pose.point_to_world(self.center),
+            start_angle: self.start_angle + libm::atan2(pose.rotation.sin, pose.rotation.cos),
+            from: pose.point_to_world(self.from),
+            to: pose.point_to_world(self.to),
+            ..*self
+        }
     }
 
     /// Signed distance [m] of a point from the circle, positive on the side away from the solid.
@@ -281,5 +296,23 @@ mod tests {
         let arc = Arc::new(DVec2::ZERO, 1.0, 0.0, TAU / 4.0).expect("a fine arc");
         assert_eq!(arc.nearest(DVec2::new(0.5, -1.0)), arc.from());
         assert!((arc.nearest(DVec2::new(3.0, 3.0)).length() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_tiny_arc_is_no_circle() {
+        let arc = Arc::new(DVec2::new(1.0, 0.0), 1.0, 0.0, 1e-18).expect("a fine arc");
+        assert!(!arc.is_circle());
+        assert!(!arc.directions().contains(DVec2::NEG_X));
+    }
+
+    #[test]
+    fn flat_and_nearly_full_arcs_have_exact_sweeps() {
+        for bulge in [1e-7, 1e-3, 0.9, 1.0, 1.1, 1e3, 1e7_f64] {
+            let height = (1.0 - bulge * bulge) / (4.0 * bulge) * 2.0;
+            let arc = Arc::between(DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::new(1.0, height), false, 1.0)
+                .expect("a fine arc");
+            let expected = 4.0 * bulge.atan();
+            assert!((arc.sweep_angle() / expected - 1.0).abs() < 1e-15 * 4.0, "bulge {bulge}");
+        }
     }
 }

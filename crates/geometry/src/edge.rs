@@ -3,6 +3,7 @@
 use crate::arc::Arc;
 use crate::bounds::Aabb;
 use crate::line::Line;
+use crate::pose::Pose;
 use glam::DVec2;
 
 /// An edge, run with the solid on its left.
@@ -60,6 +61,16 @@ impl Edge {
         }
     }
 
+    /// Signed curvature [1/m]: positive for a convex arc, negative for a concave one, 0 for a line.
+    #[must_use]
+    pub fn curvature(&self) -> f64 {
+        match self {
+            Edge::Line(_) => 0.0,
+            Edge::Arc(arc) if arc.is_convex() => 1.0 / arc.radius(),
+            Edge::Arc(arc) => -1.0 / arc.radius(),
+        }
+    }
+
     /// The same edge run the other way.
     #[must_use]
     pub fn reversed(&self) -> Self {
@@ -75,6 +86,27 @@ impl Edge {
         match self {
             Edge::Line(line) => Edge::Line(line.translated(shift)),
             Edge::Arc(arc) => Edge::Arc(arc.translated(shift)),
+        }
+    }
+
+    /// The edge turned and shifted, as a body at the given pose carries it.
+    #[must_use]
+    pub fn posed(&self, pose: &Pose) -> Self {
+        match self {
+            Edge::Line(line) => Edge::Line(line.posed(pose)),
+            Edge::Arc(arc) => Edge::Arc(arc.posed(pose)),
+        }
+    }
+
+    /// Outward unit normal at a point of the edge.
+    #[must_use]
+    pub fn normal_at(&self, point: DVec2) -> DVec2 {
+        match self {
+            Edge::Line(line) => line.normal(),
+            Edge::Arc(arc) => {
+                let away = (point - arc.center()) / arc.radius();
+                if arc.is_convex() { away } else { -away }
+            }
         }
     }
 

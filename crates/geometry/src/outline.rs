@@ -1,12 +1,18 @@
 //! From path specifications to oriented paths: nesting by the even-odd rule, the solid on the left of every edge.
 
 use crate::error::ShapeError;
-use crate::path::{Path, PathSpec, build_path, outline_size};
+use crate::path::{Path, PathSpec, build_path, coincidence_tol, outline_size};
+use crate::simple::find_meeting;
 
 /// Builds the paths of an outline, turned so that the solid lies on the left of every edge.
 pub(crate) fn build_outline(specs: &[PathSpec]) -> Result<Vec<Path>, ShapeError> {
     if specs.is_empty() {
         return Err(ShapeError::NoPaths);
+    }
+    for (path, spec) in specs.iter().enumerate() {
+        if let Some(edge) = spec.first_not_finite() {
+            return Err(ShapeError::NotFinite { path, edge });
+        }
     }
     let size = outline_size(specs);
     let drawn: Vec<Path> = specs
@@ -14,6 +20,9 @@ pub(crate) fn build_outline(specs: &[PathSpec]) -> Result<Vec<Path>, ShapeError>
         .enumerate()
         .map(|(index, spec)| build_path(spec, index, size))
         .collect::<Result<_, _>>()?;
+    if let Some(meeting) = find_meeting(&drawn, coincidence_tol(size)) {
+        return Err(meeting.into());
+    }
     Ok(drawn.iter().enumerate().map(|(index, path)| oriented(path, index, &drawn)).collect())
 }
 

@@ -9,6 +9,10 @@ use glam::DVec2;
 
 /// End points and arc radii may be off by this part of the outline's size; they are then made exact.
 const FIT: f64 = 1e-6;
+/// A minor arc whose radius is more than this many chords is a straight edge.
+///
+/// Its rise is then less than 1.25e-8 chords; the rounding of so far a center would cost as much.
+const FLATTEST: f64 = 1e7;
 /// Vertices closer than this part of the outline's size are one point.
 const COINCIDENT: f64 = 1e-9;
 
@@ -44,6 +48,23 @@ impl EdgeSpec {
     pub fn to(&self) -> DVec2 {
         match *self {
             EdgeSpec::Line { to } | EdgeSpec::Arc { to, .. } | EdgeSpec::Bulge { to, .. } => to,
+        }
+    }
+
+    /// Center and radius of an arc of half a turn or more that starts at `from`.
+    fn major_circle(&self, from: DVec2) -> Option<(DVec2, f64)> {
+        let chord = self.to() - from;
+        match *self {
+            EdgeSpec::Line { .. } => None,
+            EdgeSpec::Arc { center, clockwise, .. } => {
+                let left = chord.perp_dot(center - from);
+                let major = if clockwise { left >= 0.0 } else { left <= 0.0 };
+                major.then(|| (center, (from - center).length()))
+            }
+            EdgeSpec::Bulge { bulge, .. } => (bulge.abs() >= 1.0).then(|| {
+                let center = bulge_center(from, chord, bulge);
+                (center, (from - center).length())
+            }),
         }
     }
 
@@ -84,17 +105,25 @@ impl PathSpec {
         Self { start, edges: vec![EdgeSpec::Arc { to: start, center, clockwise: false }] }
     }
 
-    /// Box around all end points and all circles of full-circle edges: what "the size of the outline" is measured on.
+    /// Index of the first edge with a coordinate that is not finite.
+    pub(crate) fn first_not_finite(&self) -> Option<usize> {
+        let edge = self.edges.iter().position(|edge| !edge.is_finite());
+        if self.start.is_finite() { edge } else { Some(0) }
+    }
+
+    /// Box around all end points and the circles of all arcs of half a turn or more: what "the size of the outline" is
+    /// measured on.
     fn rough_bounds(&self) -> Aabb {
-        self.edges.iter().fold(Aabb::around(self.start), |bounds, edge| {
-            let bounds = bounds.including(edge.to());
-            match *edge {
-                EdgeSpec::Arc { center, .. } if self.edges.len() == 1 => {
-                    bounds.union(Aabb::around_disc(center, (self.start - center).length()))
-                }
-                _ => bounds,
+        let mut from = self.start;
+        let mut bounds = Aabb::around(from);
+        for edge in &self.edges {
+            bounds = bounds.including(edge.to());
+            if let Some((center, radius)) = edge.major_circle(from) {
+                bounds = bounds.union(Aabb::around_disc(center, radius));
             }
-        })
+            from = edge.to();
+        }
+        bounds
     }
 }
 
@@ -144,17 +173,11 @@ pub(crate) fn coincidence_tol(size: f64) -> f64 {
     COINCIDENT * size
 }
 
-/// Builds the path with index `path` of an outline of the given size [m].
+/// Builds the path with index `path`, whose numbers are finite, of an outline of the given size [m].
 pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path, ShapeError> {
     let Some(last) = spec.edges.len().checked_sub(1) else {
         return Err(ShapeError::EmptyPath { path });
     };
-    if let Some(edge) = spec.edges.iter().position(|edge| !edge.is_finite()) {
-        return Err(ShapeError::NotFinite { path, edge });
-    }
-    if !spec.start.is_finite() {
-        return Err(ShapeError::NotFinite { path, edge: 0 });
-    }
     let gap = (spec.edges[last].to() - spec.start).length();
     if gap > FIT * size {
         return Err(ShapeError::OpenPath { path, edge: last, gap });
@@ -179,19 +202,24 @@ pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path
 }
 
 fn build_edge(from: DVec2, to: DVec2, spec: &EdgeSpec, fit_tol: f64) -> Result<Edge, EdgeFault> {
-    Ok(match *spec {
-        EdgeSpec::Line { .. } => Edge::Line(Line::new(from, to)?),
-        EdgeSpec::Bulge { bulge: 0.0, .. } => Edge::Line(Line::new(from, to)?),
-        EdgeSpec::Arc { center, clockwise, .. } => {
-            Edge::Arc(Arc::between(from, to, center, clockwise, fit_tol)?)
+    let arc = match *spec {
+        EdgeSpec::Line { .. } => return Ok(Edge::Line(Line::new(from, to)?)),
+        EdgeSpec::Bulge { bulge, .. } if 4.0 * FLATTEST * bulge.abs() < 1.0 => {
+            return Ok(Edge::Line(Line::new(from, to)?));
         }
+        EdgeSpec::Arc { center, clockwise, .. } => Arc::between(from, to, center, clockwise, fit_tol)?,
         EdgeSpec::Bulge { bulge, .. } => {
-            // The center lies on the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
-            let chord = to - from;
-            let center = from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
-            Edge::Arc(Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)?)
+            let center = bulge_center(from, to - from, bulge);
+            Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)?
         }
-    })
+    };
+    let flat = FLATTEST * arc.sweep_angle().abs() < 1.0;
+    Ok(if flat { Edge::Line(Line::new(from, to)?) } else { Edge::Arc(arc) })
+}
+
+/// Center of the arc over a chord: on the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
+fn bulge_center(from: DVec2, chord: DVec2, bulge: f64) -> DVec2 {
+    from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge))
 }
 
 enum EdgeFault {
@@ -226,21 +254,29 @@ impl EdgeFault {
 /// Crossings of the ray from `point` towards +x by the edge, upward ones counted +1 and downward ones -1.
 ///
 /// An arc is its chord plus the circular segment between them, around which it winds once or not at all.
-fn winding(edge: &Edge, point: DVec2) -> i32 {
+///
+/// A point on a chord counts as just to the right of it and above, for chord and segment alike.
+pub(crate) fn winding(edge: &Edge, point: DVec2) -> i32 {
     let (from, to) = (edge.from() - point, edge.to() - point);
+    // Positive if the point is on the left of the chord.
+    let side = from.perp_dot(to);
     let chord = match (from.y <= 0.0, to.y <= 0.0) {
-        (true, false) if from.perp_dot(to) > 0.0 => 1,
-        (false, true) if from.perp_dot(to) < 0.0 => -1,
+        (true, false) if side > 0.0 => 1,
+        (false, true) if side < 0.0 => -1,
         _ => 0,
     };
     let Edge::Arc(arc) = edge else { return chord };
-    let in_circle = (point - arc.center()).length_squared() < arc.radius() * arc.radius();
+    if (point - arc.center()).length_squared() >= arc.radius() * arc.radius() {
+        return chord;
+    }
     let turn = if arc.is_convex() { 1 } else { -1 };
-    let beyond_chord = arc.is_circle() || {
-        // A counter-clockwise arc lies on the right of its chord, however far it sweeps.
-        (to - from).perp_dot(-from) * f64::from(turn) < 0.0
-    };
-    chord + if in_circle && beyond_chord { turn } else { 0 }
+    if arc.is_circle() {
+        return turn;
+    }
+    let on_chord_is_right = if from.y == to.y { to.x < from.x } else { to.y > from.y };
+    let is_right = side < 0.0 || (side == 0.0 && on_chord_is_right);
+    // A counter-clockwise arc lies on the right of its chord, however far it sweeps.
+    chord + if is_right == arc.is_convex() { turn } else { 0 }
 }
 
 #[cfg(test)]
@@ -291,5 +327,38 @@ mod tests {
         assert!(arc.center().length() < 1e-15 && (arc.radius() - 1.0).abs() < 1e-15);
         assert!((arc.sweep_angle() - TAU / 2.0).abs() < 1e-15 * 4.0);
         assert!(path.surrounds(DVec2::new(0.0, -0.5)) && !path.surrounds(DVec2::new(0.0, 0.5)));
+    }
+
+    #[test]
+    fn two_half_circles_surround_their_common_chord() {
+        for angle in [0.0, 0.3, 1.0, TAU / 4.0, 2.0, TAU / 2.0, 4.0, 5.5] {
+            let ends = DVec2::new(f64::cos(angle), f64::sin(angle));
+            for bulge in [1.0, -1.0] {
+                let spec = PathSpec {
+                    start: ends,
+                    edges: vec![EdgeSpec::Bulge { to: -ends, bulge }, EdgeSpec::Bulge { to: ends, bulge }],
+                };
+                let path = build_path(&spec, 0, 2.0).expect("a fine circle");
+                for place in [-0.9, -0.5, 0.0, 0.25, 0.75] {
+                    assert!(path.surrounds(ends * place), "angle {angle}, place {place}");
+                    assert!(!path.surrounds(ends * (2.0 + place)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_nearly_straight_arc_is_straight() {
+        let spec = |bulge| PathSpec {
+            start: DVec2::ZERO,
+            edges: vec![
+                EdgeSpec::Line { to: DVec2::X },
+                EdgeSpec::Line { to: DVec2::Y },
+                EdgeSpec::Bulge { to: DVec2::ZERO, bulge },
+            ],
+        };
+        let last = |bulge| build_path(&spec(bulge), 0, 1.0).expect("a fine triangle").edges()[2];
+        assert!(matches!(last(1e-9), Edge::Line(_)) && matches!(last(-1e-300), Edge::Line(_)));
+        assert!(matches!(last(1e-7), Edge::Arc(_)));
     }
 }

@@ -4,14 +4,15 @@ use crate::bounds::Aabb;
 use crate::edge::Edge;
 use crate::error::ShapeError;
 use crate::feature::{
-    DirectionRange, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
+    DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
 use crate::mass::MassProperties;
 use crate::outline::build_outline;
 use crate::path::{Path, PathSpec};
 use crate::pose::Pose;
-use crate::tree::FeatureTree;
+use crate::tree::{FeatureTree, Node};
 use glam::DVec2;
+use std::f64::consts::PI;
 
 /// A corner whose edges' directions differ by less than this angle [rad] is smooth: the edges carry all contacts there.
 const SMOOTH_CORNER: f64 = 1e-9;
@@ -91,16 +92,30 @@ impl Shape {
     /// Farthest point of the shape along a unit vector of the body: its distance [m] from the origin along the vector.
     #[must_use]
     pub fn extent(&self, direction: DVec2) -> f64 {
-        let far = |edge: &Edge| {
-            let ends = edge.from().dot(direction).max(edge.to().dot(direction));
-            match edge {
-                Edge::Arc(arc) if arc.is_convex() && arc.directions().contains(direction) => {
-                    ends.max(arc.center().dot(direction) + arc.radius())
-                }
-                _ => ends,
-            }
-        };
-        self.edges().map(far).fold(f64::NEG_INFINITY, f64::max)
+        let bound = |node: &Node| -(node.center.dot(direction) + node.radius);
+        let farthest = self.tree.find_least(f64::INFINITY, &bound, &mut |id| {
+            Some((-feature_extent(self.feature(id), direction), ()))
+        });
+        farthest.map_or(0.0, |(least, ())| -least)
+    }
+
+    /// The edge that a feature is, or that starts at the vertex that it is.
+    #[must_use]
+    pub fn edge_of(&self, id: FeatureId) -> &Edge {
+        let source = self.source(id);
+        self.edge(EdgeId { path: source.path, edge: source.edge })
+    }
+
+    /// One of the edges.
+    #[must_use]
+    pub fn edge(&self, id: EdgeId) -> &Edge {
+        &self.paths[id.path as usize].edges()[id.edge as usize]
+    }
+
+    /// The edge that a feature is; `None` for a vertex.
+    pub(crate) fn whole_edge(&self, id: FeatureId) -> Option<EdgeId> {
+        let FeatureSource { path, edge, kind } = self.source(id);
+        (kind != FeatureKind::Vertex).then_some(EdgeId { path, edge })
     }
 
     /// The parts of the shape that can touch.
@@ -133,9 +148,35 @@ impl Shape {
         let bounds = boxes.reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
         let mass = MassProperties::of_paths(&paths, bounds.center());
         let (features, sources): (Vec<_>, Vec<_>) = paths.iter().enumerate().flat_map(path_features).unzip();
-        let tree = FeatureTree::build(&features);
+        let boxes: Vec<Aabb> = sources.iter().map(|source| feature_box(&paths, source)).collect();
+        let tree = FeatureTree::build(&features, &boxes);
         let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
         Self { paths, mass, bounds, reach, features, sources, tree }
+    }
+}
+
+/// Box around a feature, taken from the edge: the center of a flat arc would place its ends less exactly.
+fn feature_box(paths: &[Path], source: &FeatureSource) -> Aabb {
+    let edge = &paths[source.path as usize].edges()[source.edge as usize];
+    if source.kind == FeatureKind::Vertex { Aabb::around(edge.from()) } else { edge.bounds() }
+}
+
+/// Largest distance [m] from the origin along a unit vector.
+fn feature_extent(feature: &Feature, direction: DVec2) -> f64 {
+    match feature {
+        Feature::Line(line) => {
+            line.point_at(line.start).dot(direction).max(line.point_at(line.end).dot(direction))
+        }
+        Feature::Round(round) => {
+            let (center, radius) = (round.center.dot(direction), round.radius.abs());
+            match round.range.ends() {
+                // A hollow arc has neighbours that reach farther than its inside.
+                Some(ends) if round.radius < 0.0 || !round.range.contains(direction) => {
+                    center + radius * ends[0].dot(direction).max(ends[1].dot(direction))
+                }
+                _ => center + radius,
+            }
+        }
     }
 }
 
@@ -162,7 +203,12 @@ fn path_features((index, path): (usize, &Path)) -> Vec<(Feature, FeatureSource)>
 /// The vertex between two edges, if it points outwards.
 fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
     let (arriving, leaving) = (before.end_direction(), after.start_direction());
-    let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+    let mut turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+    if PI - turn.abs() < SMOOTH_CORNER {
+        // At a cusp the directions are opposite to rounding: which edge lies on the left is for the curvatures to say.
+        let solid_between = before.curvature() + after.curvature() < 0.0;
+        turn = if solid_between { PI } else { -PI };
+    }
     // The outward normal is the direction of travel turned by -90 degrees.
     let range = DirectionRange::between(-arriving.perp(), -leaving.perp(), turn.abs());
     (turn > SMOOTH_CORNER).then_some(RoundFeature { center: after.from(), radius: 0.0, range })

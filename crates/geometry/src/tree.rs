@@ -27,6 +27,15 @@ enum Content {
     Branch(u32),
 }
 
+/// What hangs below a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Below {
+    /// One feature.
+    Leaf(FeatureId),
+    /// Two nodes.
+    Branch([usize; 2]),
+}
+
 /// A binary tree over features; the root is node 0.
 #[derive(Clone, Debug)]
 pub struct FeatureTree {
@@ -34,8 +43,11 @@ pub struct FeatureTree {
 }
 
 impl FeatureTree {
-    pub(crate) fn build(features: &[Feature]) -> Self {
-        let mut items: Vec<Item> = features.iter().enumerate().map(Item::new).collect();
+    /// The tree over the features, each in its box.
+    pub(crate) fn build(features: &[Feature], boxes: &[Aabb]) -> Self {
+        let id = |index: usize| FeatureId(u32::try_from(index).unwrap_or(u32::MAX));
+        let mut items: Vec<Item> =
+            boxes.iter().enumerate().map(|(index, &bounds)| Item { id: id(index), bounds }).collect();
         let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()) };
         if !items.is_empty() {
             tree.add(&mut items, features);
@@ -47,6 +59,43 @@ impl FeatureTree {
     #[must_use]
     pub fn root(&self) -> Option<&Node> {
         self.nodes.first()
+    }
+
+    /// One of the nodes; the root is node 0.
+    pub(crate) fn node(&self, index: usize) -> &Node {
+        &self.nodes[index]
+    }
+
+    /// What hangs below a node.
+    pub(crate) fn below(&self, index: usize) -> Below {
+        match self.nodes[index].content {
+            Content::Leaf(feature) => Below::Leaf(feature),
+            Content::Branch(second) => Below::Branch([index + 1, second as usize]),
+        }
+    }
+
+    /// The least value of the features that is below `limit`, and the feature; `None` if there is none.
+    ///
+    /// Branch and bound: `bound` never exceeds the value of a feature below the node, and the nearer child is looked at
+    /// first.
+    pub(crate) fn find_least<T>(
+        &self,
+        limit: f64,
+        bound: &impl Fn(&Node) -> f64,
+        value: &mut impl FnMut(FeatureId) -> Option<(f64, T)>,
+    ) -> Option<(f64, T)> {
+        let mut best = Best { limit, found: None };
+        if let Some(root) = self.root() {
+            self.improve(0, bound(root), bound, value, &mut best);
+        }
+        best.found.map(|found| (best.limit, found))
+    }
+
+    /// Visits every feature below nodes that are `wanted`.
+    pub(crate) fn visit_where(&self, wanted: &impl Fn(&Node) -> bool, visit: &mut impl FnMut(FeatureId)) {
+        if !self.nodes.is_empty() {
+            self.visit_below(0, wanted, visit);
+        }
     }
 
     /// Visits every feature whose bounds come within `distance` [m] of a point in body coordinates.
@@ -69,6 +118,50 @@ impl FeatureTree {
         if !self.nodes.is_empty() && !other.nodes.is_empty() {
             let pair = PosedTrees { a: self, pose_a: pose, b: other, pose_b: other_pose, distance };
             pair.descend(0, 0, visit);
+        }
+    }
+
+    fn improve<T>(
+        &self,
+        node: usize,
+        node_bound: f64,
+        bound: &impl Fn(&Node) -> f64,
+        value: &mut impl FnMut(FeatureId) -> Option<(f64, T)>,
+        best: &mut Best<T>,
+    ) {
+        if node_bound >= best.limit {
+            return;
+        }
+        match self.below(node) {
+            Below::Leaf(feature) => {
+                if let Some((value, found)) = value(feature).filter(|&(value, _)| value < best.limit) {
+                    *best = Best { limit: value, found: Some(found) };
+                }
+            }
+            Below::Branch([first, second]) => {
+                let (to_first, to_second) = (bound(&self.nodes[first]), bound(&self.nodes[second]));
+                if to_first <= to_second {
+                    self.improve(first, to_first, bound, value, best);
+                    self.improve(second, to_second, bound, value, best);
+                } else {
+                    self.improve(second, to_second, bound, value, best);
+                    self.improve(first, to_first, bound, value, best);
+                }
+            }
+        }
+    }
+
+    fn visit_below(&self, node: usize, wanted: &impl Fn(&Node) -> bool, visit: &mut impl FnMut(FeatureId)) {
+        if !wanted(&self.nodes[node]) {
+            return;
+        }
+        match self.below(node) {
+            Below::Leaf(feature) => visit(feature),
+            Below::Branch(children) => {
+                for child in children {
+                    self.visit_below(child, wanted, visit);
+                }
+            }
         }
     }
 
@@ -114,30 +207,16 @@ impl FeatureTree {
     }
 }
 
+/// The best found so far.
+struct Best<T> {
+    /// Its value: only less is better.
+    limit: f64,
+    found: Option<T>,
+}
+
 struct Item {
     id: FeatureId,
     bounds: Aabb,
-}
-
-impl Item {
-    fn new((index, feature): (usize, &Feature)) -> Self {
-        Self { id: FeatureId(u32::try_from(index).unwrap_or(u32::MAX)), bounds: feature_bounds(feature) }
-    }
-}
-
-fn feature_bounds(feature: &Feature) -> Aabb {
-    match feature {
-        Feature::Line(line) => Aabb::around(line.point_at(line.start)).including(line.point_at(line.end)),
-        Feature::Round(round) => {
-            let radius = round.radius.abs();
-            let Some(ends) = round.range.ends() else { return Aabb::around_disc(round.center, radius) };
-            let axes = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
-            let inner = axes.into_iter().filter(|&axis| round.range.contains(axis));
-            let points = inner.chain(ends).map(|direction| round.center + direction * radius);
-            let first = round.center + ends[0] * radius;
-            points.fold(Aabb::around(first), Aabb::including)
-        }
-    }
 }
 
 struct PosedTrees<'a> {

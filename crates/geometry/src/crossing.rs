@@ -1,0 +1,84 @@
+//! Points in which two edges cross.
+//!
+//! Lines cross where each has the other's ends on both sides; a line meets a circle half a chord to either side of the
+//! centre's foot; two circles meet on the radical line, whose offset is measured from the centre of the lesser circle
+//! (seen from the larger one a crossing is known only to rounding times the ratio of the radii). Edges that only touch
+//! may or may not be found to cross, as rounding has it: their distance is zero to rounding either way.
+
+use crate::arc::Arc;
+use crate::edge::Edge;
+use crate::line::Line;
+use glam::DVec2;
+
+/// The points in which two edges cross: at most two [m].
+///
+/// Edges that lie on the same line or circle have no single crossings, so none are given.
+///
+/// # Examples
+///
+/// ```
+/// # use halfgap_geometry::{Arc, DVec2, Edge, Line, edge_crossings};
+/// let line = Edge::Line(Line::new(DVec2::new(-2.0, 0.6), DVec2::new(2.0, 0.6))?);
+/// let circle = Edge::Arc(Arc::circle(DVec2::ZERO, DVec2::X, false)?);
+/// let crossings: Vec<DVec2> = edge_crossings(&line, &circle).collect();
+/// assert_eq!(crossings.len(), 2);
+/// assert!((crossings[0] - DVec2::new(-0.8, 0.6)).length() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn edge_crossings(a: &Edge, b: &Edge) -> impl Iterator<Item = DVec2> {
+    let found = match (a, b) {
+        (Edge::Line(a), Edge::Line(b)) => [line_line(a, b), None],
+        (Edge::Line(line), Edge::Arc(arc)) | (Edge::Arc(arc), Edge::Line(line)) => line_arc(line, arc),
+        (Edge::Arc(a), Edge::Arc(b)) if a.radius() <= b.radius() => arc_arc(a, b),
+        (Edge::Arc(a), Edge::Arc(b)) => arc_arc(b, a),
+    };
+    found.into_iter().flatten()
+}
+
+fn line_line(a: &Line, b: &Line) -> Option<DVec2> {
+    let (from_b, to_b) = (a.signed_distance(b.from()), a.signed_distance(b.to()));
+    let (from_a, to_a) = (b.signed_distance(a.from()), b.signed_distance(a.to()));
+    let cross = from_a != to_a && from_b != to_b && from_a * to_a <= 0.0 && from_b * to_b <= 0.0;
+    // The point is exact at an end that lies on the other line.
+    cross.then(|| a.from() + (a.to() - a.from()) * (from_a / (from_a - to_a)))
+}
+
+fn line_arc(line: &Line, arc: &Arc) -> [Option<DVec2>; 2] {
+    let offset = line.signed_distance(arc.center()).abs();
+    let half_chord_sq = (arc.radius() - offset) * (arc.radius() + offset);
+    if half_chord_sq < 0.0 {
+        return [None; 2];
+    }
+    let foot = line.direction().dot(arc.center() - line.from());
+    let half_chord = half_chord_sq.sqrt();
+    [foot - half_chord, foot + half_chord].map(|along| {
+        let point = line.from() + line.direction() * along;
+        ((0.0..=line.length()).contains(&along) && is_on(arc, point)).then_some(point)
+    })
+}
+
+/// `a` has the lesser radius.
+fn arc_arc(a: &Arc, b: &Arc) -> [Option<DVec2>; 2] {
+    let offset = b.center() - a.center();
+    let distance = offset.length();
+    if distance == 0.0 {
+        return [None; 2];
+    }
+    let towards = offset / distance;
+    let power = (distance - b.radius()) * (distance + b.radius());
+    let along = (power + a.radius() * a.radius()) / (2.0 * distance);
+    let half_chord_sq = (a.radius() - along) * (a.radius() + along);
+    if half_chord_sq < 0.0 {
+        return [None; 2];
+    }
+    let half_chord = half_chord_sq.sqrt();
+    [-half_chord, half_chord].map(|across| {
+        let point = a.center() + towards * along + towards.perp() * across;
+        (is_on(a, point) && is_on(b, point)).then_some(point)
+    })
+}
+
+/// True if a point of the circle is one of the arc.
+fn is_on(arc: &Arc, point: DVec2) -> bool {
+    arc.directions().contains((point - arc.center()) / arc.radius())
+}

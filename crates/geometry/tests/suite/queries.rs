@@ -1,0 +1,230 @@
+//! Queries against sampling and against looking at every edge.
+
+use crate::sampling::{SAMPLES, coarseness, outline_points, sampled_contains};
+use crate::shapes::{any_angle, any_pose, any_shape, any_vector, map_spec, specs_of};
+use halfgap_geometry::{Aabb, DVec2, Edge, MotionBound, Pose, Ray, Relation, Rotation, Shape, edge_distance};
+use proptest::prelude::*;
+
+/// What rounding may cost, as part of the sizes involved.
+const ROUNDING: f64 = 2e-14;
+
+fn sampled_distance(a: &[DVec2], b: &[DVec2]) -> f64 {
+    let to_b = |p: &DVec2| b.iter().map(|q| (*p - *q).length_squared()).fold(f64::INFINITY, f64::min);
+    a.iter().map(to_b).fold(f64::INFINITY, f64::min).sqrt()
+}
+
+fn to_world(points: &[DVec2], pose: &Pose) -> Vec<DVec2> {
+    points.iter().map(|&p| pose.point_to_world(p)).collect()
+}
+
+/// Largest radius or length of the shape: arcs are no better known than their centers.
+fn scale(shape: &Shape) -> f64 {
+    let radius = |edge: &Edge| match edge {
+        Edge::Line(_) => 0.0,
+        Edge::Arc(arc) => arc.radius() + arc.center().length(),
+    };
+    shape.reach() + shape.edges().map(radius).fold(0.0, f64::max)
+}
+
+fn brute_distance(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> f64 {
+    let placed = |shape: &Shape, pose: &Pose| shape.edges().map(|e| e.posed(pose)).collect::<Vec<_>>();
+    let (a, b) = (placed(a, pose_a), placed(b, pose_b));
+    a.iter().flat_map(|p| b.iter().map(|q| edge_distance(p, q).distance)).fold(f64::INFINITY, f64::min)
+}
+
+proptest! {
+    #[test]
+    fn no_sampled_pair_of_points_is_closer(
+        a in any_shape(), pose_a in any_pose(), b in any_shape(), pose_b in any_pose(),
+    ) {
+        let found = a.distance(&pose_a, &b, &pose_b);
+        let (points_a, points_b) = (to_world(&outline_points(&a), &pose_a), to_world(&outline_points(&b), &pose_b));
+        let sampled = sampled_distance(&points_a, &points_b);
+        let rounding = ROUNDING * (scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length());
+        prop_assert!(found.distance <= sampled + rounding, "{} {sampled}", found.distance);
+        prop_assert!(sampled - found.distance <= coarseness(&a) + coarseness(&b) + rounding);
+        // The witnesses are as far apart as said, and lie on the edges named.
+        prop_assert!(((found.point_a - found.point_b).length() - found.distance).abs() <= rounding);
+        let (on_a, on_b) = (pose_a.point_to_body(found.point_a), pose_b.point_to_body(found.point_b));
+        prop_assert!((a.edge(found.edge_a).nearest(on_a) - on_a).length() <= rounding);
+        prop_assert!((b.edge(found.edge_b).nearest(on_b) - on_b).length() <= rounding);
+    }
+
+    #[test]
+    fn the_trees_find_what_every_pair_of_edges_has(
+        a in any_shape(), pose_a in any_pose(), b in any_shape(), pose_b in any_pose(),
+    ) {
+        let (found, brute) = (a.distance(&pose_a, &b, &pose_b).distance, brute_distance(&a, &pose_a, &b, &pose_b));
+        let rounding = ROUNDING * (scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length());
+        prop_assert!((found - brute).abs() <= rounding, "{found} {brute}");
+    }
+
+    #[test]
+    fn distance_is_symmetric_and_moves_along(
+        a in any_shape(), pose_a in any_pose(), b in any_shape(), pose_b in any_pose(),
+        shift in any_vector(10.0), angle in any_angle(),
+    ) {
+        let found = a.distance(&pose_a, &b, &pose_b);
+        let swapped = b.distance(&pose_b, &a, &pose_a);
+        let size = scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length() + 20.0;
+        prop_assert!((found.distance - swapped.distance).abs() <= ROUNDING * size);
+        let turn = Rotation::from_angle(angle);
+        let moved = |pose: &Pose| Pose {
+            position: turn.apply(pose.position) + shift,
+            rotation: Rotation {
+                cos: turn.cos * pose.rotation.cos - turn.sin * pose.rotation.sin,
+                sin: turn.sin * pose.rotation.cos + turn.cos * pose.rotation.sin,
+            },
+        };
+        let there = a.distance(&moved(&pose_a), &b, &moved(&pose_b));
+        prop_assert!((found.distance - there.distance).abs() <= ROUNDING * size);
+        if found.distance > ROUNDING * size {
+            prop_assert_eq!(found.relation, there.relation);
+            let expected = match swapped.relation {
+                Relation::FirstInside => Relation::SecondInside,
+                Relation::SecondInside => Relation::FirstInside,
+                other => other,
+            };
+            prop_assert_eq!(found.relation, expected);
+        }
+    }
+
+    #[test]
+    fn distance_survives_mirror_and_scale(
+        a in any_shape(), pose_a in any_pose(), b in any_shape(), pose_b in any_pose(),
+        factor in prop_oneof![Just(1e-3), Just(1e3), 0.1..10.0],
+    ) {
+        let mapped = |shape: &Shape| {
+            let flip = |p: DVec2| DVec2::new(-p.x, p.y) * factor;
+            let specs: Vec<_> = specs_of(shape).iter().map(|spec| map_spec(spec, &flip, true)).collect();
+            Shape::from_paths(&specs).expect("mirrored and scaled")
+        };
+        let pose = |pose: &Pose| Pose {
+            position: DVec2::new(-pose.position.x, pose.position.y) * factor,
+            rotation: Rotation { cos: pose.rotation.cos, sin: -pose.rotation.sin },
+        };
+        let here = a.distance(&pose_a, &b, &pose_b).distance * factor;
+        let there = mapped(&a).distance(&pose(&pose_a), &mapped(&b), &pose(&pose_b)).distance;
+        let size = scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length();
+        prop_assert!((here - there).abs() <= ROUNDING * size * factor, "{here} {there}");
+    }
+
+    #[test]
+    fn a_point_is_inside_where_the_sampled_outline_winds(shape in any_shape(), point in any_vector(2.5)) {
+        let near = shape.nearest(point);
+        // The chords of the samples cut off a little of each arc.
+        let cut = shape.edges().map(|edge| {
+            let Edge::Arc(arc) = edge else { return 0.0 };
+            arc.radius() * (arc.sweep_angle() / f64::from(SAMPLES)).powi(2) / 8.0
+        }).fold(0.0, f64::max);
+        prop_assert_eq!(shape.contains(point), near.signed_distance < 0.0);
+        if near.signed_distance.abs() > cut + ROUNDING * scale(&shape) {
+            prop_assert_eq!(shape.contains(point), sampled_contains(&shape, point));
+        }
+    }
+
+    #[test]
+    fn points_level_with_a_vertex_are_judged_right(shape in any_shape(), which in 0usize..40, x in -3.0..3.0) {
+        let edges: Vec<&Edge> = shape.edges().collect();
+        let point = DVec2::new(x, edges[which % edges.len()].from().y);
+        let brute = shape.paths().iter().filter(|path| path.surrounds(point)).count() % 2 == 1;
+        prop_assert_eq!(shape.contains(point), brute);
+        let near = shape.nearest(point);
+        if near.signed_distance.abs() > 1e-9 {
+            // Just above and below the answer is the same.
+            for nudge in [-1e-10, 1e-10] {
+                prop_assert_eq!(shape.contains(point + DVec2::new(0.0, nudge)), brute);
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_point_is_nearest(shape in any_shape(), point in any_vector(3.0)) {
+        let near = shape.nearest(point);
+        let brute = shape.edges().map(|e| (e.nearest(point) - point).length()).fold(f64::INFINITY, f64::min);
+        prop_assert_eq!(near.signed_distance.abs(), brute);
+        let sampled = sampled_distance(&[point], &outline_points(&shape));
+        prop_assert!(brute <= sampled + ROUNDING * (scale(&shape) + 3.0));
+        prop_assert!(sampled <= brute + coarseness(&shape) + ROUNDING * scale(&shape));
+        let on_edge = shape.edge(near.edge).nearest(near.point);
+        prop_assert!((on_edge - near.point).length() <= ROUNDING * scale(&shape));
+    }
+
+    #[test]
+    fn a_ray_stops_where_inside_and_outside_meet(shape in any_shape(), origin in any_vector(3.0), angle in any_angle()) {
+        let direction = DVec2::new(angle.cos(), angle.sin());
+        let ray = Ray { origin, direction };
+        let hit = shape.cast_ray(&ray, f64::INFINITY);
+        let brute = shape.edges().filter_map(|e| ray.distance_to(e)).fold(f64::INFINITY, f64::min);
+        prop_assert_eq!(hit.map_or(f64::INFINITY, |hit| hit.distance), brute);
+        let rounding = 1e-6;
+        let end = hit.map_or(10.0, |hit| hit.distance);
+        for step in 1..200 {
+            let point = origin + direction * (end * f64::from(step) / 200.0);
+            if shape.nearest(point).signed_distance.abs() > rounding {
+                prop_assert_eq!(shape.contains(point), shape.contains(origin), "at {}", point);
+            }
+        }
+        if let Some(hit) = hit {
+            prop_assert!(shape.nearest(hit.point).signed_distance.abs() < ROUNDING * (scale(&shape) + 6.0) * 100.0);
+            prop_assert!((hit.normal.length() - 1.0).abs() < 1e-9);
+            prop_assert_eq!(shape.cast_ray(&ray, hit.distance), Some(hit));
+            let entering = hit.normal.dot(direction) < 0.0;
+            if hit.normal.dot(direction).abs() > 1e-3 && shape.nearest(origin).signed_distance.abs() > rounding {
+                prop_assert_eq!(entering, !shape.contains(origin));
+            }
+        }
+    }
+
+    #[test]
+    fn a_ray_at_a_vertex_does_not_slip_through(shape in any_shape(), origin in any_vector(3.0), which in 0usize..40) {
+        let edges: Vec<&Edge> = shape.edges().collect();
+        let target = edges[which % edges.len()].from();
+        prop_assume!((target - origin).length() > 1e-3);
+        let distance = (target - origin).length();
+        let ray = Ray { origin, direction: (target - origin) / distance };
+        if let Some(hit) = shape.cast_ray(&ray, f64::INFINITY) {
+            prop_assert!(hit.distance <= distance * (1.0 + 1e-9));
+        } else {
+            // Only past a corner may it go.
+            prop_assert!(!shape.contains(origin));
+        }
+    }
+
+    #[test]
+    fn bounds_are_tight(shape in any_shape(), pose in any_pose()) {
+        let bounds = shape.bounds_at(&pose);
+        let points = to_world(&outline_points(&shape), &pose);
+        let sampled = points.iter().fold(Aabb::around(points[0]), |b, &p| b.including(p));
+        let rounding = ROUNDING * (scale(&shape) + pose.position.length());
+        prop_assert!(bounds.grown(rounding).contains(&sampled));
+        prop_assert!(sampled.grown(2e-3 * shape.reach() + rounding).contains(&bounds));
+        let at_rest = shape.bounds_at(&Pose::IDENTITY);
+        prop_assert!(at_rest.grown(rounding).contains(&shape.bounds()));
+        prop_assert!(shape.bounds().grown(rounding).contains(&at_rest));
+    }
+
+    #[test]
+    fn swept_bounds_are_tight(
+        shape in any_shape(), from_angle in any_angle(),
+        turn in prop_oneof![Just(0.0), Just(7.0), 0.0..6.5, 0.0..0.01],
+        low in any_vector(1.0), size in (0.0..1.0, 0.0..1.0),
+    ) {
+        let positions = Aabb { min: low, max: low + DVec2::from(size) };
+        let swept = shape.swept_bounds(&MotionBound { positions, from_angle, to_angle: from_angle + turn });
+        let steps = 300;
+        let mut sampled: Option<Aabb> = None;
+        for step in 0..=steps {
+            let angle = from_angle + turn * f64::from(step) / f64::from(steps);
+            for corner in [positions.min, positions.max] {
+                let bounds = shape.bounds_at(&Pose::new(corner, angle));
+                sampled = Some(sampled.map_or(bounds, |all| all.union(bounds)));
+            }
+        }
+        let sampled = sampled.expect("there are steps");
+        let rounding = ROUNDING * (scale(&shape) + 2.0);
+        prop_assert!(swept.grown(rounding).contains(&sampled), "{swept:?} {sampled:?}");
+        let coarse = shape.reach() * (turn / f64::from(steps)).powi(2);
+        prop_assert!(sampled.grown(coarse + rounding).contains(&swept), "{swept:?} {sampled:?}");
+    }
+}
