@@ -9,7 +9,6 @@
 use crate::closed_rows::ClosedRows;
 use crate::error::Infeasibility;
 use crate::problem::Problem;
-use crate::settings::Settings;
 
 /// What was taken off b̂, row by row; empty until there is something.
 #[derive(Clone, Debug, Default)]
@@ -28,16 +27,15 @@ impl Shift {
     }
 
     /// Settles the contradiction that `row`, last considered and found dependent, is violated while no closed force
-    /// blocks the null direction. Returns the proof if the contradiction is too large to be rounding.
+    /// blocks the null direction. Returns the proof if the contradiction exceeds `limit`.
     pub(crate) fn reconcile(
         &mut self,
         closed: &mut ClosedRows,
         row: usize,
-        noise: f64,
-        settings: &Settings,
+        limit: f64,
     ) -> Option<Box<Infeasibility>> {
         let direction = null_direction(closed, row);
-        self.remove(closed, &direction, row, noise, settings)
+        self.remove(closed, &direction, row, limit)
     }
 
     /// Makes dependent bilateral rows agree with the closed ones, all at once in the sense of least squares.
@@ -46,7 +44,7 @@ impl Shift {
         closed: &mut ClosedRows,
         problem: &Problem,
         noise: f64,
-        settings: &Settings,
+        limit: f64,
     ) -> Option<Box<Infeasibility>> {
         let contradicts = |row: usize, a: f64| problem.bilateral[row] && a.abs() > noise;
         if !(0..problem.len()).any(|row| contradicts(row, closed.acceleration[row])) {
@@ -65,7 +63,7 @@ impl Shift {
                 let overlap = dot(&direction, other) / dot(other, other);
                 direction.iter_mut().zip(other).for_each(|(d, o)| *d -= overlap * o);
             }
-            let proof = self.remove(closed, &direction, row, noise, settings);
+            let proof = self.remove(closed, &direction, row, limit.max(noise));
             if proof.is_some() {
                 return proof;
             }
@@ -79,14 +77,13 @@ impl Shift {
         closed: &mut ClosedRows,
         direction: &[f64],
         row: usize,
-        noise: f64,
-        settings: &Settings,
+        limit: f64,
     ) -> Option<Box<Infeasibility>> {
         let contradiction = dot(direction, &closed.system.b);
         let factor = contradiction / dot(direction, direction);
         let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
         let size = factor.abs() * largest;
-        if size > settings.inconsistency * closed.system.scale && size > noise {
+        if size > limit {
             return Some(Box::new(certificate(closed, direction, row, size)));
         }
         self.taken.resize(direction.len(), 0.0);
@@ -116,7 +113,8 @@ fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize, size: f64
     let mut image = vec![0.0; direction.len()];
     closed.system.accelerate(direction, &mut image);
     let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
-    let leakage = image.iter().zip(&closed.system.b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / largest;
+    let leakage =
+        image.iter().zip(&closed.system.b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / largest;
     let unscaled = direction.iter().zip(&closed.system.row_scale).map(|(z, s)| sign * z / s).collect();
     Infeasibility { row, direction: unscaled, contradiction: size / scale, leakage }
 }

@@ -17,13 +17,16 @@ use crate::closed_rows::ClosedRows;
 use crate::dependent::Shift;
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::problem::Problem;
-use crate::settings::Settings;
+use crate::settings::{Contradiction, Settings};
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
 use crate::warm::WarmStart;
 
 /// Part of a unit change below which a force does not count as changed by a null direction: rounding.
 const BLOCKING: f64 = 1e-14;
+
+/// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
+const REFINED: f64 = 0.125;
 
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +39,15 @@ pub struct DualActiveSet {
     checker: Checker,
     pivots: usize,
     pub(crate) rounds: usize,
+}
+
+/// How dependent rows are treated.
+#[derive(Clone, Copy, Debug)]
+struct Attempt {
+    /// Least Schur complement of an independent row.
+    dependence: f64,
+    /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
+    contradiction: f64,
 }
 
 /// How the pivoting ended.
@@ -62,12 +74,51 @@ impl DualActiveSet {
         warm: Option<&WarmStart>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        solution.reset(problem.len(), Method::DualActiveSet);
         if !problem.is_symmetric() {
             let reason = "it needs a symmetric, positive semidefinite matrix";
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
         }
-        self.closed.load(problem, self.settings.dependence);
+        let mut failure = None;
+        for attempt in self.attempts() {
+            let error = match self.attempt(problem, warm, solution, attempt) {
+                Ok(()) => return Ok(()),
+                Err(error) => error,
+            };
+            let proven = matches!(&error, SolveError::Infeasible(proof)
+                if proof.least_growth() >= self.settings.greatest_growth);
+            // A certificate outweighs an attempt that came to nothing.
+            if proven || failure.is_none() || matches!(error, SolveError::Infeasible(_)) {
+                failure = Some(error);
+            }
+            if proven {
+                break;
+            }
+        }
+        Err(failure.expect("there is at least one attempt, and each gives an answer or an error"))
+    }
+
+    /// The ways to treat rows that are dependent or nearly so, in order.
+    fn attempts(&self) -> [Attempt; 3] {
+        let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
+        let as_given = natural_residual / 2.0;
+        let usual = Attempt { dependence, contradiction: as_given };
+        let strict = Attempt { dependence: least_dependence, contradiction: as_given };
+        let least_squares = Attempt { dependence, contradiction: inconsistency };
+        match self.settings.contradiction {
+            Contradiction::SolveExactly => [usual, strict, least_squares],
+            Contradiction::LeastSquares => [least_squares, strict, least_squares],
+        }
+    }
+
+    fn attempt(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+        attempt: Attempt,
+    ) -> Result<(), SolveError> {
+        solution.reset(problem.len(), Method::DualActiveSet);
+        self.closed.load(problem, attempt.dependence);
         self.shift.reset();
         self.pivots = 0;
         let end = match self.close_connectors(problem) {
@@ -76,7 +127,7 @@ impl DualActiveSet {
                 self.choose_start(problem, warm);
                 self.exchange_blocks(problem);
                 self.make_forces_admissible();
-                self.pivot(problem)
+                self.pivot(problem, attempt)
             }
         };
         self.finish(problem, solution, end)
@@ -97,7 +148,8 @@ impl DualActiveSet {
         self.closed.solve_closed();
         self.closed.accelerate();
         let noise = self.noise();
-        self.shift.reconcile_connectors(&mut self.closed, problem, noise, &self.settings)
+        let limit = self.settings.inconsistency * self.closed.system.scale;
+        self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
     }
 
     /// Marks the rows to begin with: those of the warm start; otherwise, and for new rows, those that would close.
@@ -133,7 +185,8 @@ impl DualActiveSet {
                     continue;
                 }
                 let closed = self.closed.is_closed(row);
-                let bad = if closed { self.closed.force[row] < 0.0 } else { self.closed.acceleration[row] < limit };
+                let bad =
+                    if closed { self.closed.force[row] < 0.0 } else { self.closed.acceleration[row] < limit };
                 self.start[row] = closed != bad;
                 wrong += usize::from(bad);
             }
@@ -165,16 +218,17 @@ impl DualActiveSet {
     }
 
     /// Closes the worst row until none is left, then refines.
-    fn pivot(&mut self, problem: &Problem) -> End {
+    fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
         let mut refinements = 0;
         loop {
             let noise = self.noise();
             if let Some(row) = self.worst_open_row(problem, noise) {
-                match self.drive(row) {
+                match self.drive(row, attempt) {
                     End::Done => {}
                     other => return other,
                 }
-            } else if refinements < self.settings.refinements && self.closed.closed_error() > noise {
+            } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
+            {
                 refinements += 1;
                 self.closed.refine();
                 self.closed.accelerate();
@@ -198,7 +252,7 @@ impl DualActiveSet {
     }
 
     /// Raises the force of an open row until its acceleration is zero, opening rows whose force runs out.
-    fn drive(&mut self, row: usize) -> End {
+    fn drive(&mut self, row: usize, attempt: Attempt) -> End {
         loop {
             self.pivots += 1;
             if self.pivots > self.settings.pivot_cap(self.closed.force.len()) {
@@ -217,7 +271,7 @@ impl DualActiveSet {
                     self.closed.acceleration[row] += length * relation.complement.max(0.0);
                     self.closed.open_at(at);
                 }
-                None if relation.dependent => return self.resolve_contradiction(row),
+                None if relation.dependent => return self.resolve_contradiction(row, attempt),
                 None => {
                     self.advance(row, full);
                     self.closed.close(row, relation);
@@ -254,9 +308,9 @@ impl DualActiveSet {
     }
 
     /// The rows contradict each other along the null direction just found: by rounding, or for good.
-    fn resolve_contradiction(&mut self, row: usize) -> End {
-        let noise = self.noise();
-        match self.shift.reconcile(&mut self.closed, row, noise, &self.settings) {
+    fn resolve_contradiction(&mut self, row: usize, attempt: Attempt) -> End {
+        let limit = attempt.contradiction * self.closed.system.scale;
+        match self.shift.reconcile(&mut self.closed, row, limit) {
             Some(certificate) => End::Infeasible(certificate),
             None => {
                 self.closed.force[row] = 0.0;

@@ -64,7 +64,9 @@ pub enum ProblemError {
         rows: usize,
     },
     /// A matrix given as symmetric is not.
-    #[error("row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference}")]
+    #[error(
+        "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference}"
+    )]
     NotSymmetric {
         /// The row.
         row: usize,
@@ -114,17 +116,26 @@ pub enum SolveError {
 ///
 /// `direction` is a combination z of the rows, z ≥ 0 on unilateral rows, that no force can accelerate (A z = 0 up to
 /// rounding) while bᵀz < 0. For any forces f, zᵀ(A f + b) = bᵀz < 0, so the accelerations cannot all be admissible
-/// (Farkas' lemma). For an unsymmetric matrix the direction is the secondary ray of Lemke's method, and `proof` says
-/// that it proves nothing unless A is copositive.
+/// (Farkas' lemma).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("no forces satisfy the contacts: row {row} cannot be kept from closing (contradiction {contradiction:e} of the scale)")]
+#[error(
+    "no forces satisfy the contacts: row {row} cannot be kept from closing (contradiction {contradiction:e} of the scale)"
+)]
 pub struct Infeasibility {
     /// The row at which it showed.
     pub row: usize,
     /// The combination z of the rows, one number per row.
     pub direction: Vec<f64>,
-    /// -bᵀz over (scale · Σ|z_i s_i⁻¹|…), i.e. by how much the rows contradict each other, in units of the scale.
+    /// Least change of a row's b, in units of the scale, that would remove the contradiction: |bᵀz| max|s z| / |s z|².
     pub contradiction: f64,
     /// Largest scaled component of A z, in units of the largest scaled component of z: zero up to rounding.
     pub leakage: f64,
+}
+
+impl Infeasibility {
+    /// The growth that any solution would at least have, as far as the certificate can tell: forces of that size would
+    /// have to use the rounding in A z.
+    pub fn least_growth(&self) -> f64 {
+        self.contradiction / self.leakage.max(f64::EPSILON)
+    }
 }

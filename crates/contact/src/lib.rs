@@ -28,7 +28,7 @@ pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 #[cfg(feature = "json")]
 pub use json::{ContactFile, FileError, SolutionFile};
 pub use problem::{BodyId, ContactKey, Inertia, Problem, Row};
-pub use settings::{ForceSelection, Settings};
+pub use settings::{Contradiction, ForceSelection, Settings};
 pub use solution::Solution;
 pub use solver::{Method, Solver};
 pub use warm::WarmStart;

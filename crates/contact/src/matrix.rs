@@ -141,8 +141,12 @@ mod tests {
 
     #[test]
     fn asymmetry_is_named_by_row_and_column() -> Result<(), ProblemError> {
-        let matrix = SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (0, 1, 0.5), (1, 0, 0.4), (1, 1, 1.0)])?;
-        assert!(matches!(matrix.check_symmetric(), Err(ProblemError::NotSymmetric { row: 0, column: 1, .. })));
+        let matrix =
+            SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (0, 1, 0.5), (1, 0, 0.4), (1, 1, 1.0)])?;
+        assert!(matches!(
+            matrix.check_symmetric(),
+            Err(ProblemError::NotSymmetric { row: 0, column: 1, .. })
+        ));
         Ok(())
     }
 }

@@ -371,5 +371,9 @@ fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(),
 }
 
 fn check_inverse_mass(column: usize, value: f64) -> Result<(), ProblemError> {
-    if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(ProblemError::BadInverseMass { column, value }) }
+    if value.is_finite() && value >= 0.0 {
+        Ok(())
+    } else {
+        Err(ProblemError::BadInverseMass { column, value })
+    }
 }

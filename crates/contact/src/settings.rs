@@ -22,6 +22,9 @@ pub struct Settings {
     ///
     /// Larger treats nearly redundant contacts as redundant, smaller lets forces grow by up to its reciprocal.
     pub dependence: f64,
+    /// The same for a second attempt, where rows taken for dependent contradict each other and may only be nearly
+    /// dependent: a few roundings of 1.
+    pub least_dependence: f64,
     /// Contradiction between dependent rows, in units of the scale, up to which they are solved in the least-squares
     /// sense; beyond it the problem is infeasible.
     pub inconsistency: f64,
@@ -43,6 +46,21 @@ pub struct Settings {
     pub least_norm_term: f64,
     /// How forces are chosen where the problem leaves a choice.
     pub selection: ForceSelection,
+    /// What to do first about contacts that contradict each other by a little.
+    pub contradiction: Contradiction,
+}
+
+/// What to do first about unilateral rows that contradict each other by less than [`Settings::inconsistency`].
+///
+/// Nearly redundant contacts can be satisfied as given only by forces of 1e5 times the load and more, which help no
+/// one; within rounding they can be satisfied by forces of the size of the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Contradiction {
+    /// Solve the rows as given if the residual rules allow the forces that takes; otherwise by least squares.
+    #[default]
+    SolveExactly,
+    /// Solve by least squares and report the inconsistency; as given only if the contradiction is larger.
+    LeastSquares,
 }
 
 /// Which forces to report when redundant contacts leave a choice; the accelerations do not depend on it.
@@ -63,9 +81,10 @@ impl Default for Settings {
             greatest_growth: 1e12,
             backward_residual: 1e-14,
             dependence: 1e-11,
+            least_dependence: 1e-15,
             inconsistency: 1e-8,
             open_tolerance: 1e-13,
-            rounding: 4e-15,
+            rounding: 1e-15,
             pivots_per_row: 20,
             block_rounds: 12,
             refinements: 3,
@@ -73,6 +92,7 @@ impl Default for Settings {
             newton_steps: 3000,
             least_norm_term: 1e-8,
             selection: ForceSelection::Vertex,
+            contradiction: Contradiction::SolveExactly,
         }
     }
 }
@@ -90,6 +110,7 @@ impl Settings {
             ("greatest_growth", self.greatest_growth),
             ("backward_residual", self.backward_residual),
             ("dependence", self.dependence),
+            ("least_dependence", self.least_dependence),
             ("inconsistency", self.inconsistency),
             ("open_tolerance", self.open_tolerance),
             ("rounding", self.rounding),

@@ -117,7 +117,8 @@ impl Skyline {
         let first = self.first[i];
         let row = &mut self.data[self.begin[i]..=self.begin[i] + i - first];
         // Rotation q combines what is carried along with the entry of column k + 1 + q into the new column k + q.
-        let (mut carried, begin, lag) = if first <= k { (row[k - first], 0, 1) } else { (0.0, first - k - 1, 0) };
+        let (mut carried, begin, lag) =
+            if first <= k { (row[k - first], 0, 1) } else { (0.0, first - k - 1, 0) };
         let shift = if first <= k { k - first } else { 0 };
         for (q, &(cosine, sine)) in self.rotation[begin..].iter().enumerate() {
             let entry = row[shift + q + lag];

