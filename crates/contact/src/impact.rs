@@ -14,12 +14,12 @@ mod shuffle;
 
 pub use law::{ImpactError, ImpactLaw, ImpactOrder};
 
-use crate::row::Row;
+use crate::row::CollisionRow;
 
 /// An impact: rows with their rates and the impulses applied so far.
 #[derive(Clone, Debug, Default)]
 pub struct Impact {
-    rows: Vec<Row>,
+    rows: Vec<CollisionRow>,
     /// Rate of each row [m/s] after the impulses so far.
     rates: Vec<f64>,
     /// Impulse of each row [N s] so far.
@@ -38,7 +38,7 @@ impl Impact {
     }
 
     /// Starts over with other rows, in their order.
-    pub fn set_rows(&mut self, rows: impl IntoIterator<Item = Row>) {
+    pub fn set_rows(&mut self, rows: impl IntoIterator<Item = CollisionRow>) {
         self.rows.clear();
         self.rows.extend(rows);
         self.rates.clear();
@@ -54,7 +54,7 @@ impl Impact {
 
     /// The rows.
     #[must_use]
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[CollisionRow] {
         &self.rows
     }
 

@@ -1,18 +1,38 @@
-//! Contact forces and impulses: rows in, forces out.
+//! Contact forces and impulses: complementarity problems, solved and checked.
 //!
-//! *Invariant*: this crate knows rows, masses and complementarity, but no shapes, no time stepping and no scenes.
+//! Rows in, forces out: with A = J M⁻¹ Jᵀ, find a = A f + b with f ≥ 0, a ≥ 0, fᵀa = 0 on unilateral rows (contacts)
+//! and a = 0 on bilateral ones (connectors).
 //!
-//! # Conventions
-//!
-//! A row's rate is J v; negative closes. Forces [N] and impulses [N s] act along the rows: positive ones push the primary
-//! body along the normal and the normal body against it.
-//!
-//! # Code map
-//!
-//! `row` turns collision records into rows; `impact` finds impulses by an impact law.
+//! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
+//! data before it is returned; every iteration has a cap; the same input gives the same bits.
 
+mod check;
+mod closed_rows;
+mod dependent;
+mod dual_active_set;
+mod error;
 mod impact;
+#[cfg(feature = "json")]
+mod json;
+mod matrix;
+mod problem;
 mod row;
+mod settings;
+mod skyline;
+mod solution;
+mod solver;
+mod system;
+mod warm;
 
+pub use check::Residuals;
+pub use dual_active_set::DualActiveSet;
+pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
-pub use row::{InverseInertia, Row};
+#[cfg(feature = "json")]
+pub use json::{ContactFile, FileError, SolutionFile};
+pub use problem::{BodyId, ContactKey, Inertia, Problem, Row};
+pub use row::CollisionRow;
+pub use settings::{Contradiction, ForceSelection, Settings};
+pub use solution::Solution;
+pub use solver::{Method, Solver};
+pub use warm::WarmStart;

@@ -1,10 +1,11 @@
 //! Constraint rows made from collision records: the only module here that sees collisions.
 
+use crate::problem::Inertia;
 use halfgap_collision::{BodyId, Collision};
 
 /// One scalar constraint between two bodies: its rate is J v over (vA, wA, vB, wB).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct CollisionRow {
     /// The primary and the normal body.
     pub bodies: [BodyId; 2],
     /// J: [1, 1, m, 1, 1, m], three entries a body.
@@ -21,22 +22,14 @@ pub struct Row {
     pub rate: f64,
 }
 
-/// 1/mass [1/kg] and 1/moment of inertia [1/(kg m^2)] of a body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct InverseInertia {
-    /// 1/mass [1/kg].
-    pub mass: f64,
-    /// 1/moment of inertia about the centre of mass [1/(kg m^2)].
-    pub moment: f64,
-}
-
-impl Row {
+impl CollisionRow {
     /// The row of a collision between two bodies of the given inertia (primary, normal).
     #[must_use]
-    pub fn of_collision(collision: &Collision, inertia: [InverseInertia; 2]) -> Self {
+    pub fn of_collision(collision: &Collision, inertia: [Inertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
         let [a, b] = inertia;
-        let weights = [a.mass, a.mass, a.moment, b.mass, b.mass, b.moment];
+        let weights =
+            [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
         Self {
             bodies: [collision.parties.primary.body, collision.parties.normal.body],
             jacobian,
@@ -51,7 +44,7 @@ impl Row {
     /// Change of this row's rate [m/s] by a unit impulse [N s] along another row: an entry of the Delassus matrix
     /// J M^-1 J^T [1/kg].
     #[must_use]
-    pub fn coupling(&self, other: &Row) -> f64 {
+    pub fn coupling(&self, other: &CollisionRow) -> f64 {
         let mut sum = 0.0;
         for (side, body) in self.bodies.iter().enumerate() {
             for (other_side, other_body) in other.bodies.iter().enumerate() {
@@ -66,7 +59,7 @@ impl Row {
 
     /// True if the rows act on a common body that can move.
     #[must_use]
-    pub fn shares_movable_body(&self, other: &Row) -> bool {
+    pub fn shares_movable_body(&self, other: &CollisionRow) -> bool {
         self.coupling_bodies().any(|body| other.coupling_bodies().any(|theirs| theirs == body))
     }
 

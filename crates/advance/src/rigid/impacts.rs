@@ -5,7 +5,7 @@ use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moment, Zone, detect_pair};
-use halfgap_contact::{Impact, InverseInertia, Row};
+use halfgap_contact::{CollisionRow, Impact, Inertia};
 
 /// Rates and accelerations below this many machine epsilons of what they were computed from are zero.
 const ROUNDINGS: f64 = 64.0;
@@ -62,11 +62,11 @@ impl RigidSystem {
         self.collect_group(work, bodies, time);
         let inertia = |body: BodyId| {
             let body = self.flyer(body).body();
-            InverseInertia { mass: body.inverse_mass, moment: body.inverse_moment }
+            Inertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
         };
         let rows = work.records.iter().map(|record| {
             let sides = [record.parties.primary.body, record.parties.normal.body];
-            Row::of_collision(record, sides.map(inertia))
+            CollisionRow::of_collision(record, sides.map(inertia))
         });
         work.impact.set_rows(rows);
         let random = self.counts.impacts;

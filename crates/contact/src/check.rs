@@ -1,0 +1,237 @@
+//! How wrong an answer is, from the original data alone.
+//!
+//! With s_i = sqrt(A_ii) (1 where A_ii = 0) and a = A f + b:
+//!
+//! * natural residual: r_nat = max_i φ_i / max|b/s|, with φ = |min(s f, a/s)| on a unilateral and |a/s| on a bilateral
+//!   row; the denominator is 1 where b = 0;
+//! * growth = max_i Σ_j |A_ij f_j| / s_i / max|b/s|: how much larger the terms of an acceleration are than the data;
+//! * backward residual: r_bwd = r_nat / (1 + growth).
+//!
+//! Scaling makes them independent of units and of a row's scaling. An answer exact to rounding has r_nat of about
+//! growth times 1e-16, so problems with great mass ratios are judged by r_bwd; but r_bwd alone would accept anything
+//! with huge forces, so growth is capped. The thresholds are in [`Settings`].
+//! Source for the natural residual: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.10.
+
+use std::fmt;
+
+use crate::matrix::{BodyRows, Matrix, SparseMatrix};
+use crate::problem::Problem;
+use crate::settings::Settings;
+
+/// Residuals of an answer; see the module for the formulas.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// Natural residual r_nat, in units of the scale max|b/s|.
+    pub natural: f64,
+    /// Growth of the terms over the data.
+    pub growth: f64,
+    /// Backward residual r_nat / (1 + growth).
+    pub backward: f64,
+}
+
+impl Residuals {
+    /// Computes the residuals of the forces `force` for `problem`.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one force per row.
+    pub fn of(problem: &Problem, force: &[f64]) -> Self {
+        let mut acceleration = vec![0.0; problem.len()];
+        Checker::default().check(problem, force, &mut acceleration)
+    }
+
+    /// Whether an answer with these residuals is right, allowing for a known contradiction `inconsistency` between
+    /// dependent rows.
+    pub fn accepted(&self, settings: &Settings, inconsistency: f64) -> bool {
+        let natural = self.natural - inconsistency;
+        if !natural.is_finite() || inconsistency > settings.inconsistency {
+            return false;
+        }
+        let judged_by_growth = self.growth >= settings.least_growth && self.growth < settings.greatest_growth;
+        natural <= settings.natural_residual
+            || (judged_by_growth && natural <= settings.backward_residual * (1.0 + self.growth))
+    }
+}
+
+impl fmt::Display for Residuals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Residuals { natural, growth, backward } = self;
+        write!(f, "natural residual {natural:.1e}, growth {growth:.1e}, backward residual {backward:.1e}")
+    }
+}
+
+/// Computes residuals in buffers of its own.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Checker {
+    /// M⁻¹ Jᵀ f per column.
+    velocity: Vec<f64>,
+    /// Rows with force per column: offsets and (row, J M⁻¹ f of that entry).
+    start: Vec<usize>,
+    entry: Vec<(usize, f64)>,
+    /// One row of A f by row of f, and which of its places are in use.
+    term: Vec<f64>,
+    used: Vec<usize>,
+}
+
+impl Checker {
+    /// Writes A f + b to `acceleration` and returns the residuals.
+    pub(crate) fn check(&mut self, problem: &Problem, force: &[f64], acceleration: &mut [f64]) -> Residuals {
+        assert_eq!(force.len(), problem.len(), "one force per row");
+        match &problem.matrix {
+            Matrix::Bodies(bodies) => self.check_bodies(problem, bodies, force, acceleration),
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => {
+                check_matrix(problem, matrix, force, acceleration)
+            }
+        }
+    }
+
+    fn check_bodies(
+        &mut self,
+        problem: &Problem,
+        bodies: &BodyRows,
+        force: &[f64],
+        acceleration: &mut [f64],
+    ) -> Residuals {
+        self.load(bodies, force);
+        let mut sums = Sums::default();
+        for (i, out) in acceleration.iter_mut().enumerate() {
+            let (columns, values) = bodies.rows.row(i);
+            let (mut diagonal, mut change) = (0.0, 0.0);
+            for (&k, &v) in columns.iter().zip(values) {
+                diagonal += v * v * bodies.inverse_mass[k];
+                change += v * self.velocity[k];
+            }
+            *out = change + problem.offset[i];
+            let terms = self.sum_of_terms(columns, values);
+            sums.add(diagonal, problem.offset[i], force[i], *out, terms, problem.bilateral[i]);
+        }
+        sums.finish()
+    }
+
+    /// Computes M⁻¹ Jᵀ f and lists, per column, the rows that carry force.
+    fn load(&mut self, bodies: &BodyRows, force: &[f64]) {
+        let columns = bodies.inverse_mass.len();
+        self.velocity.clear();
+        self.velocity.resize(columns, 0.0);
+        self.start.clear();
+        self.start.resize(columns + 2, 0);
+        self.term.clear();
+        self.term.resize(force.len(), 0.0);
+        self.used.reserve(force.len());
+        for (j, _) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
+            bodies.rows.row(j).0.iter().for_each(|&k| self.start[k + 2] += 1);
+        }
+        for k in 2..self.start.len() {
+            self.start[k] += self.start[k - 1];
+        }
+        self.entry.clear();
+        self.entry.resize(self.start[columns + 1], (0, 0.0));
+        for (j, &f) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
+            let (row_columns, values) = bodies.rows.row(j);
+            for (&k, &v) in row_columns.iter().zip(values) {
+                let push = v * bodies.inverse_mass[k] * f;
+                self.velocity[k] += push;
+                self.entry[self.start[k + 1]] = (j, push);
+                self.start[k + 1] += 1;
+            }
+        }
+    }
+
+    /// Σ_j |A_ij f_j| of the row with these coefficients.
+    fn sum_of_terms(&mut self, columns: &[usize], values: &[f64]) -> f64 {
+        for (&k, &v) in columns.iter().zip(values) {
+            for &(j, push) in &self.entry[self.start[k]..self.start[k + 1]] {
+                if self.term[j] == 0.0 {
+                    self.used.push(j);
+                }
+                self.term[j] += v * push;
+            }
+        }
+        let mut sum = 0.0;
+        for &j in &self.used {
+            sum += self.term[j].abs();
+            self.term[j] = 0.0;
+        }
+        self.used.clear();
+        sum
+    }
+}
+
+fn check_matrix(
+    problem: &Problem,
+    matrix: &SparseMatrix,
+    force: &[f64],
+    acceleration: &mut [f64],
+) -> Residuals {
+    let mut sums = Sums::default();
+    for (i, out) in acceleration.iter_mut().enumerate() {
+        let (columns, values) = matrix.row(i);
+        let (mut diagonal, mut change, mut terms) = (0.0, 0.0, 0.0);
+        for (&j, &v) in columns.iter().zip(values) {
+            if i == j {
+                diagonal = v;
+            }
+            let term = v * force[j];
+            change += term;
+            terms += term.abs();
+        }
+        *out = change + problem.offset[i];
+        sums.add(diagonal, problem.offset[i], force[i], *out, terms, problem.bilateral[i]);
+    }
+    sums.finish()
+}
+
+/// Largest values over the rows so far, all scaled.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    residual: f64,
+    terms: f64,
+    scale: f64,
+    /// Set once a residual is not a number, which no maximum would notice.
+    broken: bool,
+}
+
+impl Sums {
+    fn add(&mut self, diagonal: f64, b: f64, force: f64, acceleration: f64, terms: f64, bilateral: bool) {
+        let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
+        let scaled = acceleration / s;
+        let residual = if bilateral { scaled.abs() } else { (s * force).min(scaled).abs() };
+        self.broken |= !(residual.is_finite() && (s * force).is_finite() && scaled.is_finite());
+        self.residual = self.residual.max(residual);
+        self.terms = self.terms.max(terms / s);
+        self.scale = self.scale.max(b.abs() / s);
+    }
+
+    fn finish(self) -> Residuals {
+        if self.broken {
+            return Residuals { natural: f64::INFINITY, growth: f64::INFINITY, backward: f64::INFINITY };
+        }
+        let scale = if self.scale > 0.0 { self.scale } else { 1.0 };
+        let (natural, growth) = (self.residual / scale, self.terms / scale);
+        Residuals { natural, growth, backward: natural / (1.0 + growth) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ProblemError;
+
+    #[test]
+    fn both_forms_of_a_problem_have_the_same_residuals() -> Result<(), ProblemError> {
+        let rows = [(0, 0, 1.0), (0, 1, 2.0), (1, 1, -1.0), (1, 2, 0.5)];
+        let by_rows = Problem::from_rows(&rows, &[0.5, 2.0, 0.0], &[-3.0, 1.0])?;
+        let by_matrix = Problem::from_dense(&by_rows.dense(), by_rows.offset())?;
+        let (x, y) = (Residuals::of(&by_rows, &[0.25, 1.5]), Residuals::of(&by_matrix, &[0.25, 1.5]));
+        assert!((x.natural - y.natural).abs() < 1e-15 && (x.growth - y.growth).abs() < 1e-15);
+        Ok(())
+    }
+
+    #[test]
+    fn a_force_that_is_not_a_number_is_never_accepted() -> Result<(), ProblemError> {
+        let problem = Problem::from_dense(&[vec![1.0]], &[-1.0])?;
+        let residuals = Residuals::of(&problem, &[f64::NAN]);
+        assert!(!residuals.accepted(&Settings::default(), 0.0));
+        Ok(())
+    }
+}

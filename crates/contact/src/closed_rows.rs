@@ -1,0 +1,171 @@
+//! The closed rows C of an active-set method: which they are, the factor of Â_CC, forces and accelerations.
+//!
+//! All quantities are the scaled ones of [`System`]. Positions 0..n_b of C hold bilateral rows and never leave.
+
+use crate::problem::Problem;
+use crate::skyline::Skyline;
+use crate::system::System;
+
+const OPEN: u32 = u32::MAX;
+
+/// State shared by the phases of the dual active-set method.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ClosedRows {
+    pub(crate) system: System,
+    pub(crate) factor: Skyline,
+    /// Row at each position.
+    pub(crate) rows: Vec<usize>,
+    /// Position of each row, or `OPEN`.
+    position: Vec<u32>,
+    /// How many of the first positions hold bilateral rows.
+    pub(crate) connectors: usize,
+    /// Scaled force of every row.
+    pub(crate) force: Vec<f64>,
+    /// Scaled acceleration of every row.
+    pub(crate) acceleration: Vec<f64>,
+    /// Largest sum of terms of an acceleration at the last evaluation.
+    pub(crate) terms: f64,
+    /// What [`consider`](Self::consider) found: L⁻¹ Â_Cd.
+    reach: Vec<f64>,
+    /// Solutions of systems with the factor.
+    pub(crate) step: Vec<f64>,
+    /// Least Schur complement of a row that is independent of the closed rows.
+    dependence: f64,
+    /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
+    pub(crate) proximal: f64,
+}
+
+/// How a row relates to the closed rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Relation {
+    /// Schur complement Â_dd - Â_dC Â_CC⁻¹ Â_Cd, the squared part of the row that the closed rows leave.
+    pub(crate) complement: f64,
+    /// Whether that is zero up to rounding.
+    pub(crate) dependent: bool,
+    first: usize,
+}
+
+impl ClosedRows {
+    /// Loads a problem; all rows open, all forces zero.
+    pub(crate) fn load(&mut self, problem: &Problem, dependence: f64) {
+        self.system.load(problem);
+        let n = problem.len();
+        self.dependence = dependence;
+        self.proximal = 0.0;
+        self.factor.reset(n);
+        self.rows.clear();
+        self.rows.reserve(n);
+        self.connectors = 0;
+        for values in [&mut self.force, &mut self.acceleration, &mut self.reach, &mut self.step] {
+            values.clear();
+            values.resize(n, 0.0);
+        }
+        self.position.clear();
+        self.position.resize(n, OPEN);
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    pub(crate) fn is_closed(&self, row: usize) -> bool {
+        self.position[row] != OPEN
+    }
+
+    /// Finds how an open row relates to the closed ones, for [`close`](Self::close) or
+    /// [`null_direction`](Self::null_direction).
+    pub(crate) fn consider(&mut self, row: usize) -> Relation {
+        let closed = self.len();
+        self.reach[..closed].fill(0.0);
+        let first = self.system.gather(row, &self.position, closed, &mut self.reach);
+        let square = self.factor.forward(&mut self.reach[..closed], first);
+        let diagonal = if self.system.movable[row] { 1.0 + self.proximal } else { 0.0 };
+        let complement = diagonal - square;
+        Relation { complement, dependent: complement <= self.dependence, first }
+    }
+
+    /// Closes the row last considered, which must be independent.
+    pub(crate) fn close(&mut self, row: usize, relation: Relation) {
+        let closed = self.len();
+        self.factor.push(&self.reach[..closed], relation.first, relation.complement.sqrt());
+        self.system.close(row);
+        self.position[row] = closed as u32;
+        self.rows.push(row);
+    }
+
+    /// Closes a row if it is independent of the closed ones.
+    pub(crate) fn try_close(&mut self, row: usize) -> bool {
+        let relation = self.consider(row);
+        if !relation.dependent {
+            self.close(row, relation);
+        }
+        !relation.dependent
+    }
+
+    /// Opens the row at a position; its force becomes zero.
+    pub(crate) fn open_at(&mut self, at: usize) {
+        let row = self.rows.remove(at);
+        self.factor.remove(at);
+        self.system.open(row);
+        self.position[row] = OPEN;
+        self.force[row] = 0.0;
+        for &later in &self.rows[at..] {
+            self.position[later] -= 1;
+        }
+    }
+
+    /// Opens all rows but the connectors, keeping their factor.
+    pub(crate) fn open_all(&mut self) {
+        for at in self.connectors..self.rows.len() {
+            let row = self.rows[at];
+            self.system.open(row);
+            self.position[row] = OPEN;
+            self.force[row] = 0.0;
+        }
+        self.rows.truncate(self.connectors);
+        self.factor.truncate(self.connectors);
+    }
+
+    /// Leaves in `step[..closed]` the change of the closed forces, with sign reversed, that keeps the closed
+    /// accelerations while the force of the row last considered grows by one: Â_CC⁻¹ Â_Cd.
+    pub(crate) fn find_response(&mut self) {
+        let closed = self.len();
+        self.step[..closed].copy_from_slice(&self.reach[..closed]);
+        self.factor.backward(&mut self.step[..closed]);
+    }
+
+    /// Sets the closed forces to those with zero acceleration; they may be negative.
+    pub(crate) fn solve_closed(&mut self) {
+        let closed = self.len();
+        for (at, &row) in self.rows.iter().enumerate() {
+            self.step[at] = -self.system.b[row];
+        }
+        self.factor.solve(&mut self.step[..closed]);
+        for (at, &row) in self.rows.iter().enumerate() {
+            self.force[row] = self.step[at];
+        }
+    }
+
+    /// One step of iterative refinement of the closed forces; unilateral ones stay admissible.
+    pub(crate) fn refine(&mut self) {
+        let closed = self.len();
+        for (at, &row) in self.rows.iter().enumerate() {
+            self.step[at] = -self.acceleration[row];
+        }
+        self.factor.solve(&mut self.step[..closed]);
+        for (at, &row) in self.rows.iter().enumerate() {
+            let force = self.force[row] + self.step[at];
+            self.force[row] = if at < self.connectors { force } else { force.max(0.0) };
+        }
+    }
+
+    /// Evaluates all accelerations.
+    pub(crate) fn accelerate(&mut self) {
+        self.terms = self.system.accelerate(&self.force, &mut self.acceleration);
+    }
+
+    /// Largest |â| of a closed row.
+    pub(crate) fn closed_error(&self) -> f64 {
+        self.rows.iter().fold(0.0, |m: f64, &row| m.max(self.acceleration[row].abs()))
+    }
+}

@@ -1,0 +1,124 @@
+//! Rows that depend on others and contradict them: by rounding, or for good.
+//!
+//! A null direction z of the rows (Â z = 0, z ≥ 0 on unilateral rows) has zᵀâ = zᵀb̂ whatever the forces. On dependent
+//! bilateral rows that must be zero, on unilateral ones it must not be negative. A small contradiction comes from
+//! rounding in b, and is removed by the least change of b that does so, b̂ - (zᵀb̂/|z|²) z: then the accelerations of
+//! the contradicting rows are what is left of them in the sense of least squares. A large one proves that there is no
+//! solution (Farkas' lemma).
+
+use crate::closed_rows::ClosedRows;
+use crate::error::Infeasibility;
+use crate::problem::Problem;
+
+/// What was taken off b̂, row by row; empty until there is something.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shift {
+    taken: Vec<f64>,
+}
+
+impl Shift {
+    pub(crate) fn reset(&mut self) {
+        self.taken.clear();
+    }
+
+    /// Largest change of a row's b̂, in units of the scale.
+    pub(crate) fn inconsistency(&self, scale: f64) -> f64 {
+        self.taken.iter().fold(0.0, |m: f64, t| m.max(t.abs())) / scale
+    }
+
+    /// Settles the contradiction that `row`, last considered and found dependent, is violated while no closed force
+    /// blocks the null direction. Returns the proof if the contradiction exceeds `limit`.
+    pub(crate) fn reconcile(
+        &mut self,
+        closed: &mut ClosedRows,
+        row: usize,
+        limit: f64,
+    ) -> Option<Box<Infeasibility>> {
+        let direction = null_direction(closed, row);
+        self.remove(closed, &direction, row, limit)
+    }
+
+    /// Makes dependent bilateral rows agree with the closed ones, all at once in the sense of least squares.
+    pub(crate) fn reconcile_connectors(
+        &mut self,
+        closed: &mut ClosedRows,
+        problem: &Problem,
+        noise: f64,
+        limit: f64,
+    ) -> Option<Box<Infeasibility>> {
+        let contradicts = |row: usize, a: f64| problem.bilateral[row] && a.abs() > noise;
+        if !(0..problem.len()).any(|row| contradicts(row, closed.acceleration[row])) {
+            return None;
+        }
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for row in 0..problem.len() {
+            if !problem.bilateral[row] || closed.is_closed(row) {
+                continue;
+            }
+            closed.consider(row);
+            closed.find_response();
+            let mut direction = null_direction(closed, row);
+            // Orthogonal directions can be settled one by one; twice is enough (Kahan and Parlett).
+            for other in basis.iter().chain(&basis) {
+                let overlap = dot(&direction, other) / dot(other, other);
+                direction.iter_mut().zip(other).for_each(|(d, o)| *d -= overlap * o);
+            }
+            let proof = self.remove(closed, &direction, row, limit.max(noise));
+            if proof.is_some() {
+                return proof;
+            }
+            basis.push(direction);
+        }
+        None
+    }
+
+    fn remove(
+        &mut self,
+        closed: &mut ClosedRows,
+        direction: &[f64],
+        row: usize,
+        limit: f64,
+    ) -> Option<Box<Infeasibility>> {
+        let contradiction = dot(direction, &closed.system.b);
+        let factor = contradiction / dot(direction, direction);
+        let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
+        let size = factor.abs() * largest;
+        if size > limit {
+            return Some(Box::new(certificate(closed, direction, row, size)));
+        }
+        self.taken.resize(direction.len(), 0.0);
+        for ((taken, b), z) in self.taken.iter_mut().zip(&mut closed.system.b).zip(direction) {
+            *taken += factor * z;
+            *b -= factor * z;
+        }
+        None
+    }
+}
+
+/// The direction in which `row`, last considered, and the closed rows cancel each other. Bilateral rows may be taken
+/// with either sign.
+fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
+    let mut direction = vec![0.0; closed.force.len()];
+    for (at, &other) in closed.rows.iter().enumerate() {
+        let z = -closed.step[at];
+        direction[other] = if at < closed.connectors { z } else { z.max(0.0) };
+    }
+    direction[row] = 1.0;
+    direction
+}
+
+fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize, size: f64) -> Infeasibility {
+    let scale = closed.system.scale;
+    let sign = if dot(direction, &closed.system.b) > 0.0 { -1.0 } else { 1.0 };
+    let mut image = vec![0.0; direction.len()];
+    closed.system.accelerate(direction, &mut image);
+    let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
+    let leakage =
+        image.iter().zip(&closed.system.b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / largest;
+    let unscaled = direction.iter().zip(&closed.system.row_scale).map(|(z, s)| sign * z / s).collect();
+    Infeasibility { row, direction: unscaled, contradiction: size / scale, leakage }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,372 @@
+//! Dual active-set method for small and medium problems.
+//!
+//! Closed rows C have zero acceleration, open rows zero force; forces stay admissible throughout and the worst open
+//! row is closed next, dropping on the way any row whose force would pull. That is D. Goldfarb, A. Idnani, "A
+//! numerically stable dual method for solving strictly convex quadratic programs", Mathematical Programming 27, 1983,
+//! 1-33, written in the forces; with contacts it is the pivoting of D. Baraff, SIGGRAPH '94, 23-34, with dependent
+//! contacts handled exactly: a row that depends on the closed ones cannot be closed, so forces move along the null
+//! direction until one of them vanishes and its row makes room; when none does, the direction certifies that there is
+//! no solution.
+//!
+//! Differences from the papers: connectors are closed first and never leave; the start is all rows with b ≤ 0 (or the
+//! last active set), improved by exchanging all wrong rows at once while that makes fewer of them wrong (L. Portugal,
+//! J. Júdice, L. Vicente, Mathematics of Computation 63, 1994, 625-643); the final forces are refined.
+
+use crate::check::Checker;
+use crate::closed_rows::ClosedRows;
+use crate::dependent::Shift;
+use crate::error::{Infeasibility, SettingsError, SolveError};
+use crate::problem::Problem;
+use crate::settings::{Contradiction, Settings};
+use crate::solution::Solution;
+use crate::solver::{Method, Solver};
+use crate::warm::WarmStart;
+
+/// Part of a unit change below which a force does not count as changed by a null direction: rounding.
+const BLOCKING: f64 = 1e-14;
+
+/// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
+const REFINED: f64 = 0.125;
+
+/// The dual active-set method with its buffers.
+#[derive(Clone, Debug, Default)]
+pub struct DualActiveSet {
+    settings: Settings,
+    pub(crate) closed: ClosedRows,
+    /// Rows that start closed.
+    start: Vec<bool>,
+    shift: Shift,
+    checker: Checker,
+    pivots: usize,
+    pub(crate) rounds: usize,
+}
+
+/// How dependent rows are treated.
+#[derive(Clone, Copy, Debug)]
+struct Attempt {
+    /// Least Schur complement of an independent row.
+    dependence: f64,
+    /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
+    contradiction: f64,
+}
+
+/// How the pivoting ended.
+enum End {
+    Done,
+    Stopped,
+    Infeasible(Box<Infeasibility>),
+}
+
+impl DualActiveSet {
+    /// A solver with these settings.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] names a number that is not usable.
+    pub fn new(settings: Settings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(DualActiveSet { settings, ..Self::default() })
+    }
+
+    fn run(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        if !problem.is_symmetric() {
+            let reason = "it needs a symmetric, positive semidefinite matrix";
+            return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
+        }
+        let mut failure = None;
+        for attempt in self.attempts() {
+            let error = match self.attempt(problem, warm, solution, attempt) {
+                Ok(()) => return Ok(()),
+                Err(error) => error,
+            };
+            let proven = matches!(&error, SolveError::Infeasible(proof)
+                if proof.least_growth() >= self.settings.greatest_growth);
+            // A certificate outweighs an attempt that came to nothing.
+            if proven || failure.is_none() || matches!(error, SolveError::Infeasible(_)) {
+                failure = Some(error);
+            }
+            if proven {
+                break;
+            }
+        }
+        Err(failure.expect("there is at least one attempt, and each gives an answer or an error"))
+    }
+
+    /// The ways to treat rows that are dependent or nearly so, in order.
+    fn attempts(&self) -> [Attempt; 3] {
+        let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
+        let as_given = natural_residual / 2.0;
+        let usual = Attempt { dependence, contradiction: as_given };
+        let strict = Attempt { dependence: least_dependence, contradiction: as_given };
+        let least_squares = Attempt { dependence, contradiction: inconsistency };
+        match self.settings.contradiction {
+            Contradiction::SolveExactly => [usual, strict, least_squares],
+            Contradiction::LeastSquares => [least_squares, strict, least_squares],
+        }
+    }
+
+    fn attempt(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+        attempt: Attempt,
+    ) -> Result<(), SolveError> {
+        solution.reset(problem.len(), Method::DualActiveSet);
+        self.closed.load(problem, attempt.dependence);
+        self.shift.reset();
+        self.pivots = 0;
+        let end = match self.close_connectors(problem) {
+            Some(certificate) => End::Infeasible(certificate),
+            None => {
+                self.choose_start(problem, warm);
+                self.exchange_blocks(problem);
+                self.make_forces_admissible();
+                self.pivot(problem, attempt)
+            }
+        };
+        self.finish(problem, solution, end)
+    }
+
+    /// Closes the bilateral rows; those that depend on others must agree with them.
+    fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
+        let mut dependent = false;
+        for row in 0..problem.len() {
+            if problem.bilateral[row] && !self.closed.try_close(row) {
+                dependent = true;
+            }
+        }
+        self.closed.connectors = self.closed.len();
+        if !dependent {
+            return None;
+        }
+        self.closed.solve_closed();
+        self.closed.accelerate();
+        let noise = self.noise();
+        let limit = self.settings.inconsistency * self.closed.system.scale;
+        self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
+    }
+
+    /// Marks the rows to begin with: those of the warm start; otherwise, and for new rows, those that would close.
+    fn choose_start(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
+        let system = &self.closed.system;
+        let limit = self.settings.open_tolerance * system.scale;
+        let lookup = warm.map(|warm| warm.lookup(problem));
+        self.start.clear();
+        self.start.extend((0..problem.len()).map(|row| {
+            let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
+            let closed = earlier.map_or(system.b[row] <= limit, |earlier| earlier.closed);
+            closed && system.movable[row] && !problem.bilateral[row]
+        }));
+    }
+
+    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong.
+    fn exchange_blocks(&mut self, problem: &Problem) {
+        let mut fewest = usize::MAX;
+        for _ in 0..self.settings.block_rounds {
+            self.rounds += 1;
+            self.closed.open_all();
+            for row in 0..problem.len() {
+                if self.start[row] {
+                    self.closed.try_close(row);
+                }
+            }
+            self.closed.solve_closed();
+            self.closed.accelerate();
+            let limit = -self.noise();
+            let mut wrong = 0;
+            for row in 0..problem.len() {
+                if problem.bilateral[row] {
+                    continue;
+                }
+                let closed = self.closed.is_closed(row);
+                let bad =
+                    if closed { self.closed.force[row] < 0.0 } else { self.closed.acceleration[row] < limit };
+                self.start[row] = closed != bad;
+                wrong += usize::from(bad);
+            }
+            if wrong == 0 || wrong >= fewest {
+                return;
+            }
+            fewest = wrong;
+        }
+    }
+
+    /// Opens closed rows until no unilateral force is negative.
+    fn make_forces_admissible(&mut self) {
+        loop {
+            let closed = &mut self.closed;
+            let pulls = |closed: &ClosedRows, at: usize| closed.force[closed.rows[at]] < 0.0;
+            let count = (closed.connectors..closed.len()).filter(|&at| pulls(closed, at)).count();
+            if count == 0 {
+                break;
+            }
+            for at in (closed.connectors..closed.len()).rev() {
+                if pulls(closed, at) {
+                    closed.open_at(at);
+                }
+            }
+            self.pivots += count;
+            closed.solve_closed();
+        }
+        self.closed.accelerate();
+    }
+
+    /// Closes the worst row until none is left, then refines.
+    fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
+        let mut refinements = 0;
+        loop {
+            let noise = self.noise();
+            if let Some(row) = self.worst_open_row(problem, noise) {
+                match self.drive(row, attempt) {
+                    End::Done => {}
+                    other => return other,
+                }
+            } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
+            {
+                refinements += 1;
+                self.closed.refine();
+                self.closed.accelerate();
+            } else {
+                return End::Done;
+            }
+        }
+    }
+
+    /// The open row that closes fastest, if any does.
+    fn worst_open_row(&self, problem: &Problem, noise: f64) -> Option<usize> {
+        let mut worst = -noise;
+        let mut found = None;
+        for (row, &a) in self.closed.acceleration.iter().enumerate() {
+            if a < worst && !self.closed.is_closed(row) && !problem.bilateral[row] {
+                worst = a;
+                found = Some(row);
+            }
+        }
+        found
+    }
+
+    /// Raises the force of an open row until its acceleration is zero, opening rows whose force runs out.
+    fn drive(&mut self, row: usize, attempt: Attempt) -> End {
+        loop {
+            self.pivots += 1;
+            if self.pivots > self.settings.pivot_cap(self.closed.force.len()) {
+                return End::Stopped;
+            }
+            let relation = self.closed.consider(row);
+            self.closed.find_response();
+            let full = if relation.dependent {
+                f64::INFINITY
+            } else {
+                -self.closed.acceleration[row] / relation.complement
+            };
+            match self.blocking(full) {
+                Some((at, length)) => {
+                    self.advance(row, length);
+                    self.closed.acceleration[row] += length * relation.complement.max(0.0);
+                    self.closed.open_at(at);
+                }
+                None if relation.dependent => return self.resolve_contradiction(row, attempt),
+                None => {
+                    self.advance(row, full);
+                    self.closed.close(row, relation);
+                    self.closed.accelerate();
+                    return End::Done;
+                }
+            }
+        }
+    }
+
+    /// The first unilateral force to vanish within a step of length `limit`: its position and the length.
+    fn blocking(&self, limit: f64) -> Option<(usize, f64)> {
+        let closed = &self.closed;
+        let mut found = None;
+        let mut shortest = limit;
+        for at in closed.connectors..closed.len() {
+            if closed.step[at] > BLOCKING {
+                let length = closed.force[closed.rows[at]] / closed.step[at];
+                if length < shortest {
+                    shortest = length;
+                    found = Some((at, length));
+                }
+            }
+        }
+        found
+    }
+
+    fn advance(&mut self, row: usize, length: f64) {
+        let closed = &mut self.closed;
+        for (at, &other) in closed.rows.iter().enumerate() {
+            closed.force[other] -= length * closed.step[at];
+        }
+        closed.force[row] += length;
+    }
+
+    /// The rows contradict each other along the null direction just found: by rounding, or for good.
+    fn resolve_contradiction(&mut self, row: usize, attempt: Attempt) -> End {
+        let limit = attempt.contradiction * self.closed.system.scale;
+        match self.shift.reconcile(&mut self.closed, row, limit) {
+            Some(certificate) => End::Infeasible(certificate),
+            None => {
+                self.closed.force[row] = 0.0;
+                self.closed.solve_closed();
+                self.make_forces_admissible();
+                End::Done
+            }
+        }
+    }
+
+    /// Acceleration below which nothing can be told from rounding, or matters.
+    fn noise(&self) -> f64 {
+        let scale = self.closed.system.scale;
+        self.settings.rounding * (scale + self.closed.terms) + self.settings.open_tolerance * scale
+    }
+
+    /// Turns the scaled forces into an answer and checks it.
+    fn finish(&mut self, problem: &Problem, solution: &mut Solution, end: End) -> Result<(), SolveError> {
+        if let End::Infeasible(certificate) = end {
+            return Err(SolveError::Infeasible(certificate));
+        }
+        let closed = &self.closed;
+        for (row, out) in solution.force.iter_mut().enumerate() {
+            *out = closed.force[row] / closed.system.row_scale[row];
+        }
+        solution.active.extend_from_slice(&closed.rows);
+        solution.active.sort_unstable();
+        solution.iterations = self.pivots;
+        solution.inconsistency = self.shift.inconsistency(closed.system.scale);
+        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        if solution.residuals.accepted(&self.settings, solution.inconsistency) {
+            return Ok(());
+        }
+        Err(SolveError::Unsolved {
+            method: Method::DualActiveSet,
+            residuals: solution.residuals,
+            iterations: self.pivots,
+        })
+    }
+}
+
+impl Solver for DualActiveSet {
+    fn method(&self) -> Method {
+        Method::DualActiveSet
+    }
+
+    fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        self.run(problem, None, solution)
+    }
+
+    fn solve_from(
+        &mut self,
+        problem: &Problem,
+        start: &WarmStart,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        self.run(problem, Some(start), solution)
+    }
+}

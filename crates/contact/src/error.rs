@@ -1,0 +1,141 @@
+//! What can be wrong with a problem, and how solving one can fail.
+
+use crate::check::Residuals;
+use crate::solver::Method;
+
+/// A number of [`Settings`](crate::Settings) is not usable.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("setting `{field}` must be positive and finite, got {value}")]
+pub struct SettingsError {
+    /// Name of the field.
+    pub field: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Why the data is not a contact problem.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// A coefficient, offset or matrix entry is NaN or infinite.
+    #[error("row {row}: {what} is {value}")]
+    NotFinite {
+        /// The row that holds the number.
+        row: usize,
+        /// Which number of the row.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// An inverse mass is negative, NaN or infinite.
+    #[error("column {column}: inverse mass must be zero or positive and finite, got {value}")]
+    BadInverseMass {
+        /// The column (coordinate of a body) with the inverse mass.
+        column: usize,
+        /// The inverse mass [1/kg, or 1/(kg m²) for a rotation].
+        value: f64,
+    },
+    /// A row names a column that does not exist.
+    #[error("row {row}: column {column} does not exist, there are {columns}")]
+    NoSuchColumn {
+        /// The row.
+        row: usize,
+        /// The column it names.
+        column: usize,
+        /// How many columns there are.
+        columns: usize,
+    },
+    /// A list has the wrong length.
+    #[error("{what} has {found} entries, expected {expected}")]
+    BadLength {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it must have.
+        expected: usize,
+    },
+    /// A matrix entry names a row that does not exist.
+    #[error("an entry names row {row}, there are {rows}")]
+    NoSuchRow {
+        /// The row it names.
+        row: usize,
+        /// How many rows there are.
+        rows: usize,
+    },
+    /// A matrix given as symmetric is not.
+    #[error(
+        "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference}"
+    )]
+    NotSymmetric {
+        /// The row.
+        row: usize,
+        /// The column.
+        column: usize,
+        /// Difference between the entry and the one across the diagonal, in units of A.
+        difference: f64,
+    },
+    /// A diagonal entry of a symmetric matrix is negative, so that it is no contact matrix.
+    #[error("row {row}: the diagonal entry of a symmetric A must not be negative, got {value}")]
+    NegativeDiagonal {
+        /// The row.
+        row: usize,
+        /// The diagonal entry.
+        value: f64,
+    },
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// No forces whatever satisfy the rows; the certificate proves it.
+    #[error("{0}")]
+    Infeasible(Box<Infeasibility>),
+    /// The method stopped without an answer that passes the check. The problem can be written to a file and replayed.
+    #[error("{method} found no acceptable answer in {iterations} iterations: {residuals}")]
+    Unsolved {
+        /// The method that gave up.
+        method: Method,
+        /// Residuals of its last forces.
+        residuals: Residuals,
+        /// Pivots or iterations made.
+        iterations: usize,
+    },
+    /// The method does not serve this kind of problem.
+    #[error("{method} does not apply: {reason}")]
+    NotApplicable {
+        /// The method.
+        method: Method,
+        /// What it would need.
+        reason: &'static str,
+    },
+}
+
+/// Proof that a problem has no solution.
+///
+/// `direction` is a combination z of the rows, z ≥ 0 on unilateral rows, that no force can accelerate (A z = 0 up to
+/// rounding) while bᵀz < 0. For any forces f, zᵀ(A f + b) = bᵀz < 0, so the accelerations cannot all be admissible
+/// (Farkas' lemma).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "no forces satisfy the contacts: row {row} cannot be kept from closing (contradiction {contradiction:e} of the scale)"
+)]
+pub struct Infeasibility {
+    /// The row at which it showed.
+    pub row: usize,
+    /// The combination z of the rows, one number per row.
+    pub direction: Vec<f64>,
+    /// Least change of a row's b, in units of the scale, that would remove the contradiction: |bᵀz| max|s z| / |s z|².
+    pub contradiction: f64,
+    /// Largest scaled component of A z, in units of the largest scaled component of z: zero up to rounding.
+    pub leakage: f64,
+}
+
+impl Infeasibility {
+    /// The growth that any solution would at least have, as far as the certificate can tell: forces of that size would
+    /// have to use the rounding in A z.
+    pub fn least_growth(&self) -> f64 {
+        self.contradiction / self.leakage.max(f64::EPSILON)
+    }
+}

@@ -1,0 +1,152 @@
+//! Sparse matrices by rows, and the rows J of bodies with their inverse masses.
+//!
+//! Two ways to say what A is: its entries, or J and the masses, A = J M⁻¹ Jᵀ. A row of contact touches two bodies, so J
+//! has at most six entries a row however many contacts a body has, while A may be full (a box on 100 floor points).
+
+use crate::error::ProblemError;
+
+/// Largest difference across the diagonal, in units of sqrt(A_ii A_jj), of a matrix taken as symmetric: far above
+/// rounding of the products it was made from, far below any friction coefficient.
+const SYMMETRY: f64 = 1e-9;
+
+/// A sparse matrix stored by rows, entries of a row in ascending order of column, none twice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct SparseMatrix {
+    pub(crate) start: Vec<usize>,
+    pub(crate) column: Vec<usize>,
+    pub(crate) value: Vec<f64>,
+}
+
+impl SparseMatrix {
+    /// No rows.
+    pub(crate) fn new() -> Self {
+        SparseMatrix { start: vec![0], column: Vec::new(), value: Vec::new() }
+    }
+
+    pub(crate) fn rows(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Columns and values of one row.
+    pub(crate) fn row(&self, row: usize) -> (&[usize], &[f64]) {
+        let range = self.start[row]..self.start[row + 1];
+        (&self.column[range.clone()], &self.value[range])
+    }
+
+    /// The entry at one place, zero where none is stored.
+    pub(crate) fn entry(&self, row: usize, column: usize) -> f64 {
+        let (columns, values) = self.row(row);
+        columns.binary_search(&column).map_or(0.0, |k| values[k])
+    }
+
+    /// From entries (row, column, value); entries at one place add up.
+    pub(crate) fn from_triplets(
+        rows: usize,
+        columns: usize,
+        triplets: &[(usize, usize, f64)],
+    ) -> Result<Self, ProblemError> {
+        for &(row, column, value) in triplets {
+            if row >= rows {
+                return Err(ProblemError::NoSuchRow { row, rows });
+            }
+            if column >= columns {
+                return Err(ProblemError::NoSuchColumn { row, column, columns });
+            }
+            check_finite(row, "a coefficient", value)?;
+        }
+        let mut sorted = triplets.to_vec();
+        sorted.sort_by_key(|&(row, column, _)| (row, column));
+        let mut matrix = SparseMatrix::new();
+        for &(row, column, value) in &sorted {
+            while matrix.rows() <= row {
+                matrix.start.push(matrix.column.len());
+            }
+            let in_row = matrix.column.len() > matrix.start[row];
+            match (in_row, matrix.column.last(), matrix.value.last_mut()) {
+                (true, Some(&last), Some(sum)) if last == column => *sum += value,
+                _ => {
+                    matrix.column.push(column);
+                    matrix.value.push(value);
+                }
+            }
+            if let Some(end) = matrix.start.last_mut() {
+                *end = matrix.column.len();
+            }
+        }
+        while matrix.rows() < rows {
+            matrix.start.push(matrix.column.len());
+        }
+        Ok(matrix)
+    }
+
+    /// Whether this square matrix can be a contact matrix: symmetric up to rounding, no negative diagonal entry.
+    pub(crate) fn check_symmetric(&self) -> Result<(), ProblemError> {
+        let diagonal: Vec<f64> = (0..self.rows()).map(|row| self.entry(row, row)).collect();
+        if let Some(row) = diagonal.iter().position(|&d| d < 0.0) {
+            return Err(ProblemError::NegativeDiagonal { row, value: diagonal[row] });
+        }
+        for row in 0..self.rows() {
+            let (columns, values) = self.row(row);
+            for (&column, &value) in columns.iter().zip(values) {
+                let difference = value - self.entry(column, row);
+                let size = (diagonal[row] * diagonal[column]).sqrt();
+                if difference.abs() > SYMMETRY * size {
+                    return Err(ProblemError::NotSymmetric { row, column, difference });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The rows J and the inverse mass of each of its columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct BodyRows {
+    pub(crate) rows: SparseMatrix,
+    /// Inverse mass of each column [1/kg], inverse moment of inertia of a rotation [1/(kg m²)]; zero: immovable.
+    pub(crate) inverse_mass: Vec<f64>,
+}
+
+impl BodyRows {
+    pub(crate) fn new() -> Self {
+        BodyRows { rows: SparseMatrix::new(), inverse_mass: Vec::new() }
+    }
+}
+
+/// What A is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Matrix {
+    /// A = J M⁻¹ Jᵀ, symmetric and positive semidefinite by construction.
+    Bodies(BodyRows),
+    /// The entries of a symmetric, positive semidefinite A.
+    Symmetric(SparseMatrix),
+    /// The entries of any square A.
+    General(SparseMatrix),
+}
+
+pub(crate) fn check_finite(row: usize, what: &'static str, value: f64) -> Result<(), ProblemError> {
+    if value.is_finite() { Ok(()) } else { Err(ProblemError::NotFinite { row, what, value }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_at_one_place_add_up() -> Result<(), ProblemError> {
+        let matrix = SparseMatrix::from_triplets(3, 2, &[(2, 1, 1.0), (0, 0, 2.0), (2, 1, 0.5)])?;
+        assert_eq!((matrix.rows(), matrix.entry(2, 1), matrix.entry(1, 0)), (3, 1.5, 0.0));
+        Ok(())
+    }
+
+    #[test]
+    fn asymmetry_is_named_by_row_and_column() -> Result<(), ProblemError> {
+        let matrix =
+            SparseMatrix::from_triplets(2, 2, &[(0, 0, 1.0), (0, 1, 0.5), (1, 0, 0.4), (1, 1, 1.0)])?;
+        assert!(matches!(
+            matrix.check_symmetric(),
+            Err(ProblemError::NotSymmetric { row: 0, column: 1, .. })
+        ));
+        Ok(())
+    }
+}

@@ -1,0 +1,145 @@
+//! The numbers every solver decides by, in one place.
+
+use crate::error::SettingsError;
+
+/// Thresholds and caps of the solvers. Each threshold is relative, so that none depends on the units of a problem.
+///
+/// Rows are compared after scaling: with `s_i = sqrt(A_ii)` (1 where `A_ii = 0`) the scaled acceleration is `a_i / s_i`,
+/// the scaled force `s_i f_i`, and the *scale* of a problem is `max |b_i / s_i|`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Largest natural residual, in units of the scale, of an accepted answer.
+    pub natural_residual: f64,
+    /// Growth from which an answer may be judged by its backward residual instead: there rounding alone, times the
+    /// growth, exceeds `natural_residual`.
+    pub least_growth: f64,
+    /// Growth beyond which no answer is accepted: the forces mean nothing any more.
+    pub greatest_growth: f64,
+    /// Largest backward residual of an accepted answer of great growth.
+    pub backward_residual: f64,
+    /// A row depends on the closed rows when what they leave of its squared length is at most this part of it.
+    ///
+    /// Larger treats nearly redundant contacts as redundant, smaller lets forces grow by up to its reciprocal.
+    pub dependence: f64,
+    /// The same for a second attempt, where rows taken for dependent contradict each other and may only be nearly
+    /// dependent: a few roundings of 1.
+    pub least_dependence: f64,
+    /// Contradiction between dependent rows, in units of the scale, up to which they are solved in the least-squares
+    /// sense; beyond it the problem is infeasible.
+    pub inconsistency: f64,
+    /// An acceleration within this part of the scale of zero counts as zero while the solver looks for a next row.
+    pub open_tolerance: f64,
+    /// The same, in units of the largest sum of terms that an acceleration is made of: a few roundings.
+    pub rounding: f64,
+    /// Cap on pivots, per row of the problem.
+    pub pivots_per_row: usize,
+    /// Cap on rounds in which the active-set method exchanges all wrong rows at once.
+    pub block_rounds: usize,
+    /// Cap on steps of iterative refinement of the final forces.
+    pub refinements: usize,
+    /// Cap on outer (multiplier) iterations of the proximal method.
+    pub outer_iterations: usize,
+    /// Cap on Newton steps of the proximal method, in all.
+    pub newton_steps: usize,
+    /// Proximal term the least-norm choice of forces is made with, in units of the scaled diagonal of `A`, which is 1.
+    pub least_norm_term: f64,
+    /// How forces are chosen where the problem leaves a choice.
+    pub selection: ForceSelection,
+    /// What to do first about contacts that contradict each other by a little.
+    pub contradiction: Contradiction,
+}
+
+/// What to do first about unilateral rows that contradict each other by less than [`Settings::inconsistency`].
+///
+/// Nearly redundant contacts can be satisfied as given only by forces of 1e5 times the load and more, which help no
+/// one; within rounding they can be satisfied by forces of the size of the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Contradiction {
+    /// Solve the rows as given if the residual rules allow the forces that takes; otherwise by least squares.
+    #[default]
+    SolveExactly,
+    /// Solve by least squares and report the inconsistency; as given only if the contradiction is larger.
+    LeastSquares,
+}
+
+/// Which forces to report when redundant contacts leave a choice; the accelerations do not depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ForceSelection {
+    /// Whatever the pivoting ends at: few rows carry force.
+    #[default]
+    Vertex,
+    /// The least sum of squares of the scaled forces `s_i f_i`: symmetric scenes show symmetric forces.
+    LeastNorm,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            natural_residual: 1e-12,
+            least_growth: 1e3,
+            greatest_growth: 1e12,
+            backward_residual: 1e-14,
+            dependence: 1e-11,
+            least_dependence: 1e-15,
+            inconsistency: 1e-8,
+            open_tolerance: 1e-13,
+            rounding: 1e-15,
+            pivots_per_row: 20,
+            block_rounds: 12,
+            refinements: 3,
+            outer_iterations: 60,
+            newton_steps: 3000,
+            least_norm_term: 1e-8,
+            selection: ForceSelection::Vertex,
+            contradiction: Contradiction::SolveExactly,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks every number.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] names the first field that is not a positive, finite number.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        let numbers = [
+            ("natural_residual", self.natural_residual),
+            ("least_growth", self.least_growth),
+            ("greatest_growth", self.greatest_growth),
+            ("backward_residual", self.backward_residual),
+            ("dependence", self.dependence),
+            ("least_dependence", self.least_dependence),
+            ("inconsistency", self.inconsistency),
+            ("open_tolerance", self.open_tolerance),
+            ("rounding", self.rounding),
+            ("least_norm_term", self.least_norm_term),
+        ];
+        match numbers.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
+            Some(&(field, value)) => Err(SettingsError { field, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Cap on pivots for a problem of `rows` rows: small problems get a little more per row.
+    pub(crate) fn pivot_cap(&self, rows: usize) -> usize {
+        self.pivots_per_row.saturating_mul(rows + 5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_valid() {
+        assert_eq!(Settings::default().validate(), Ok(()));
+    }
+
+    #[test]
+    fn a_bad_number_is_named() {
+        let settings = Settings { dependence: f64::NAN, ..Settings::default() };
+        assert_eq!(settings.validate().map_err(|e| e.field), Err("dependence"));
+    }
+}

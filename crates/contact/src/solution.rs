@@ -1,0 +1,72 @@
+//! The answer to a contact problem.
+
+use crate::check::Residuals;
+use crate::solver::Method;
+
+/// Forces and accelerations (or impulses and velocities) of every row, with the evidence that they are right.
+///
+/// A solution is filled by a solver and can be used again and again: its buffers keep their room.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Force f_i of each row [N], or impulse [N·s] in an impact problem.
+    pub force: Vec<f64>,
+    /// Acceleration a = A f + b of each row [m/s²], or velocity [m/s] in an impact problem, from the original data.
+    pub acceleration: Vec<f64>,
+    /// Rows the method ended with as closed (a = 0 enforced), ascending. With redundant contacts a subset of the rows at
+    /// a = 0, and a row in it may carry no force.
+    pub active: Vec<usize>,
+    /// Residuals of the forces in the original data.
+    pub residuals: Residuals,
+    /// Pivots (active-set method, Lemke) or Newton and interior-point steps.
+    pub iterations: usize,
+    /// Largest part, in units of the scale max|b/s|, by which dependent rows contradict each other; zero when they
+    /// agree. The forces then solve them in the least-squares sense, and the residual includes it.
+    pub inconsistency: f64,
+    /// The method that found the answer.
+    pub method: Method,
+}
+
+impl Solution {
+    /// An empty solution, to be filled by a solver.
+    pub fn new() -> Self {
+        Solution {
+            force: Vec::new(),
+            acceleration: Vec::new(),
+            active: Vec::new(),
+            residuals: Residuals::default(),
+            iterations: 0,
+            inconsistency: 0.0,
+            method: Method::DualActiveSet,
+        }
+    }
+
+    /// Number of rows answered.
+    pub fn len(&self) -> usize {
+        self.force.len()
+    }
+
+    /// Whether the problem had no rows.
+    pub fn is_empty(&self) -> bool {
+        self.force.is_empty()
+    }
+
+    /// Makes room for `rows` rows and sets everything to zero.
+    pub(crate) fn reset(&mut self, rows: usize, method: Method) {
+        self.force.clear();
+        self.force.resize(rows, 0.0);
+        self.acceleration.clear();
+        self.acceleration.resize(rows, 0.0);
+        self.active.clear();
+        self.active.reserve(rows);
+        self.residuals = Residuals::default();
+        self.iterations = 0;
+        self.inconsistency = 0.0;
+        self.method = method;
+    }
+}
+
+impl Default for Solution {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,223 @@
+//! The scaled problem that symmetric solvers work on.
+//!
+//! With s_i = sqrt(A_ii) (1 where A_ii = 0): f̂ = s f, â = a/s, b̂ = b/s, Â_ij = A_ij/(s_i s_j), so that Â has a unit
+//! diagonal and nothing depends on units. For rows of bodies Â = Ĵ Ĵᵀ with Ĵ_ik = J_ik sqrt(M⁻¹_k)/s_i, and Â is never
+//! formed: an entry costs at most six products and a product Â f̂ costs twelve per row. Columns without mass drop out.
+
+use crate::matrix::{BodyRows, Matrix, SparseMatrix};
+use crate::problem::Problem;
+
+const NONE: u32 = u32::MAX;
+
+/// Scaled rows, with the closed rows listed per column so that A_dC is found in time proportional to the contacts of
+/// the bodies that row d touches.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct System {
+    /// Whether the rows below are Ĵ; otherwise they are Â.
+    bodies: bool,
+    start: Vec<usize>,
+    column: Vec<u32>,
+    value: Vec<f64>,
+    /// s_i.
+    pub(crate) row_scale: Vec<f64>,
+    /// b̂_i.
+    pub(crate) b: Vec<f64>,
+    /// max |b̂_i|, or 1 where b = 0.
+    pub(crate) scale: f64,
+    /// Per row, whether it moves anything.
+    pub(crate) movable: Vec<bool>,
+    /// sqrt(M⁻¹) per column; then Ĵᵀ f̂ with the sum of the absolute terms.
+    root: Vec<f64>,
+    motion: Vec<[f64; 2]>,
+    /// Doubly linked lists of the entries of closed rows, one list per column.
+    head: Vec<u32>,
+    next: Vec<u32>,
+    previous: Vec<u32>,
+    row_of: Vec<u32>,
+}
+
+impl System {
+    pub(crate) fn rows(&self) -> usize {
+        self.b.len()
+    }
+
+    /// Scales `problem`, whose matrix must not be a general one.
+    pub(crate) fn load(&mut self, problem: &Problem) {
+        self.start.clear();
+        self.start.push(0);
+        self.column.clear();
+        self.value.clear();
+        self.row_scale.clear();
+        self.b.clear();
+        self.movable.clear();
+        match &problem.matrix {
+            Matrix::Bodies(bodies) => self.load_bodies(bodies, &problem.offset),
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => self.load_matrix(matrix, &problem.offset),
+        }
+        let largest = self.b.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+        self.scale = if largest > 0.0 { largest } else { 1.0 };
+    }
+
+    fn load_bodies(&mut self, bodies: &BodyRows, offset: &[f64]) {
+        self.bodies = true;
+        self.root.clear();
+        self.root.extend(bodies.inverse_mass.iter().map(|w| w.sqrt()));
+        self.row_of.clear();
+        for (i, &b) in offset.iter().enumerate() {
+            let (columns, values) = bodies.rows.row(i);
+            let begin = self.value.len();
+            let mut square = 0.0;
+            for (&k, &v) in columns.iter().zip(values) {
+                let scaled = v * self.root[k];
+                if scaled != 0.0 {
+                    square += scaled * scaled;
+                    self.column.push(k as u32);
+                    self.value.push(scaled);
+                    self.row_of.push(i as u32);
+                }
+            }
+            let inverse = self.finish_row(square, b);
+            self.value[begin..].iter_mut().for_each(|v| *v *= inverse);
+        }
+        self.head.clear();
+        self.head.resize(bodies.inverse_mass.len(), NONE);
+        self.next.clear();
+        self.next.resize(self.value.len(), NONE);
+        self.previous.clear();
+        self.previous.resize(self.value.len(), NONE);
+        self.motion.clear();
+        self.motion.resize(bodies.inverse_mass.len(), [0.0; 2]);
+    }
+
+    fn load_matrix(&mut self, matrix: &SparseMatrix, offset: &[f64]) {
+        self.bodies = false;
+        for (i, &b) in offset.iter().enumerate() {
+            let (columns, values) = matrix.row(i);
+            let mut diagonal = 0.0;
+            for (&j, &v) in columns.iter().zip(values) {
+                if i == j {
+                    diagonal = v;
+                }
+                self.column.push(j as u32);
+                self.value.push(v);
+            }
+            self.finish_row(diagonal, b);
+        }
+        for i in 0..offset.len() {
+            for e in self.start[i]..self.start[i + 1] {
+                self.value[e] /= self.row_scale[i] * self.row_scale[self.column[e] as usize];
+            }
+        }
+    }
+
+    /// Records scale and offset of a row whose entries were just pushed; returns 1/s.
+    fn finish_row(&mut self, diagonal: f64, b: f64) -> f64 {
+        let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
+        let inverse = 1.0 / s;
+        self.movable.push(diagonal > 0.0);
+        self.start.push(self.value.len());
+        self.row_scale.push(s);
+        self.b.push(b * inverse);
+        inverse
+    }
+
+    /// Adds Â_dC to `y`, which is zero, and returns the first position that is not zero (the number of closed rows if
+    /// there is none). `position` gives the place of each closed row.
+    pub(crate) fn gather(&self, d: usize, position: &[u32], closed: usize, y: &mut [f64]) -> usize {
+        let mut first = closed;
+        for e in self.start[d]..self.start[d + 1] {
+            let (k, v) = (self.column[e] as usize, self.value[e]);
+            if self.bodies {
+                let mut other = self.head[k];
+                while other != NONE {
+                    let at = position[self.row_of[other as usize] as usize] as usize;
+                    y[at] += v * self.value[other as usize];
+                    first = first.min(at);
+                    other = self.next[other as usize];
+                }
+            } else if position[k] != NONE {
+                let at = position[k] as usize;
+                y[at] = v;
+                first = first.min(at);
+            }
+        }
+        first
+    }
+
+    /// Lists a row as closed.
+    pub(crate) fn close(&mut self, row: usize) {
+        if self.bodies {
+            for e in self.start[row]..self.start[row + 1] {
+                let k = self.column[e] as usize;
+                let old = self.head[k];
+                self.next[e] = old;
+                self.previous[e] = NONE;
+                if old != NONE {
+                    self.previous[old as usize] = e as u32;
+                }
+                self.head[k] = e as u32;
+            }
+        }
+    }
+
+    /// Takes a row off the lists of closed rows.
+    pub(crate) fn open(&mut self, row: usize) {
+        if self.bodies {
+            for e in self.start[row]..self.start[row + 1] {
+                let (before, after) = (self.previous[e], self.next[e]);
+                match before {
+                    NONE => self.head[self.column[e] as usize] = after,
+                    _ => self.next[before as usize] = after,
+                }
+                if after != NONE {
+                    self.previous[after as usize] = before;
+                }
+            }
+        }
+    }
+
+    /// a := Â f + b̂. Returns the largest sum of absolute terms of a component, the measure of its rounding.
+    pub(crate) fn accelerate(&mut self, f: &[f64], a: &mut [f64]) -> f64 {
+        if !self.bodies {
+            return self.accelerate_matrix(f, a);
+        }
+        self.motion.fill([0.0; 2]);
+        for (j, &force) in f.iter().enumerate() {
+            if force != 0.0 {
+                for e in self.start[j]..self.start[j + 1] {
+                    let push = self.value[e] * force;
+                    let motion = &mut self.motion[self.column[e] as usize];
+                    motion[0] += push;
+                    motion[1] += push.abs();
+                }
+            }
+        }
+        let mut largest: f64 = 0.0;
+        for (i, out) in a.iter_mut().enumerate() {
+            let (mut sum, mut terms) = (0.0, 0.0);
+            for e in self.start[i]..self.start[i + 1] {
+                let motion = self.motion[self.column[e] as usize];
+                sum += self.value[e] * motion[0];
+                terms += self.value[e].abs() * motion[1];
+            }
+            *out = sum + self.b[i];
+            largest = largest.max(terms);
+        }
+        largest
+    }
+
+    fn accelerate_matrix(&self, f: &[f64], a: &mut [f64]) -> f64 {
+        let mut largest: f64 = 0.0;
+        for (i, out) in a.iter_mut().enumerate() {
+            let (mut sum, mut terms) = (0.0, 0.0);
+            for e in self.start[i]..self.start[i + 1] {
+                let term = self.value[e] * f[self.column[e] as usize];
+                sum += term;
+                terms += term.abs();
+            }
+            *out = sum + self.b[i];
+            largest = largest.max(terms);
+        }
+        largest
+    }
+}

@@ -1,0 +1,89 @@
+//! Carrying an answer over to the next problem.
+//!
+//! From step to step contacts appear and vanish, so rows are identified by their [`ContactKey`], or by their place where
+//! rows have none. A row not found starts closed or open by the sign of its offset, as in a solve from nothing.
+
+use crate::problem::{ContactKey, Problem};
+use crate::solution::Solution;
+
+/// Which contacts were closed, and with what force, in an earlier answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WarmStart {
+    /// Sorted by key where rows have keys, by row otherwise.
+    entries: Vec<Entry>,
+    by_key: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Entry {
+    id: u64,
+    force: f64,
+    closed: bool,
+}
+
+/// What an earlier answer says about a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Earlier {
+    pub(crate) force: f64,
+    pub(crate) closed: bool,
+}
+
+impl WarmStart {
+    /// Knows nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Remembers the answer `solution` of `problem`, replacing what was remembered.
+    pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
+        self.by_key = has_keys(problem);
+        self.entries.clear();
+        self.entries.extend(solution.force.iter().enumerate().map(|(row, &force)| {
+            let id = if self.by_key { problem.keys[row].0 } else { row as u64 };
+            Entry { id, force, closed: false }
+        }));
+        for &row in &solution.active {
+            self.entries[row].closed = true;
+        }
+        if self.by_key {
+            self.entries.sort_unstable_by_key(|entry| entry.id);
+        }
+    }
+
+    /// Prepares for looking up the rows of `problem`.
+    pub(crate) fn lookup<'a>(&'a self, problem: &'a Problem) -> Lookup<'a> {
+        let keys = if has_keys(problem) { Some(problem.keys.as_slice()) } else { None };
+        Lookup { warm: self, keys }
+    }
+}
+
+/// A warm start and the identities of the rows of one problem.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lookup<'a> {
+    warm: &'a WarmStart,
+    keys: Option<&'a [ContactKey]>,
+}
+
+impl Lookup<'_> {
+    /// What is remembered of a row.
+    pub(crate) fn find(&self, row: usize) -> Option<Earlier> {
+        let entries = &self.warm.entries;
+        let entry = match (self.warm.by_key, self.keys) {
+            (true, Some(keys)) => {
+                let id = keys[row].0;
+                // Contacts mostly keep their order from step to step, so that the place is right at once.
+                match entries.get(row) {
+                    Some(entry) if entry.id == id => Some(*entry),
+                    _ => entries.binary_search_by_key(&id, |entry| entry.id).ok().map(|k| entries[k]),
+                }
+            }
+            (false, None) => entries.get(row).copied(),
+            _ => None,
+        };
+        entry.map(|Entry { force, closed, .. }| Earlier { force, closed })
+    }
+}
+
+fn has_keys(problem: &Problem) -> bool {
+    problem.keys.len() == problem.len() && problem.keys.iter().all(|&key| key != ContactKey(u64::MAX))
+}

@@ -1,0 +1,91 @@
+//! Reading the collected problems, and a check of answers that shares no code with the crate.
+
+use std::path::{Path, PathBuf};
+
+use halfgap_contact::{ContactFile, Problem};
+
+/// A problem of the collection.
+pub(crate) struct Case {
+    pub(crate) name: String,
+    pub(crate) file: ContactFile,
+    pub(crate) problem: Problem,
+}
+
+impl Case {
+    pub(crate) fn read(path: &Path) -> Self {
+        let text = std::fs::read_to_string(path).unwrap();
+        let file = ContactFile::parse(&text).unwrap();
+        let problem = file.problem().unwrap();
+        Case { name: path.file_stem().unwrap().to_string_lossy().into_owned(), file, problem }
+    }
+
+    pub(crate) fn named(name: &str) -> Self {
+        let mut path = folder().join(format!("{name}.json"));
+        if !path.exists() {
+            path = folder().join("problems").join(format!("{name}.json"));
+        }
+        Self::read(&path)
+    }
+
+    pub(crate) fn feasible(&self) -> bool {
+        self.file.feasible.unwrap_or(true)
+    }
+
+    /// Whether scaling, and with it the classes of rules, is as for great mass ratios.
+    pub(crate) fn family(&self) -> &str {
+        self.file.family.as_deref().unwrap_or("")
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/contact")
+}
+
+/// All problems, by name.
+pub(crate) fn collection() -> Vec<Case> {
+    let mut paths = Vec::new();
+    for folder in [folder(), folder().join("problems")] {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|e| e == "json") {
+                paths.push(path);
+            }
+        }
+    }
+    paths.sort();
+    paths.iter().map(|path| Case::read(path)).collect()
+}
+
+/// Residuals of an answer, by the formulas of the documentation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Judged {
+    pub(crate) natural: f64,
+    pub(crate) growth: f64,
+    pub(crate) backward: f64,
+}
+
+/// Judges forces by the dense matrix.
+pub(crate) fn judge(problem: &Problem, force: &[f64]) -> Judged {
+    let a = problem.dense();
+    let (mut residual, mut terms, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for (i, row) in a.iter().enumerate() {
+        let s = if row[i] > 0.0 { row[i].sqrt() } else { 1.0 };
+        let acceleration = row.iter().zip(force).map(|(x, f)| x * f).sum::<f64>() + problem.offset()[i];
+        let size: f64 = row.iter().zip(force).map(|(x, f)| (x * f).abs()).sum();
+        let wrong =
+            if problem.bilateral()[i] { acceleration / s } else { (s * force[i]).min(acceleration / s) };
+        assert!(wrong.is_finite());
+        residual = residual.max(wrong.abs());
+        terms = terms.max(size / s);
+        scale = scale.max(problem.offset()[i].abs() / s);
+    }
+    let scale = if scale == 0.0 { 1.0 } else { scale };
+    let (natural, growth) = (residual / scale, terms / scale);
+    Judged { natural, growth, backward: natural / (1.0 + growth) }
+}
+
+impl Judged {
+    pub(crate) fn good(&self) -> bool {
+        if self.growth < 1e3 { self.natural <= 1e-12 } else { self.growth < 1e12 && self.backward <= 1e-14 }
+    }
+}

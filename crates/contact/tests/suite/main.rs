@@ -1,0 +1,5 @@
+//! The solvers against the collected problems and against each other.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod collected;
+mod data;
