@@ -28,8 +28,14 @@ impl CollisionRow {
     pub fn of_collision(collision: &Collision, inertia: [Inertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
         let [a, b] = inertia;
-        let weights =
-            [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
+        let weights = [
+            a.inverse_mass,
+            a.inverse_mass,
+            a.inverse_moment,
+            b.inverse_mass,
+            b.inverse_mass,
+            b.inverse_moment,
+        ];
         Self {
             bodies: [collision.parties.primary.body, collision.parties.normal.body],
             jacobian,

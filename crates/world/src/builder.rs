@@ -2,7 +2,7 @@
 
 use crate::scales::{Scales, ToleranceOverrides};
 use crate::start::lift_overlaps;
-use crate::world::{Inertia, Named, World, WorldResult};
+use crate::world::{Inertia, Named, World};
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidSettings, RigidSystem};
@@ -14,6 +14,9 @@ use halfgap_geometry::{Aabb, Shape};
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;
 /// Part of the smallest movable body's radius by which bodies may overlap at the start unless said otherwise.
 const DEFAULT_START_OVERLAP: f64 = 1e-6;
+
+/// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
+const CENTROID_ROUNDINGS: f64 = 16.0;
 
 /// A body to be added to a world.
 #[derive(Clone, Debug)]
@@ -44,7 +47,14 @@ impl BodySpec {
     #[must_use]
     pub fn movable(name: &str, shape: Shape, mass: f64, state: BodyState) -> Self {
         let inertia = Inertia { mass, moment: mass * shape.mass_properties().moment_per_mass };
-        Self { name: name.to_owned(), shape, center_of_mass: None, inertia: Some(inertia), state, elasticity: 1.0 }
+        Self {
+            name: name.to_owned(),
+            shape,
+            center_of_mass: None,
+            inertia: Some(inertia),
+            state,
+            elasticity: 1.0,
+        }
     }
 }
 
@@ -81,7 +91,9 @@ pub enum WorldError {
         value: f64,
     },
     /// Two bodies overlap at the start by more than is allowed.
-    #[error("bodies \"{first}\" and \"{second}\" overlap by {depth} m at the start; at most {allowed} m are allowed")]
+    #[error(
+        "bodies \"{first}\" and \"{second}\" overlap by {depth} m at the start; at most {allowed} m are allowed"
+    )]
     Overlap {
         /// Name of one body.
         first: String,
@@ -93,7 +105,9 @@ pub enum WorldError {
         allowed: f64,
     },
     /// Gaps at the start cannot all be lifted to the target gap.
-    #[error("bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {gap} m remain between them")]
+    #[error(
+        "bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {gap} m remain between them"
+    )]
     CannotLift {
         /// Name of one body.
         first: String,
@@ -184,7 +198,7 @@ impl WorldBuilder {
     ///
     /// # Errors
     /// Names that are not unique, numbers out of range, bodies that overlap: the error names the body and the number.
-    pub fn build(self) -> WorldResult {
+    pub fn build(self) -> Result<World, WorldError> {
         self.check()?;
         let scales = self.scales();
         let tolerances = scales.tolerances(self.tolerance, &self.overrides);
@@ -263,7 +277,8 @@ impl WorldBuilder {
 }
 
 fn check_body(body: &BodySpec) -> Result<(), WorldError> {
-    let bad = |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
+    let bad =
+        |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
     if let Some(Inertia { mass, moment }) = body.inertia {
         for (quantity, value) in [("mass", mass), ("moment", moment)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -290,7 +305,12 @@ fn check_body(body: &BodySpec) -> Result<(), WorldError> {
 }
 
 fn center_of_mass(body: &BodySpec) -> DVec2 {
-    body.center_of_mass.unwrap_or(body.shape.mass_properties().centroid)
+    body.center_of_mass.unwrap_or_else(|| {
+        let centroid = body.shape.mass_properties().centroid;
+        // The centroid of a symmetric shape is the origin: what the integrals leave of it is their rounding.
+        let rounding = CENTROID_ROUNDINGS * f64::EPSILON * body.shape.reach();
+        if centroid.length() <= rounding { DVec2::ZERO } else { centroid }
+    })
 }
 
 /// The shape about the centre of mass.
@@ -303,7 +323,8 @@ type Parts = (Named, (Body, FlightLaw, BodyState));
 fn into_parts(((spec, law), gravity): ((BodySpec, FlightLaw), DVec2)) -> Parts {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
     let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity };
-    let inverse = |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
+    let inverse =
+        |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
     let body = Body {
         shape,
         inverse_mass: inverse(|inertia| inertia.mass),

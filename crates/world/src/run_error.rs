@@ -18,7 +18,9 @@ pub enum StopKind {
 #[non_exhaustive]
 pub enum RunError {
     /// Two bodies would stay in contact.
-    #[error("at {time} s \"{primary}\" comes to rest on \"{normal}\": resting contacts are not supported yet")]
+    #[error(
+        "at {time} s \"{primary}\" comes to rest on \"{normal}\": resting contacts are not supported yet"
+    )]
     RestingContact {
         /// When [s].
         time: f64,
@@ -38,7 +40,9 @@ pub enum RunError {
         source: ImpactError,
     },
     /// The same two bodies collide again and again without any time going by.
-    #[error("stuck at {time} s: \"{primary}\" and \"{normal}\" collided {events} times without any time going by")]
+    #[error(
+        "stuck at {time} s: \"{primary}\" and \"{normal}\" collided {events} times without any time going by"
+    )]
     Stuck {
         /// When [s].
         time: f64,
@@ -65,7 +69,9 @@ impl RunError {
     #[must_use]
     pub fn time(&self) -> Option<f64> {
         match self {
-            Self::RestingContact { time, .. } | Self::Impact { time, .. } | Self::Stuck { time, .. } => Some(*time),
+            Self::RestingContact { time, .. } | Self::Impact { time, .. } | Self::Stuck { time, .. } => {
+                Some(*time)
+            }
             Self::Advance(_) => None,
         }
     }
@@ -77,9 +83,11 @@ impl RunError {
                 let (primary, normal) = names(between);
                 Self::RestingContact { time, primary, normal }
             }
-            AdvanceError::Impact { time, bodies, source } => {
-                Self::Impact { time, bodies: bodies.into_iter().map(|body| name(BodyId(body))).collect(), source }
-            }
+            AdvanceError::Impact { time, bodies, source } => Self::Impact {
+                time,
+                bodies: bodies.into_iter().map(|body| name(BodyId(body))).collect(),
+                source,
+            },
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);
                 Self::Stuck { time, primary, normal, events }

@@ -49,7 +49,8 @@ impl Scales {
         let target_gap = given.target_gap.unwrap_or(self.wanted_gap(tolerance).max(self.smallest_gap()));
         // What falls across the scene reaches this speed, even if all is at rest at the start.
         let speed = self.speed.max((self.acceleration * self.coordinate).sqrt());
-        let told_from_rounding = (SPEED_ROUNDINGS * f64::EPSILON * self.coordinate * self.acceleration).sqrt();
+        let told_from_rounding =
+            (SPEED_ROUNDINGS * f64::EPSILON * self.coordinate * self.acceleration).sqrt();
         Tolerances {
             target_gap,
             accuracy: given.accuracy.unwrap_or(Tolerances::ACCURACY_SHARE * target_gap),

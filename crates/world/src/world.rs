@@ -1,6 +1,5 @@
 //! A world: named bodies, what acts on them, and the clock.
 
-use crate::builder::WorldError;
 use crate::event::{Impact, ImpactRow};
 use crate::run_error::RunError;
 use glam::DVec2;
@@ -157,7 +156,8 @@ impl World {
             let Named { inertia: Some(inertia), gravity, .. } = &self.bodies[body.index()] else { continue };
             let state = self.state(body);
             let spin = state.angular_velocity;
-            energy.kinetic += 0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
+            energy.kinetic +=
+                0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
             energy.potential -= inertia.mass * gravity.dot(state.position);
         }
         energy
@@ -231,6 +231,3 @@ fn impact(report: &ImpactReport) -> Impact {
     });
     Impact { time: report.time.seconds(), rows: rows.collect(), energy_change: report.energy_change }
 }
-
-/// Result of building a world.
-pub type WorldResult = Result<World, WorldError>;
