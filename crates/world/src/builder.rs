@@ -118,13 +118,9 @@ pub enum WorldError {
     },
 }
 
-/// Collects what a world is made of.
-#[derive(Clone, Debug)]
-pub struct WorldBuilder {
-    bodies: Vec<BodySpec>,
-    laws: Vec<FlightLaw>,
-    gravity: Vec<DVec2>,
-    excluded: Vec<(BodyId, BodyId)>,
+/// How a world is to be simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldSettings {
     /// Time at the start [s].
     pub start_time: f64,
     /// Relative accuracy asked for.
@@ -141,13 +137,9 @@ pub struct WorldBuilder {
     pub collisions: bool,
 }
 
-impl Default for WorldBuilder {
+impl Default for WorldSettings {
     fn default() -> Self {
         Self {
-            bodies: Vec::new(),
-            laws: Vec::new(),
-            gravity: Vec::new(),
-            excluded: Vec::new(),
             start_time: 0.0,
             tolerance: DEFAULT_TOLERANCE,
             overrides: ToleranceOverrides::default(),
@@ -159,11 +151,21 @@ impl Default for WorldBuilder {
     }
 }
 
+/// Collects what a world is made of.
+#[derive(Clone, Debug, Default)]
+pub struct WorldBuilder {
+    settings: WorldSettings,
+    bodies: Vec<BodySpec>,
+    laws: Vec<FlightLaw>,
+    gravity: Vec<DVec2>,
+    excluded: Vec<(BodyId, BodyId)>,
+}
+
 impl WorldBuilder {
-    /// An empty world with default settings.
+    /// An empty world.
     #[must_use]
-    pub fn new() -> Self {
-        Self::default()
+    pub fn new(settings: WorldSettings) -> Self {
+        Self { settings, ..Self::default() }
     }
 
     /// Adds a body.
@@ -201,35 +203,38 @@ impl WorldBuilder {
     pub fn build(self) -> Result<World, WorldError> {
         self.check()?;
         let scales = self.scales();
-        let tolerances = scales.tolerances(self.tolerance, &self.overrides);
+        let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
         let mut warnings = Vec::new();
-        if self.overrides.target_gap.is_none() && scales.wanted_gap(self.tolerance) < scales.smallest_gap() {
+        if self.settings.overrides.target_gap.is_none()
+            && scales.wanted_gap(self.settings.tolerance) < scales.smallest_gap()
+        {
             warnings.push(format!(
                 "tolerance {} asks for a target gap of {:e} m, but coordinates of {} m allow no less than {:e} m",
-                self.tolerance,
-                scales.wanted_gap(self.tolerance),
+                self.settings.tolerance,
+                scales.wanted_gap(self.settings.tolerance),
                 scales.coordinate,
                 scales.smallest_gap()
             ));
         }
         let allowed = self
+            .settings
             .start_overlap
             .unwrap_or(DEFAULT_START_OVERLAP * scales.smallest_radius.unwrap_or(scales.coordinate));
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
-        let start_correction = if self.collisions {
+        let start_correction = if self.settings.collisions {
             lift_overlaps(&mut bodies, &named, &self.excluded, &tolerances, allowed)?
         } else {
             0.0
         };
         let settings = RigidSettings {
             tolerances,
-            law: self.impact_law,
-            order: self.impact_order,
-            collisions: self.collisions,
+            law: self.settings.impact_law,
+            order: self.settings.impact_order,
+            collisions: self.settings.collisions,
             search: SearchSettings::default(),
         };
-        let now = Time::from_seconds(self.start_time);
+        let now = Time::from_seconds(self.settings.start_time);
         let system = RigidSystem::new(bodies, &self.excluded, settings, now);
         Ok(World::new(system, named, now, warnings, start_correction))
     }
@@ -242,10 +247,10 @@ impl WorldBuilder {
             check_body(body)?;
         }
         let positive = [
-            ("tolerance", Some(self.tolerance)),
-            ("target_gap", self.overrides.target_gap),
-            ("accuracy", self.overrides.accuracy),
-            ("velocity_tol", self.overrides.velocity_tol),
+            ("tolerance", Some(self.settings.tolerance)),
+            ("target_gap", self.settings.overrides.target_gap),
+            ("accuracy", self.settings.overrides.accuracy),
+            ("velocity_tol", self.settings.overrides.velocity_tol),
         ];
         for (setting, value) in positive {
             if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {

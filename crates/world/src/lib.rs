@@ -8,7 +8,7 @@ mod scales;
 mod start;
 mod world;
 
-pub use builder::{BodySpec, DEFAULT_TOLERANCE, WorldBuilder, WorldError};
+pub use builder::{BodySpec, DEFAULT_TOLERANCE, WorldBuilder, WorldError, WorldSettings};
 pub use event::{Impact, ImpactRow};
 pub use halfgap_collision::{BodyId, BodyState, Tolerances};
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
