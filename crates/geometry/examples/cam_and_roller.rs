@@ -32,13 +32,18 @@ fn main() -> Result<(), ShapeError> {
         let height = resting_height(&cam, &cam_pose, &roller);
         let found = cam.distance(&cam_pose, &roller, &Pose::new(DVec2::new(0.0, height), 0.0));
         let part = ["base", "right flank", "nose", "left flank"][found.edge_a.edge as usize];
-        let lift = (height - BASE - ROLLER) * 1e3;
+        let lift = lift_of(height);
         let exact = on_arc_height(part, angle)
-            .map_or("   -   ".to_owned(), |exact| format!("{:7.4}", (exact - BASE - ROLLER) * 1e3));
+            .map_or("   -   ".to_owned(), |exact| format!("{:7.4}", lift_of(exact)));
         let bar = "#".repeat((lift.max(0.0) * 2.0) as usize);
         println!("{:4} deg {lift:7.4} mm {exact} mm {part:12} {bar}", step * 10);
     }
     Ok(())
+}
+
+/// How far [mm] the roller is above its lowest height, to 0.1 nm.
+fn lift_of(height: f64) -> f64 {
+    ((height - BASE - ROLLER) * 1e10).round() * 1e-7 + 0.0
 }
 
 /// The cam with its nose up.

@@ -41,7 +41,8 @@ pub struct RayHit {
 impl Shape {
     /// Finds the first point within `max_distance` [m] at which a ray meets the outline, from outside or inside.
     ///
-    /// A ray that starts on the outline meets it at once; one that only touches an arc may or may not meet it.
+    /// Whether a ray that starts on the outline meets it at once, and whether one that only touches an arc meets it, is
+    /// for rounding to say.
     ///
     /// # Examples
     ///
