@@ -106,7 +106,10 @@ impl Ray {
         }
         let foot = self.direction.dot(to_center);
         let half_chord = half_chord_sq.sqrt();
-        let slack = ROUNDING * (self.origin.length() + arc.center().length() + arc.radius());
+        let size = self.origin.length() + arc.center().length() + arc.radius();
+        // The less the ray crosses the arc, the less is it known where.
+        let slope = (half_chord / arc.radius()).max(ROUNDING.sqrt());
+        let slack = ROUNDING * size / slope;
         let is_met = |along: f64| {
             let direction = (self.direction * along - to_center) / arc.radius();
             along >= 0.0 && arc.directions().excess(direction) * arc.radius() <= slack

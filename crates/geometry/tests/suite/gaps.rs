@@ -23,7 +23,11 @@ fn samples(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Vec<GapSample>
 }
 
 fn is_nearly_valid(sample: &GapSample) -> bool {
-    sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= END_SLACK
+    // An angle is a length on an arc.
+    let primary = (sample.point_primary - sample.center_primary).length().max(1.0);
+    let normal = (sample.point_normal - sample.center_normal).length().max(1.0);
+    let beyond = (sample.excess_primary * primary).max(sample.excess_normal * normal);
+    beyond.max(sample.overrun) <= END_SLACK
 }
 
 fn size(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> f64 {
