@@ -1,6 +1,6 @@
 //! Points in which two edges cross.
 //!
-//! Lines cross where each has the other's ends on both sides; a line meets a circle half a chord to either side of the
+//! Lines cross where each has the other's ends on both sides (and the crossing is on both, which only rounding denies); a line meets a circle half a chord to either side of the
 //! centre's foot; two circles meet on the radical line, whose offset is measured from the centre of the lesser circle
 //! (seen from the larger one a crossing is known only to rounding times the ratio of the radii). Edges that only touch
 //! may or may not be found to cross, as rounding has it: their distance is zero to rounding either way.
@@ -9,6 +9,9 @@ use crate::arc::Arc;
 use crate::edge::Edge;
 use crate::line::Line;
 use glam::DVec2;
+
+/// A point this part of the lines' lengths off a line is on it: rounding.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The points in which two edges cross: at most two [m].
 ///
@@ -38,9 +41,14 @@ pub fn edge_crossings(a: &Edge, b: &Edge) -> impl Iterator<Item = DVec2> {
 fn line_line(a: &Line, b: &Line) -> Option<DVec2> {
     let (from_b, to_b) = (a.signed_distance(b.from()), a.signed_distance(b.to()));
     let (from_a, to_a) = (b.signed_distance(a.from()), b.signed_distance(a.to()));
-    let cross = from_a != to_a && from_b != to_b && from_a * to_a <= 0.0 && from_b * to_b <= 0.0;
+    if from_a == to_a || from_b == to_b || from_a * to_a > 0.0 || from_b * to_b > 0.0 {
+        return None;
+    }
     // The point is exact at an end that lies on the other line.
-    cross.then(|| a.from() + (a.to() - a.from()) * (from_a / (from_a - to_a)))
+    let point = a.from() + (a.to() - a.from()) * (from_a / (from_a - to_a));
+    // Of lines that are parallel to rounding the sides tell nothing, and the point may be anywhere.
+    let off = (b.nearest(point) - point).length();
+    (off <= ROUNDING * (a.length() + b.length())).then_some(point)
 }
 
 fn line_arc(line: &Line, arc: &Arc) -> [Option<DVec2>; 2] {

@@ -125,4 +125,17 @@ mod tests {
         assert_eq!(edge_distance(&circle, &arc((1.5, 0.0), 1.0, 2.0, 2.0)).distance, 0.0);
         assert!((edge_distance(&circle, &line((0.0, 0.0), (0.3, 0.4))).distance - 0.5).abs() < 1e-15);
     }
+
+    #[test]
+    fn edges_on_one_line_are_apart_by_what_is_between_them() {
+        for turn in 0..400 {
+            let angle = 0.017 * f64::from(turn);
+            let at = |place: f64| DVec2::new(0.3, -0.2) + DVec2::new(angle.cos(), angle.sin()) * place;
+            let line = |from, to| Edge::Line(Line::new(at(from), at(to)).expect("a fine line"));
+            for (first, last) in [(0.1, 1.0), (1.0, 0.1)] {
+                let pair = edge_distance(&line(first, last), &line(1.5, 2.7));
+                assert!((pair.distance - 0.5).abs() < 1e-15 * 2.0, "at {angle} rad: {}", pair.distance);
+            }
+        }
+    }
 }

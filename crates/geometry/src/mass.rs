@@ -6,19 +6,27 @@
 //!
 //! * area r^2 (t - sin t)/2,
 //! * first moment 2/3 r^3 sin^3(t/2) towards the middle of the arc,
-//! * polar second moment r^4 (3 t - sin t (2 + cos t))/12,
+//! * polar second moment r^4 (3 t - sin t (2 + cos t))/12.
 //!
-//! all of them differences of nearly equal numbers for a shallow arc, for which the series are summed instead.
+//! For a shallow arc these are differences of nearly equal numbers, and the centre is far away. There the segment is
+//! taken about the middle of its chord instead, over which it rises by h = r (cos a - cos(t/2)) at the angle a from the
+//! middle, r sin a along the chord: integrals over a without any cancellation, which a Gauss-Legendre rule sums to full
+//! precision.
 
 use crate::arc::Arc;
 use crate::edge::Edge;
 use crate::path::Path;
 use glam::DVec2;
 
-/// Below this sweep [rad] the series of the segment integrals are more exact than their closed forms.
+/// Up to this sweep [rad] a segment is integrated numerically: the rule is exact to rounding there.
 const SHALLOW: f64 = 0.5;
-/// Terms of the series: enough for full precision below `SHALLOW`.
-const SERIES_TERMS: u32 = 9;
+/// Positive nodes and their weights of the Gauss-Legendre rule with eight points on [-1, 1].
+const GAUSS: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
+    (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
+];
 
 /// Area and moments of a region of uniform density.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +68,10 @@ impl Moments {
         let sum = self.plus_triangle(edge.from() - reference, edge.to() - reference);
         match edge {
             Edge::Line(_) => sum,
-            Edge::Arc(arc) => sum.plus_segment(arc, reference),
+            Edge::Arc(arc) if arc.sweep_angle().abs() <= SHALLOW => {
+                sum.plus_part(shallow_segment(arc), 0.5 * (arc.from() + arc.to()) - reference)
+            }
+            Edge::Arc(arc) => sum.plus_part(segment(arc), arc.center() - reference),
         }
     }
 
@@ -73,46 +84,49 @@ impl Moments {
         }
     }
 
-    fn plus_segment(self, arc: &Arc, reference: DVec2) -> Self {
-        let (r, t) = (arc.radius(), arc.sweep_angle());
-        let half_sine = libm::sin(t / 2.0);
-        let area = r * r / 2.0 * sweep_minus_sine(t);
-        let first = arc.middle_direction() * (2.0 / 3.0 * r * r * r * half_sine * half_sine * half_sine);
-        let polar_about_center = r * r * r * r / 12.0 * polar_factor(t);
-        let center = arc.center() - reference;
+    /// Adds a part whose moments are about a place.
+    fn plus_part(self, part: Moments, place: DVec2) -> Self {
         Self {
-            area: self.area + area,
-            first: self.first + first + center * area,
-            polar: self.polar + polar_about_center + 2.0 * center.dot(first) + center.length_squared() * area,
+            area: self.area + part.area,
+            first: self.first + part.first + place * part.area,
+            polar: self.polar + part.polar + 2.0 * place.dot(part.first) + place.length_squared() * part.area,
         }
     }
 }
 
-/// t - sin t.
-fn sweep_minus_sine(t: f64) -> f64 {
-    if t.abs() > SHALLOW { t - libm::sin(t) } else { odd_series(t, |_| 1.0) }
+/// The segment between an arc and its chord, about the centre of the circle.
+fn segment(arc: &Arc) -> Moments {
+    let (r, t) = (arc.radius(), arc.sweep_angle());
+    let (sin, cos) = libm::sincos(t);
+    let half_sine = libm::sin(t / 2.0);
+    Moments {
+        area: r * r / 2.0 * (t - sin),
+        first: arc.middle_direction() * (2.0 / 3.0 * r * r * r * half_sine * half_sine * half_sine),
+        polar: r * r * r * r / 12.0 * (3.0 * t - sin * (2.0 + cos)),
+    }
 }
 
-/// 3 t - sin t (2 + cos t).
-fn polar_factor(t: f64) -> f64 {
-    if t.abs() > SHALLOW {
-        let (sin, cos) = libm::sincos(t);
-        3.0 * t - sin * (2.0 + cos)
+/// The segment between a shallow arc and its chord, about the middle of the chord.
+fn shallow_segment(arc: &Arc) -> Moments {
+    let (r, half) = (arc.radius(), 0.5 * arc.sweep_angle().abs());
+    let (mut area, mut first, mut polar) = (0.0, 0.0, 0.0);
+    for (node, weight) in GAUSS {
+        let angle = half * node;
+        let rise = 2.0 * r * libm::sin(0.5 * (half + angle)) * libm::sin(0.5 * (half - angle));
+        let (sin, cos) = libm::sincos(angle);
+        // Both halves of the segment, one on each side of its middle.
+        let width = 2.0 * weight * half * r * cos;
+        area += rise * width;
+        first += 0.5 * rise * rise * width;
+        polar += (r * r * sin * sin + rise * rise / 3.0) * rise * width;
+    }
+    let chord = arc.to() - arc.from();
+    let right = -chord.perp() / chord.length();
+    if arc.is_convex() {
+        Moments { area, first: right * first, polar }
     } else {
-        odd_series(t, |k| 2.0 + libm::pow(4.0, f64::from(k)))
+        Moments { area: -area, first: right * first, polar: -polar }
     }
-}
-
-/// Sum over k = 1, 2, ... of (-1)^(k+1) c(k) t^(2k+1) / (2k+1)!.
-fn odd_series(t: f64, coefficient: impl Fn(u32) -> f64) -> f64 {
-    let mut power = t;
-    let mut sum = 0.0;
-    for k in 1..=SERIES_TERMS {
-        let n = f64::from(2 * k);
-        power *= -t * t / (n * (n + 1.0));
-        sum -= coefficient(k) * power;
-    }
-    sum
 }
 
 #[cfg(test)]
@@ -120,10 +134,33 @@ mod tests {
     use super::*;
 
     #[test]
-    fn series_and_closed_forms_meet() {
-        let t = SHALLOW;
-        assert!((odd_series(t, |_| 1.0) / (t - t.sin()) - 1.0).abs() < 1e-14);
-        let closed = 3.0 * t - t.sin() * (2.0 + t.cos());
-        assert!((odd_series(t, |k| 2.0 + 4f64.powi(k as i32)) / closed - 1.0).abs() < 1e-13);
+    fn both_forms_of_a_segment_agree() {
+        for sweep in [SHALLOW, -SHALLOW, 0.4, -0.3] {
+            let arc = Arc::new(DVec2::new(0.3, -0.2), 2.0, 0.7, sweep).expect("a fine arc");
+            let reference = DVec2::new(1.0, 1.0);
+            let far = Moments::default().plus_part(segment(&arc), arc.center() - reference);
+            let middle = 0.5 * (arc.from() + arc.to());
+            let near = Moments::default().plus_part(shallow_segment(&arc), middle - reference);
+            assert!((far.area - near.area).abs() < 1e-15, "{sweep}: {} {}", far.area, near.area);
+            assert!((far.first - near.first).length() < 1e-14, "{sweep}: {} {}", far.first, near.first);
+            assert!((far.polar - near.polar).abs() < 1e-14, "{sweep}: {} {}", far.polar, near.polar);
+        }
+    }
+
+    #[test]
+    fn a_flat_arc_adds_a_parabola() {
+        let rise = 1e-6;
+        for sign in [1.0, -1.0] {
+            let radius = 0.125 / rise + rise / 2.0;
+            // Over a chord of 1 m along x, above it as a convex edge run leftwards and as a concave one run rightwards.
+            let (from, to, clockwise) =
+                if sign > 0.0 { (DVec2::X, DVec2::ZERO, false) } else { (DVec2::ZERO, DVec2::X, true) };
+            let center = DVec2::new(0.5, rise - radius);
+            let arc = Arc::between(from, to, center, clockwise, 1e-6).expect("a fine arc");
+            let part = shallow_segment(&arc);
+            assert!((part.area * sign / (rise / 1.5) - 1.0).abs() < 1e-9);
+            assert!((part.first.y * sign / (rise * rise * 4.0 / 15.0) - 1.0).abs() < 1e-9);
+            assert!((part.polar * sign / (rise / 30.0) - 1.0).abs() < 1e-9);
+        }
     }
 }

@@ -41,7 +41,8 @@ pub struct RayHit {
 impl Shape {
     /// Finds the first point within `max_distance` [m] at which a ray meets the outline, from outside or inside.
     ///
-    /// A ray that starts on the outline meets it at once; one that only touches an arc may or may not meet it.
+    /// Whether a ray that starts on the outline meets it at once, and whether one that only touches an arc meets it, is
+    /// for rounding to say.
     ///
     /// # Examples
     ///
@@ -105,7 +106,10 @@ impl Ray {
         }
         let foot = self.direction.dot(to_center);
         let half_chord = half_chord_sq.sqrt();
-        let slack = ROUNDING * (self.origin.length() + arc.center().length() + arc.radius());
+        let size = self.origin.length() + arc.center().length() + arc.radius();
+        // The less the ray crosses the arc, the less is it known where.
+        let slope = (half_chord / arc.radius()).max(ROUNDING.sqrt());
+        let slack = ROUNDING * size / slope;
         let is_met = |along: f64| {
             let direction = (self.direction * along - to_center) / arc.radius();
             along >= 0.0 && arc.directions().excess(direction) * arc.radius() <= slack

@@ -37,7 +37,10 @@ proptest! {
     fn mass_properties_match_quadrature(shape in any_shape()) {
         let mass = shape.mass_properties();
         let (area, first, polar) = integrate(&shape);
-        let scale = 1.0 + shape.reach() * shape.reach();
+        // A flat arc is as exact as the place of its far center.
+        let radius = |edge: &Edge| if let Edge::Arc(arc) = edge { arc.radius() } else { 0.0 };
+        let flatness = 1e-5 * shape.edges().map(radius).fold(0.0, f64::max);
+        let scale = 1.0 + shape.reach() * shape.reach() + flatness;
         prop_assert!(area > 0.0 && (mass.area - area).abs() < 1e-10 * scale, "{} {area}", mass.area);
         prop_assert!((mass.centroid * area - first).length() < 1e-10 * scale * scale);
         let about_origin = mass.moment_per_mass + mass.centroid.length_squared();
