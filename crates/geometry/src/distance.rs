@@ -15,12 +15,15 @@ use crate::shape::Shape;
 use crate::tree::{Below, FeatureTree};
 use glam::DVec2;
 
+/// Outlines nearer than this part of the sizes involved touch: rounding.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// How two posed shapes lie to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// They have no point in common. One may lie in a hole of the other.
     Apart,
-    /// Their outlines cross or touch.
+    /// Their outlines cross, or touch to rounding.
     Crossing,
     /// All outlines of the first lie in the solid of the second.
     FirstInside,
@@ -153,7 +156,8 @@ impl Search<'_> {
 }
 
 fn relation(a: &Shape, b: &Shape, relative: &Pose, distance: f64) -> Relation {
-    if distance == 0.0 {
+    let size = a.reach() + b.reach() + relative.position.length();
+    if distance <= ROUNDING * size {
         return Relation::Crossing;
     }
     let start = |path: &Path| path.edges()[0].from();

@@ -2,7 +2,9 @@
 
 use crate::sampling::{SAMPLES, coarseness, outline_points, sampled_contains};
 use crate::shapes::{any_angle, any_pose, any_shape, any_vector, map_spec, specs_of};
-use halfgap_geometry::{Aabb, DVec2, Edge, MotionBound, Pose, Ray, Relation, Rotation, Shape, edge_distance};
+use halfgap_geometry::{
+    Aabb, DVec2, Edge, MotionBound, Pose, Ray, Relation, Rotation, Shape, ShapeError, edge_distance,
+};
 use proptest::prelude::*;
 
 /// What rounding may cost, as part of the sizes involved.
@@ -107,6 +109,73 @@ proptest! {
         let there = mapped(&a).distance(&pose(&pose_a), &mapped(&b), &pose(&pose_b)).distance;
         let size = scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length();
         prop_assert!((here - there).abs() <= ROUNDING * size * factor, "{here} {there}");
+    }
+
+    #[test]
+    fn aligned_blocks_are_apart_by_the_air_between_them(
+        sides in prop::array::uniform4(1u8..9), place in (-12i8..13, -12i8..13), angle in any_angle(),
+        origin in any_vector(3.0),
+    ) {
+        let [width_a, height_a, width_b, height_b] = sides.map(|side| f64::from(side) / 4.0);
+        let (a, b) = (Shape::block(width_a, height_a).expect("fine"), Shape::block(width_b, height_b).expect("fine"));
+        let place = DVec2::new(f64::from(place.0), f64::from(place.1)) / 4.0;
+        let turn = Rotation::from_angle(angle);
+        let found = a.distance(&Pose::new(origin + turn.apply(place), angle), &b, &Pose::new(origin, angle));
+        let half = DVec2::new(width_a + width_b, height_a + height_b) / 2.0;
+        let air = place.abs() - half;
+        let rounding = ROUNDING * 10.0;
+        if air.max_element() > 0.0 {
+            prop_assert!((found.distance - air.max(DVec2::ZERO).length()).abs() <= rounding);
+            prop_assert_eq!(found.relation, Relation::Apart);
+        } else if air.max_element() == 0.0 {
+            prop_assert!(found.distance <= rounding);
+            prop_assert_eq!(found.relation, Relation::Crossing);
+        } else {
+            // What is missing to the edges of the other, seen from inside of it.
+            let inside = |outer: DVec2, inner: DVec2| ((outer - inner) / 2.0 - place.abs()).min_element();
+            let (size_a, size_b) = (DVec2::new(width_a, height_a), DVec2::new(width_b, height_b));
+            let depth = inside(size_b, size_a).max(inside(size_a, size_b));
+            prop_assert!((found.distance - depth.max(0.0)).abs() <= rounding);
+            let expected = match (depth > 0.0, inside(size_b, size_a) > 0.0) {
+                (false, _) => Relation::Crossing,
+                (true, true) => Relation::FirstInside,
+                (true, false) => Relation::SecondInside,
+            };
+            prop_assert_eq!(found.relation, expected);
+        }
+    }
+
+    #[test]
+    fn polygons_are_refused_exactly_if_edges_meet(
+        corners in prop::collection::vec(prop_oneof![
+            any_vector(1.0), (-3i8..4, -3i8..4).prop_map(|(x, y)| DVec2::new(f64::from(x), f64::from(y))),
+        ], 3..8),
+    ) {
+        let count = corners.len();
+        let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+        let between = |p: DVec2, q: DVec2, r: DVec2| {
+            side(p, q, r) == 0.0 && (p - r).dot(q - r) <= 0.0
+        };
+        let meet = |i: usize, j: usize| {
+            let (p, q) = (corners[i], corners[(i + 1) % count]);
+            let (r, s) = (corners[j], corners[(j + 1) % count]);
+            if (i + 1) % count == j {
+                // Neighbours share q = r.
+                return between(p, q, s) || between(r, s, p);
+            }
+            if (j + 1) % count == i {
+                return between(r, s, q) || between(p, q, r);
+            }
+            let crosses = side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0;
+            crosses || between(p, q, r) || between(p, q, s) || between(r, s, p) || between(r, s, q)
+        };
+        let pairs = (0..count).flat_map(|i| (0..i).map(move |j| (j, i)));
+        let expected = pairs.clone().any(|(i, j)| meet(i, j)) || (0..count).any(|i| corners[i] == corners[(i + 1) % count]);
+        let built = Shape::polygon(&corners);
+        prop_assert_eq!(built.is_err(), expected, "{:?}", built.err());
+        if let Err(ShapeError::Crossing { edge_a, edge_b, .. }) = built {
+            prop_assert_eq!(pairs.filter(|&(i, j)| meet(i, j)).min(), Some((edge_a, edge_b)));
+        }
     }
 
     #[test]
