@@ -5,7 +5,7 @@
 //! it is the centre of mass or if the body does not turn.
 
 use crate::motion::{Motion, Polynomial};
-use crate::quadratic::first_closing_time;
+use crate::quadratic::{first_closing_by, first_closing_time};
 use crate::tolerances::rounding;
 use glam::DVec2;
 use halfgap_geometry::{Feature, LineFeature, PairKind, Pose, RoundFeature};
@@ -16,6 +16,8 @@ pub(crate) struct Quadratic {
     c: f64,
     v: f64,
     a: f64,
+    /// v^2 - 2 a c.
+    discriminant: f64,
     /// The unit of c per metre of gap near the target: turns c back into a distance.
     scale: f64,
     /// A rate below this is rounding.
@@ -36,7 +38,11 @@ impl Quadratic {
         }
         // At the target a rate that is only rounding neither closes nor opens: the acceleration decides.
         let still = self.c <= 0.0 && self.v.abs() <= self.v_rounding;
-        first_closing_time(self.c, if still { 0.0 } else { self.v }, self.a)
+        if still {
+            first_closing_time(self.c, 0.0, self.a)
+        } else {
+            first_closing_by(self.c, self.v, self.a, self.discriminant)
+        }
     }
 }
 
@@ -85,19 +91,19 @@ fn of_centers(a: &Polynomial, b: &Polynomial, radii: f64, inner: bool, target: f
     }
     let d = a.position - b.position;
     let u = a.velocity - b.velocity;
+    let speeds = a.velocity.length() + b.velocity.length();
     let sign = if inner { -1.0 } else { 1.0 };
     // sign (|d|^2 - reach^2) by the product, in which the gap's digits survive.
     let reach = sign * (radii + target);
     let distance = d.length();
     let c = sign * (distance - reach) * (distance + reach);
-    let v_rounding = 2.0 * distance * rounding(a.velocity.length() + b.velocity.length());
-    Some(Quadratic {
-        c,
-        v: 2.0 * sign * d.dot(u),
-        a: 2.0 * sign * u.length_squared(),
-        scale: 2.0 * reach,
-        v_rounding,
-    })
+    let (v, a) = (2.0 * sign * d.dot(u), 2.0 * sign * u.length_squared());
+    // v^2 - 2 a c is 4 (|u|^2 reach^2 - (d x u)^2): so the distance at which the centres pass keeps its digits, however
+    // far away they are now and however small the radii.
+    let (near, pass) = (u.length() * reach, d.perp_dot(u).abs());
+    let discriminant = 4.0 * (near - pass) * (near + pass);
+    let v_rounding = 2.0 * distance * rounding(speeds);
+    Some(Quadratic { c, v, a, discriminant, scale: 2.0 * reach, v_rounding })
 }
 
 fn of_line<M: Motion>(
@@ -119,5 +125,5 @@ fn of_line<M: Motion>(
     let v = normal.dot(center.velocity - body.velocity);
     let a = normal.dot(center.acceleration - body.acceleration);
     let v_rounding = rounding(center.velocity.length() + body.velocity.length());
-    Some(Quadratic { c, v, a, scale: 1.0, v_rounding })
+    Some(Quadratic { c, v, a, discriminant: v * v - 2.0 * a * c, scale: 1.0, v_rounding })
 }

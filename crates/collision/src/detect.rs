@@ -4,7 +4,7 @@ use crate::body::{Body, BodyId};
 use crate::merge::merge_collisions;
 use crate::motion::Moving;
 use crate::record::{Collision, Detector, Participant, Parties};
-use crate::tolerances::{ANGLE_SLACK, Tolerances};
+use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, FeatureKind, GapSample, Shape};
 
 /// A body at the moment of detection.
@@ -117,20 +117,17 @@ fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &T
     } else {
         [sample.excess_normal, sample.excess_primary]
     };
-    let leans = |side: usize| {
-        let (shape, feature) = sides[side];
-        excess[side] <= ANGLE_SLACK || excess[side] <= lean_slack(shape, feature, tolerances)
-    };
+    let leans = |side: usize| excess[side] <= lean_slack(sides[side].0, sides[side].1, tolerances);
     sample.overrun <= tolerances.accuracy && leans(0) && leans(1)
 }
 
-/// Angle [rad] by which a vertex may lean out of its normal cone: over its shorter edge that makes up the accuracy. 0 for
-/// an edge.
+/// Angle [rad] by which a contact may lie outside of a feature's range: over the shorter edge of a vertex, or over the
+/// radius of an arc, it makes up the accuracy.
 fn lean_slack(shape: &Shape, feature: FeatureId, tolerances: &Tolerances) -> f64 {
-    let source = shape.source(feature);
-    if source.kind != FeatureKind::Vertex {
-        return 0.0;
+    if let Some(radius) = shape.feature(feature).radius().filter(|&radius| radius != 0.0) {
+        return tolerances.accuracy / radius.abs();
     }
+    let source = shape.source(feature);
     let edges = shape.paths()[source.path as usize].edges();
     let (after, count) = (source.edge as usize, edges.len());
     let shorter = edges[after].length().min(edges[(after + count - 1) % count].length());

@@ -5,10 +5,10 @@
 
 use crate::closed::quadratic;
 use crate::detect::pair_tolerances;
-use crate::march::{MarchEnd, Pair, Window, reach_circle};
+use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
 use crate::motion::Motion;
-use crate::tolerances::{ANGLE_SLACK, Tolerances};
-use halfgap_geometry::{Feature, FeatureId, GapSample, PairKind, Shape, pair_kind};
+use crate::tolerances::Tolerances;
+use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 
 /// A shape in motion, as the search sees it.
 #[derive(Clone, Copy, Debug)]
@@ -173,12 +173,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     fn touches_at(&self, pair: &Pair<'_>, time: f64) -> bool {
         let pose_a = self.a.motion.moving_at(self.a.offset + time).pose;
         let pose_b = self.b.motion.moving_at(self.b.offset + time).pose;
-        GapSample::measure(pair.feature_a, &pose_a, pair.feature_b, &pose_b).is_some_and(|sample| {
-            let size = sample.center_primary.abs().max(sample.center_normal.abs()).max_element();
-            sample.excess_primary <= ANGLE_SLACK
-                && sample.excess_normal <= ANGLE_SLACK
-                && sample.overrun <= crate::tolerances::rounding(size)
-        })
+        contact_is_within((pair.feature_a, &pose_a), (pair.feature_b, &pose_b), pair.kind)
     }
 
     fn pair<'p>(&self, kind: PairKind, a: &'p Feature, b: &'p Feature) -> Pair<'p> {

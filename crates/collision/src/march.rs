@@ -20,9 +20,9 @@
 //! systems", 1996, 2.3) carried to second order.
 
 use crate::motion::{Motion, MotionBounds, Moving};
-use crate::tolerances::{ANGLE_SLACK, rounding};
+use crate::tolerances::rounding;
 use glam::DVec2;
-use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, RoundFeature};
+use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, Pose, RoundFeature};
 
 /// Two bodies' motions over a window, with bounds that hold in all of it.
 #[derive(Clone, Copy, Debug)]
@@ -226,7 +226,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let beyond = overrun_for(gap.along, along_rate, line, curvature, rounding(size));
         let excess = gap.excess(round, &a.pose);
         let turning = spin_a.speed + spin_b.speed;
-        let askew = (excess > ANGLE_SLACK).then(|| quotient(excess, turning));
+        let askew = (excess > rounding(1.0)).then(|| quotient(excess, turning));
         Look {
             value: height,
             rate,
@@ -248,14 +248,15 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         u_max: f64,
     ) -> Option<f64> {
         let [excess_a, excess_b] = gap.excess(round_a, &a.pose, round_b, &b.pose);
-        if excess_a <= ANGLE_SLACK && excess_b <= ANGLE_SLACK {
+        let slack = direction_rounding(gap);
+        if excess_a <= slack && excess_b <= slack {
             return None;
         }
         // While the centres keep half of their distance the direction turns by at most u/(d/2).
         let half_way = quotient(0.5 * gap.center_distance, u_max);
         let direction_turn = quotient(2.0 * u_max, gap.center_distance);
         let wait = |excess: f64, spin: SpinBound| {
-            (excess > ANGLE_SLACK).then(|| half_way.min(quotient(excess, direction_turn + spin.speed)))
+            (excess > slack).then(|| half_way.min(quotient(excess, direction_turn + spin.speed)))
         };
         longer(wait(excess_a, self.spin_a), wait(excess_b, self.spin_b))
     }
@@ -327,12 +328,41 @@ fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, roundi
     }
 }
 
+/// Rounding [rad] of the direction between two centres.
+pub(crate) fn direction_rounding(gap: &CenterGap) -> f64 {
+    let size = gap.center_a.abs().max(gap.center_b.abs()).max_element();
+    rounding(1.0) + quotient(rounding(size), gap.center_distance)
+}
+
 /// The longer of two waits, either of which may be absent.
 fn longer(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(a.max(b)),
         (only, None) | (None, only) => only,
     }
+}
+
+/// True if the contact point of a pair lies within both of its features, up to rounding.
+pub(crate) fn contact_is_within(a: (&Feature, &Pose), b: (&Feature, &Pose), kind: PairKind) -> bool {
+    match (a.0, b.0) {
+        (Feature::Round(round_a), Feature::Round(round_b)) => {
+            let gap = CenterGap::measure(round_a, a.1, round_b, b.1, kind == PairKind::Inner);
+            let slack = direction_rounding(&gap);
+            gap.excess(round_a, a.1, round_b, b.1).iter().all(|&excess| excess <= slack)
+        }
+        (Feature::Round(round), Feature::Line(line)) => is_within_line((round, a.1), (line, b.1)),
+        (Feature::Line(line), Feature::Round(round)) => is_within_line((round, b.1), (line, a.1)),
+        (Feature::Line(_), Feature::Line(_)) => false,
+    }
+}
+
+fn is_within_line(
+    (round, pose_round): (&RoundFeature, &Pose),
+    (line, pose_line): (&LineFeature, &Pose),
+) -> bool {
+    let gap = LineGap::measure(round, pose_round, line, pose_line);
+    let size = gap.center.abs().max(pose_line.position.abs()).max_element();
+    gap.overrun(line) <= rounding(size) && gap.excess(round, pose_round) <= rounding(1.0)
 }
 
 /// The round feature that stands for a whole body far away: its reach about its centre of mass.

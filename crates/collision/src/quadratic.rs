@@ -7,6 +7,12 @@
 #[must_use]
 #[inline]
 pub fn first_closing_time(c: f64, v: f64, a: f64) -> Option<f64> {
+    first_closing_by(c, v, a, v * v - 2.0 * a * c)
+}
+
+/// [`first_closing_time`] for a caller who knows the discriminant v^2 - 2 a c more exactly than its terms tell.
+#[inline]
+pub(crate) fn first_closing_by(c: f64, v: f64, a: f64, discriminant: f64) -> Option<f64> {
     if c <= 0.0 {
         // At the target already: at once if closing, else when the parabola turns back below it or comes down to it.
         if v < 0.0 || (v == 0.0 && a < 0.0) {
@@ -15,10 +21,8 @@ pub fn first_closing_time(c: f64, v: f64, a: f64) -> Option<f64> {
         if a >= 0.0 {
             return None;
         }
-        let top = v * v - 2.0 * a * c;
-        return Some(if top <= 0.0 { v / -a } else { (v + top.sqrt()) / -a });
+        return Some(if discriminant <= 0.0 { v / -a } else { (v + discriminant.sqrt()) / -a });
     }
-    let discriminant = v * v - 2.0 * a * c;
     if discriminant < 0.0 || (v >= 0.0 && a >= 0.0) {
         return None;
     }

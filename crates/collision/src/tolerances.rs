@@ -38,12 +38,6 @@ impl Tolerances {
     }
 }
 
-/// Angle [rad] by which a contact may lie outside an arc or a normal cone and still count as inside.
-///
-/// Smooth joints hand a contact from edge to edge across a seam of rounding size; the surface beyond an arc's end falls
-/// away with the square of the angle, so this changes a gap by 5e-17 of the radius.
-pub(crate) const ANGLE_SLACK: f64 = 1e-8;
-
 /// Rounding of a length computed from coordinates of size 1, in units of the machine epsilon: a dozen operations.
 const ROUNDINGS: f64 = 8.0;
 

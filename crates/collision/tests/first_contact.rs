@@ -10,7 +10,7 @@ use halfgap_geometry::{EdgeSpec, PathSpec, Shape};
 /// Pairs of bodies that are tried.
 const PAIRS: u64 = 10_000;
 /// Samples of a span before refinement.
-const SAMPLES: u32 = 400;
+const SAMPLES: u32 = 100;
 /// A sampled least gap within this part of the scale of the target may count as a contact or not.
 const UNDECIDED: f64 = 1e-10;
 
@@ -77,7 +77,8 @@ fn shape(random: &mut Random, thin: bool) -> Shape {
     };
     let built = built.expect("fine measures");
     // Half of the bodies are lopsided: their centre of mass is not where their symmetry is.
-    let shift = if random.next() % 2 == 0 { random.direction() * random.between(0.0, 0.3) } else { DVec2::ZERO };
+    let shift =
+        if random.next() % 2 == 0 { random.direction() * random.between(0.0, 0.3) } else { DVec2::ZERO };
     built.translated(shift)
 }
 
@@ -97,7 +98,11 @@ impl Case {
             let also = thin && random.next() % 2 == 0;
             shape(random, also)
         });
-        let speed = if class == 2 { 1e3 } else { random.one_of(&[0.1, 1.0, 10.0]) };
+        let speed = match class {
+            2 => 1e3,
+            3 => random.one_of(&[10.0, 100.0, 1e3]),
+            _ => random.one_of(&[0.1, 1.0, 10.0]),
+        };
         let spin = |random: &mut Random| match class {
             3 => random.between(-1e3, 1e3),
             4 | 5 => 0.0,
@@ -105,12 +110,8 @@ impl Case {
         };
         let heading = random.direction();
         let reach = shape_a.reach() + shape_b.reach();
-        let miss = match class {
-            // Grazing: discs and corners pass at nearly their common radius.
-            4 => reach + random.one_of(&[-1e-3, -1e-6, -1e-9, 1e-12, 0.0, 1e-9, 1e-6]),
-            _ => random.between(-1.1, 1.1) * reach,
-        };
         let distance = random.between(1.05, 2.5) * reach;
+        let target = random.one_of(&[1e-4, 1e-7, 1e-10]);
         let angle_b = random.between(-3.0, 3.0);
         let angle_a = if class == 5 {
             let quarter = std::f64::consts::FRAC_PI_2 * random.one_of(&[0.0, 1.0]);
@@ -118,8 +119,17 @@ impl Case {
         } else {
             random.between(-3.0, 3.0)
         };
-        let gravity = random.direction() * (random.one_of(&[0.0, 0.0, 1.0]) * speed * speed / reach);
-        let rate = random.one_of(&[0.0, 0.0, 0.3]) * speed / reach;
+        let miss = if class == 4 {
+            // Grazing: a passes b with the target gap between their outermost points, or nearly.
+            let across = |angle: f64, side: f64| DVec2::from_angle(-angle).rotate(heading.perp() * side);
+            let widths = shape_a.extent(across(angle_a, -1.0)) + shape_b.extent(across(angle_b, 1.0));
+            widths + target + random.one_of(&[-1e-4, -1e-7, -1e-10, -1e-13, 0.0, 1e-13, 1e-9, 1e-6])
+        } else {
+            random.between(-1.1, 1.1) * reach
+        };
+        let pull = if class == 4 { 0.0 } else { random.one_of(&[0.0, 0.0, 1.0]) };
+        let gravity = random.direction() * (pull * speed * speed / reach);
+        let rate = if class == 4 { 0.0 } else { random.one_of(&[0.0, 0.0, 0.3]) * speed / reach };
         let center = random.direction() * random.between(0.0, 10.0);
         let drift = random.direction() * (speed * random.one_of(&[0.0, 0.5]));
         let state_a = BodyState {
@@ -128,13 +138,14 @@ impl Case {
             velocity: heading * speed + drift,
             angular_velocity: spin(random),
         };
-        let state_b = BodyState { position: center, angle: angle_b, velocity: drift, angular_velocity: spin(random) };
+        let state_b =
+            BodyState { position: center, angle: angle_b, velocity: drift, angular_velocity: spin(random) };
         let gravity_b = gravity * random.one_of(&[0.0, 1.0]);
         let case = Self {
             a: (shape_a, Flight::new(state_a, gravity, rate, rate)),
             b: (shape_b, Flight::new(state_b, gravity_b, 0.0, 0.0)),
             span: random.between(1.0, 2.0) * (distance + reach) / speed,
-            target: random.one_of(&[1e-4, 1e-7, 1e-10]),
+            target,
         };
         (case.height(0.0) > 1e-9).then_some(case)
     }
@@ -159,7 +170,8 @@ impl Case {
     }
 
     fn found(&self) -> Option<f64> {
-        let tolerances = Tolerances { target_gap: self.target, accuracy: 0.6 * self.target, velocity_tol: 1e-9 };
+        let tolerances =
+            Tolerances { target_gap: self.target, accuracy: 0.6 * self.target, velocity_tol: 1e-9 };
         let side_a = MovingShape { shape: &self.a.0, motion: &self.a.1, offset: 0.0 };
         let side_b = MovingShape { shape: &self.b.0, motion: &self.b.1, offset: 0.0 };
         match first_contact(&side_a, &side_b, self.span, &tolerances, &SearchSettings::default()) {
@@ -178,7 +190,7 @@ struct Sampled {
 /// Steps as far as the speed bound allows, at least a sample's length; looks closer where the height has a dip.
 fn sample(case: &Case) -> Sampled {
     let fastest = case.fastest();
-    let floor = (case.span / f64::from(SAMPLES)).min(0.005 * case.scale() / fastest);
+    let floor = (case.span / f64::from(SAMPLES)).min(0.02 * case.scale() / fastest);
     let mut sampled = Sampled { first: None, least: f64::INFINITY };
     let mut before: [(f64, f64); 2] = [(0.0, f64::INFINITY); 2];
     let mut time = 0.0;
@@ -246,7 +258,11 @@ fn no_contact_is_missed_and_none_invented() {
                 // Sampling may have stepped over a dip that the search found: then the height there is zero.
                 let height = case.height(time);
                 let is_real = height.abs() <= 1e-12 * case.scale();
-                assert!(is_real, "seed {seed}: invented at {time} s, height {height}, least {}", sampled.least);
+                assert!(
+                    is_real,
+                    "seed {seed}: invented at {time} s, height {height}, least {}",
+                    sampled.least
+                );
                 if sampled.least.abs() <= near { undecided += 1 } else { contacts += 1 }
             }
             (None, Some(time)) => {
@@ -259,16 +275,21 @@ fn no_contact_is_missed_and_none_invented() {
                 contacts += 1;
                 if (time - expected).abs() > 1e-9 * case.span {
                     ill_conditioned += 1;
-                    let height = case.height(time);
+                    // An earlier time must be a real contact that sampling stepped over; a later one is right only where
+                    // the height is so flat that rounding moves its zero.
+                    let deepest = if time > expected { lowest(&case, expected, time).1 } else { 0.0 };
+                    let height = case.height(time).abs().max(-deepest);
                     assert!(
-                        time < expected && height.abs() <= 1e-12 * case.scale(),
-                        "seed {seed}: found {time} s, sampled {expected} s, height there {height}"
+                        height <= 1e-12 * case.scale(),
+                        "seed {seed}: found {time} s, sampled {expected} s, height {height}"
                     );
                 }
             }
         }
     }
-    println!("{tried} pairs, {contacts} contacts, {ill_conditioned} with ill-conditioned times, {undecided} undecided");
+    println!(
+        "{tried} pairs, {contacts} contacts, {ill_conditioned} with ill-conditioned times, {undecided} undecided"
+    );
     assert!(contacts > PAIRS / 4, "only {contacts} of the pairs meet");
     assert!(undecided < PAIRS / 100, "{undecided} undecided pairs");
 }

@@ -179,6 +179,17 @@ impl DirectionRange {
         }
     }
 
+    /// The range grown by small angles [rad] at its first and at its last end; `sweep` [rad] is its width.
+    #[must_use]
+    pub(crate) fn grown(self, first: f64, last: f64, sweep: f64) -> Self {
+        let Some([from, to]) = self.ends() else { return self };
+        if sweep + first + last >= std::f64::consts::TAU {
+            return DirectionRange::Full;
+        }
+        let turned = |direction: DVec2, angle: f64| (direction + direction.perp() * angle).normalize();
+        Self::between(turned(from, -first), turned(to, last), sweep + first + last)
+    }
+
     /// True if the unit vector lies in the range, ends included.
     #[must_use]
     #[inline]

@@ -191,30 +191,43 @@ fn path_features((index, path): (usize, &Path)) -> Vec<(Feature, FeatureSource)>
             kind,
         };
         let before = &edges[(place + edges.len() - 1) % edges.len()];
+        let after = &edges[(place + 1) % edges.len()];
         if let Some(vertex) = corner(before, edge) {
             found.push((Feature::Round(vertex), source(FeatureKind::Vertex)));
         }
-        let feature = edge_feature(edge);
+        let feature = edge_feature(edge, [is_smooth(before, edge), is_smooth(edge, after)]);
         found.push((feature, source(feature.kind())));
     }
     found
 }
 
+/// Angle [rad] from the end of one edge to the start of the next, positive at a corner that points outwards.
+fn corner_turn(before: &Edge, after: &Edge) -> f64 {
+    let (arriving, leaving) = (before.end_direction(), after.start_direction());
+    let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+    if PI - turn.abs() >= SMOOTH_CORNER {
+        return turn;
+    }
+    // At a cusp the directions are opposite to rounding: which edge lies on the left is for the curvatures to say.
+    let solid_between = before.curvature() + after.curvature() < 0.0;
+    if solid_between { PI } else { -PI }
+}
+
+fn is_smooth(before: &Edge, after: &Edge) -> bool {
+    corner_turn(before, after).abs() <= SMOOTH_CORNER
+}
+
 /// The vertex between two edges, if it points outwards.
 fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
-    let (arriving, leaving) = (before.end_direction(), after.start_direction());
-    let mut turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
-    if PI - turn.abs() < SMOOTH_CORNER {
-        // At a cusp the directions are opposite to rounding: which edge lies on the left is for the curvatures to say.
-        let solid_between = before.curvature() + after.curvature() < 0.0;
-        turn = if solid_between { PI } else { -PI };
-    }
+    let turn = corner_turn(before, after);
     // The outward normal is the direction of travel turned by -90 degrees.
-    let range = DirectionRange::between(-arriving.perp(), -leaving.perp(), turn.abs());
+    let range =
+        DirectionRange::between(-before.end_direction().perp(), -after.start_direction().perp(), turn.abs());
     (turn > SMOOTH_CORNER).then_some(RoundFeature { center: after.from(), radius: 0.0, range })
 }
 
-fn edge_feature(edge: &Edge) -> Feature {
+/// The feature of an edge, which is told at which of its two ends the outline goes on smoothly.
+fn edge_feature(edge: &Edge, smooth: [bool; 2]) -> Feature {
     match edge {
         Edge::Line(line) => {
             let (normal, direction) = (line.normal(), line.direction());
@@ -224,8 +237,13 @@ fn edge_feature(edge: &Edge) -> Feature {
             Feature::Line(LineFeature { normal, direction, offset, start, end: start + line.length() })
         }
         Edge::Arc(arc) => {
-            let radius = if arc.is_convex() { arc.radius() } else { -arc.radius() };
-            Feature::Round(RoundFeature { center: arc.center(), radius, range: arc.directions() })
+            // No vertex stands at a smooth joint, so the arc's range takes in what its neighbour could leave open: the
+            // surface there differs from the arc by the square of that angle.
+            let [first, last] = smooth.map(|smooth| if smooth { SMOOTH_CORNER } else { 0.0 });
+            let (radius, grown) =
+                if arc.is_convex() { (arc.radius(), [first, last]) } else { (-arc.radius(), [last, first]) };
+            let range = arc.directions().grown(grown[0], grown[1], arc.sweep_angle().abs());
+            Feature::Round(RoundFeature { center: arc.center(), radius, range })
         }
     }
 }
