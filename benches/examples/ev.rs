@@ -1,0 +1,17 @@
+use halfgap::geometry::Shape;
+use halfgap_benches::{advance_impacts, gas};
+fn main() {
+    for n in [100usize, 1000, 10000] {
+        let mut w = gas(n, 1.0, 0.0, |_| Shape::disc(0.35).unwrap());
+        advance_impacts(&mut w, 5 * n as u64);
+        let t = std::time::Instant::now();
+        let s0 = w.statistics();
+        let k = advance_impacts(&mut w, 200_000);
+        println!("{n} discs: {:.0} impacts/s", k as f64 / t.elapsed().as_secs_f64());
+        let _ = s0;
+    }
+    let mut w = gas(50, 1.0, 2.0, |_| Shape::rounded_block(0.6, 0.4, 0.1).unwrap());
+    let t = std::time::Instant::now();
+    let k = advance_impacts(&mut w, 10_000);
+    println!("rounded: {:.0} impacts/s", k as f64 / t.elapsed().as_secs_f64());
+}
