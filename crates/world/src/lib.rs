@@ -1,1 +1,4 @@
 //! (outline)
+
+#[cfg(feature = "scene")]
+pub mod scene;
