@@ -89,7 +89,7 @@ fn unknown_missing_and_mistyped_fields_are_named_with_their_line() {
     insta::assert_snapshot!(message("radius = 0.5", "radius = \"half\""), @r#"line 14: body[1].shape.disc.radius: invalid type: string "half", expected a number"#);
     insta::assert_snapshot!(message("position = [0, 2.0]", "position = [0, 2.0, 1.0]"), @"line 15: body[1].position: invalid length 3, expected an array [x, y] of two numbers");
     insta::assert_snapshot!(message("radius = 0.5", "diameter = 0.5"), @"line 14: body[1].shape.disc.diameter: unknown field `diameter`, expected `radius`");
-    insta::assert_snapshot!(message("title = \"Ball over a floor\"", ""), @"missing field `title`");
+    insta::assert_snapshot!(message("title = \"Ball over a floor\"", ""), @"line 1: missing field `title`");
     insta::assert_snapshot!(message("scene-1", "scene-7"), @"line 1: format: unknown variant `halfgap-scene-7`, expected `halfgap-scene-1`");
     insta::assert_snapshot!(message("fixed = true", "fixed = 1"), @"line 9: body[0].fixed: invalid type: integer `1`, expected a boolean");
     insta::assert_snapshot!(message("duration = 2.0", "duration = 2.0\nseed = -1"), @"line 6: run.seed: invalid value: integer `-1`, expected a whole number that is not negative");

@@ -124,7 +124,7 @@ impl SceneSource {
         let deserializer = toml::Deserializer::parse(&self.text).map_err(syntax)?;
         serde_path_to_error::deserialize(deserializer).map_err(|error| {
             let field = field_path(error.path());
-            self.locate(SceneError::new(field, plain(error.inner().message())))
+            self.data_error(field, error.inner().message())
         })
     }
 
@@ -137,7 +137,7 @@ impl SceneSource {
             // serde_json puts its own place behind the message.
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
             match inner.classify() {
-                serde_json::error::Category::Data => self.locate(SceneError::new(field, plain(message))),
+                serde_json::error::Category::Data => self.data_error(field, message),
                 _ => self.syntax_error(message, offset),
             }
         })?;
@@ -148,6 +148,11 @@ impl SceneSource {
             )
         })?;
         Ok(scene)
+    }
+
+    fn data_error(&self, field: FieldPath, message: &str) -> SceneError {
+        // What is missing at the top is missing from line 1 on.
+        self.locate(SceneError::new(field, plain(message))).at_offset(&self.text, 0)
     }
 
     fn syntax_error(&self, message: &str, offset: usize) -> SceneError {
