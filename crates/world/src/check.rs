@@ -87,7 +87,7 @@ impl<'a> Comparison<'a> {
             raise(&mut self.energy_error, error);
             self.judge(error, tolerance, || {
                 format!(
-                    "t = {time} s: energy change: got {energy_change} J, expected {change} J within {tolerance} J"
+                    "t = {time} s: energy change: got {energy_change} J, expected {change} J within {tolerance:e} J"
                 )
             });
         }
@@ -108,21 +108,21 @@ impl<'a> Comparison<'a> {
             let error = got.position.distance(wanted);
             raise(&mut self.position_error, error);
             self.judge(error, near, || {
-                format!("{at}: position: got {}, expected {wanted} within {near} m", got.position)
+                format!("{at}: position: got {}, expected {wanted} within {near:e} m", got.position)
             });
         }
         if let Some(wanted) = state.angle {
             let error = (got.angle - wanted).abs();
             raise(&mut self.position_error, error);
             self.judge(error, near, || {
-                format!("{at}: angle: got {}, expected {wanted} within {near} rad", got.angle)
+                format!("{at}: angle: got {}, expected {wanted} within {near:e} rad", got.angle)
             });
         }
         if let Some(wanted) = state.velocity.map(DVec2::from) {
             let error = got.velocity.distance(wanted);
             raise(&mut self.velocity_error, error);
             self.judge(error, slow, || {
-                format!("{at}: velocity: got {}, expected {wanted} within {slow} m/s", got.velocity)
+                format!("{at}: velocity: got {}, expected {wanted} within {slow:e} m/s", got.velocity)
             });
         }
         if let Some(wanted) = state.angular_velocity {
@@ -130,7 +130,7 @@ impl<'a> Comparison<'a> {
             raise(&mut self.velocity_error, error);
             self.judge(error, slow, || {
                 let got = got.angular_velocity;
-                format!("{at}: angular velocity: got {got}, expected {wanted} within {slow} rad/s")
+                format!("{at}: angular velocity: got {got}, expected {wanted} within {slow:e} rad/s")
             });
         }
     }
