@@ -67,14 +67,12 @@ impl From<SceneError> for Failure {
 /// The message of an error with the line it is about.
 pub(crate) fn describe(error: &SceneError) -> String {
     let mut text = format!("error: {error}");
-    if let (Some(position), Some(line)) = (error.position(), error.line_text()) {
+    if let (Some(position), Some(excerpt)) = (error.position(), error.excerpt()) {
         let number = position.line.to_string();
         let margin = " ".repeat(number.len());
-        let _ = write!(text, "\n {margin} |\n {number} | {line}\n {margin} |");
-        let column = position.column.saturating_sub(1);
-        if column < line.chars().count() {
-            let _ = write!(text, " {}^", " ".repeat(column));
-        }
+        let line = &excerpt.text;
+        let _ =
+            write!(text, "\n {margin} |\n {number} | {line}\n {margin} | {:>1$}", '^', excerpt.before + 1);
     }
     text
 }

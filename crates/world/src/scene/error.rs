@@ -17,7 +17,7 @@ pub struct SceneError {
 struct Report {
     file: Option<PathBuf>,
     position: Option<Position>,
-    line_text: Option<String>,
+    excerpt: Option<Excerpt>,
     field: FieldPath,
     message: String,
     cause: Option<std::io::Error>,
@@ -32,6 +32,31 @@ pub struct Position {
     pub column: usize,
 }
 
+/// A line of text, cut to fit a terminal: files written by programs may be one line of megabytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Excerpt {
+    /// The text.
+    pub text: String,
+    /// How many of its characters come before the place that is meant.
+    pub before: usize,
+}
+
+impl Excerpt {
+    fn of_line(line: &str, before: usize) -> Self {
+        const LONGEST: usize = 100;
+        const LEAD: usize = 40;
+        const DOTS: &str = "...";
+        if line.chars().count() <= LONGEST {
+            return Self { text: line.to_owned(), before };
+        }
+        let skipped = if before < LONGEST { 0 } else { before - LEAD };
+        let shown: String = line.chars().skip(skipped).take(LONGEST).collect();
+        let head = if skipped > 0 { DOTS } else { "" };
+        let tail = if line.chars().nth(skipped + LONGEST).is_some() { DOTS } else { "" };
+        Self { text: format!("{head}{shown}{tail}"), before: before - skipped + head.len() }
+    }
+}
+
 impl SceneError {
     /// An error at a field of the scene, or at the top where no single field is to blame.
     ///
@@ -39,7 +64,7 @@ impl SceneError {
     #[must_use]
     pub fn new(field: FieldPath, message: impl Into<String>) -> Self {
         let message = message.into();
-        let report = Report { file: None, position: None, line_text: None, field, message, cause: None };
+        let report = Report { file: None, position: None, excerpt: None, field, message, cause: None };
         Self { report: Box::new(report) }
     }
 
@@ -57,8 +82,8 @@ impl SceneError {
 
     /// The line of the text at that position.
     #[must_use]
-    pub fn line_text(&self) -> Option<&str> {
-        self.report.line_text.as_deref()
+    pub fn excerpt(&self) -> Option<&Excerpt> {
+        self.report.excerpt.as_ref()
     }
 
     /// The field, or the top of the file.
@@ -94,7 +119,7 @@ impl SceneError {
         if self.report.position.is_none() {
             let (position, line) = place_of(text, offset);
             self.report.position = Some(position);
-            self.report.line_text = Some(shortened(line));
+            self.report.excerpt = Some(Excerpt::of_line(line, position.column - 1));
         }
         self
     }
@@ -127,15 +152,6 @@ fn place_of(text: &str, offset: usize) -> (Position, &str) {
     (Position { line, column }, text[line_start..line_end].trim_end())
 }
 
-/// A line that fits a terminal; files written by programs may be one line of megabytes.
-fn shortened(line: &str) -> String {
-    const LONGEST: usize = 120;
-    match line.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}...", &line[..end]),
-        None => line.to_owned(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -150,7 +166,12 @@ mod tests {
     }
 
     #[test]
-    fn a_long_line_is_cut() {
-        assert_eq!(shortened(&"x".repeat(1000)).len(), 123);
+    fn a_long_line_is_cut_around_the_place() {
+        let line = format!("{}x{}", "a".repeat(500), "b".repeat(500));
+        let excerpt = Excerpt::of_line(&line, 500);
+        assert_eq!(excerpt.text.chars().nth(excerpt.before), Some('x'));
+        assert_eq!(excerpt.text.len(), 106);
+        assert_eq!(Excerpt::of_line("short", 9), Excerpt { text: "short".to_owned(), before: 9 });
+        assert_eq!(Excerpt::of_line(&line, 3).before, 3);
     }
 }

@@ -24,7 +24,7 @@ pub use connector::{
     ConnectorData, ConnectorOptions, LengthData, NormalFrame, PinData, PointData, RailData, RailPath,
     RailStopData, SlotData,
 };
-pub use error::{Position, SceneError};
+pub use error::{Excerpt, Position, SceneError};
 pub use expected::{ExpectedData, ExpectedState};
 pub use field_path::{FieldPath, Step};
 pub use force::{
