@@ -15,17 +15,17 @@ struct FileReport {
     report: CheckReport,
     file: String,
     #[serde(skip)]
-    readable: bool,
+    usable: bool,
 }
 
 pub(crate) fn check(options: &CheckOptions) -> Result<End, Failure> {
     let mut reports = Vec::new();
     for scene in &options.scenes {
         let report = match check_file(scene, options.tolerance) {
-            Ok(report) => FileReport { report, file: scene.display().to_string(), readable: true },
+            Ok(report) => FileReport { report, file: scene.display().to_string(), usable: true },
             Err(error) => {
                 eprintln!("{}", describe(&error));
-                unreadable(scene, &error)
+                unusable(scene, &error)
             }
         };
         if !options.json {
@@ -38,7 +38,7 @@ pub(crate) fn check(options: &CheckOptions) -> Result<End, Failure> {
         output::print(&format!("{json}\n"));
     }
     Ok(match () {
-        () if reports.iter().any(|report| !report.readable) => End::BadInput,
+        () if reports.iter().any(|report| !report.usable) => End::BadInput,
         () if reports.iter().any(|report| !report.report.ok) => End::CheckFailed,
         () => End::Done,
     })
@@ -58,7 +58,7 @@ fn check_file(path: &Path, tolerance: Option<f64>) -> Result<CheckReport, SceneE
     Ok(check_world(&mut world, &scene))
 }
 
-fn unreadable(path: &Path, error: &SceneError) -> FileReport {
+fn unusable(path: &Path, error: &SceneError) -> FileReport {
     let file = path.display().to_string();
     let report = CheckReport {
         scene: file.clone(),
@@ -68,14 +68,14 @@ fn unreadable(path: &Path, error: &SceneError) -> FileReport {
         energy_error: None,
         why: vec![error.to_string()],
     };
-    FileReport { report, file, readable: false }
+    FileReport { report, file, usable: false }
 }
 
 /// One line, and one more for each thing that did not come true.
 fn lines(file: &FileReport) -> String {
     let report = &file.report;
-    let word = match (file.readable, report.ok) {
-        (false, _) => "UNREADABLE",
+    let word = match (file.usable, report.ok) {
+        (false, _) => "ERROR",
         (true, true) => "ok",
         (true, false) => "FAILED",
     };
@@ -83,14 +83,14 @@ fn lines(file: &FileReport) -> String {
         value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2e} {unit}"))
     };
     let mut text = format!(
-        "{word:10} {}  position {}  velocity {}  energy {}\n",
+        "{word:6} {}  position {}  velocity {}  energy {}\n",
         file.file,
         error(report.position_error, "m"),
         error(report.velocity_error, "m/s"),
         error(report.energy_error, "J"),
     );
-    for why in report.why.iter().filter(|_| file.readable) {
-        text.push_str(&format!("           {why}\n"));
+    for why in report.why.iter().filter(|_| file.usable) {
+        text.push_str(&format!("       {why}\n"));
     }
     text
 }

@@ -193,9 +193,9 @@ fn check_compares_and_says_why() {
     let output = halfgap(&["check", &good, &bad]);
     assert_eq!(output.status.code(), Some(1));
     insta::assert_snapshot!(folder.plain(&output.stdout), @r"
-    ok         good.toml  position 0.00e0 m  velocity -  energy -
-    FAILED     bad.toml  position 5.00e-1 m  velocity -  energy -
-               t = 2 s: disc: position: got [2, 0], expected [2.5, 0] within 1e-9 m
+    ok     good.toml  position 0.00e0 m  velocity -  energy -
+    FAILED bad.toml  position 5.00e-1 m  velocity -  energy -
+           t = 2 s: disc: position: got [2, 0], expected [2.5, 0] within 1e-9 m
     ");
     let output = halfgap(&["check", &good, &bad, "--json"]);
     insta::assert_snapshot!(folder.plain(&output.stdout), @r#"[{"scene":"Free flight","ok":true,"position_error":0.0,"velocity_error":null,"energy_error":null,"why":[],"file":"good.toml"},{"scene":"Free flight","ok":false,"position_error":0.5,"velocity_error":null,"energy_error":null,"why":["t = 2 s: disc: position: got [2, 0], expected [2.5, 0] within 1e-9 m"],"file":"bad.toml"}]"#);

@@ -10,7 +10,9 @@ use crate::world::{BodyId, BodyState, World};
 use halfgap_geometry::{Aabb, Pose};
 use std::fmt::Write;
 
-/// How much of what is fixed is shown around what moves, as part of the size of that.
+/// Fixed bodies that reach no farther than this beyond what moves are shown whole, as part of the size of that.
+const NEAR: f64 = 1.5;
+/// Of larger ones this much is shown.
 const SURROUNDINGS: f64 = 0.35;
 /// More points of a trail than this are thinned out.
 const LONGEST_TRAIL: usize = 4000;
@@ -41,26 +43,23 @@ fn pose(state: &BodyState) -> Pose {
 
 /// What moves, wherever it goes, and what is fixed near that.
 fn shown_box(world: &World, recording: &Recording) -> Option<Aabb> {
-    let mut moving: Option<Aabb> = None;
-    for frame in &recording.frames {
-        let ends = [recording.frames.first(), recording.frames.last()];
-        let whole = ends.iter().flatten().any(|end| std::ptr::eq(*end, frame));
-        for (&body, state) in recording.movable.iter().zip(&frame.states) {
-            let bounds = if whole {
-                world.shape(body).bounds_at(&pose(state))
-            } else {
-                Aabb::around_disc(state.position, world.shape(body).reach())
-            };
-            moving = Some(moving.map_or(bounds, |sum| sum.union(bounds)));
-        }
-    }
+    let every = recording.frames.len().div_ceil(LONGEST_TRAIL).max(1);
+    let frames = recording.frames.iter().step_by(every).chain(recording.frames.last());
+    let posed = frames.flat_map(|frame| recording.movable.iter().zip(&frame.states));
+    let moving = posed.map(|(&body, state)| world.shape(body).bounds_at(&pose(state))).reduce(Aabb::union);
     let fixed = body_ids(world).filter(|&body| world.is_fixed(body));
     let fixed = fixed.map(|body| world.shape(body).bounds_at(&pose(&world.state(body))));
     let Some(moving) = moving else { return fixed.reduce(Aabb::union) };
-    let around = moving.grown(SURROUNDINGS * moving.size().max_element());
-    let near = fixed.filter(|bounds| bounds.overlaps(&around));
-    let cut = near.map(|bounds| Aabb { min: bounds.min.max(around.min), max: bounds.max.min(around.max) });
-    Some(cut.fold(moving, Aabb::union))
+    let size = moving.size().max_element();
+    let (around, near) = (moving.grown(SURROUNDINGS * size), moving.grown(NEAR * size));
+    let shown = fixed.filter(|bounds| bounds.overlaps(&around)).map(|bounds| {
+        if near.contains(&bounds) {
+            bounds
+        } else {
+            Aabb { min: bounds.min.max(around.min), max: bounds.max.min(around.max) }
+        }
+    });
+    Some(shown.fold(moving, Aabb::union))
 }
 
 fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
