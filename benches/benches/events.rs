@@ -14,7 +14,11 @@ fn discs(criterion: &mut Criterion) {
         let mut world = gas(count, 1.0, 0.0, |_| Shape::disc(0.35).expect("a fine disc"));
         advance_impacts(&mut world, 20 * count as u64);
         group.bench_function(count.to_string(), |bencher| {
-            bencher.iter_batched_ref(|| world.clone(), |world| advance_impacts(world, IMPACTS), BatchSize::LargeInput);
+            bencher.iter_batched_ref(
+                || world.clone(),
+                |world| advance_impacts(world, IMPACTS),
+                BatchSize::LargeInput,
+            );
         });
     }
     group.finish();
@@ -26,7 +30,11 @@ fn polygons(criterion: &mut Criterion) {
     let mut world = gas(50, 1.0, 2.0, |_| Shape::rounded_block(0.6, 0.4, 0.1).expect("a fine block"));
     advance_impacts(&mut world, 1000);
     group.bench_function("50", |bencher| {
-        bencher.iter_batched_ref(|| world.clone(), |world| advance_impacts(world, IMPACTS), BatchSize::LargeInput);
+        bencher.iter_batched_ref(
+            || world.clone(),
+            |world| advance_impacts(world, IMPACTS),
+            BatchSize::LargeInput,
+        );
     });
     group.finish();
 }

@@ -1,2 +1,31 @@
-//! The halfgap command.
-fn main() {}
+//! The `halfgap` command: runs and checks scene files.
+//!
+//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`) that returns how it ended,
+//! `failure` turns what went wrong into messages and exit codes, `output` writes to standard output.
+
+mod args;
+mod check;
+mod failure;
+mod files;
+mod output;
+mod progress;
+mod run;
+mod table;
+
+use args::{Args, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let end = match Args::parse().command {
+        Command::Run(options) => run::run(&options),
+        Command::Check(options) => check::check(&options),
+    };
+    match end {
+        Ok(end) => end.into(),
+        Err(failure) => {
+            failure.report();
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

@@ -1,18 +1,63 @@
 //! Exact, fast 2D rigid-body mechanics with true circular arcs.
+//!
+//! A [`World`] is bodies in motion: built in code by a [`WorldBuilder`], or (feature `scene`, on by default) from a scene
+//! file. It advances from event to event: what is read in between changes nothing.
+//!
+//! *Invariant*: this crate prints nothing, and leaves geometry, collisions, contacts and events to the layers below.
+//!
+//! ```
+//! use halfgap::geometry::{DVec2, Shape};
+//! use halfgap::{BodySpec, BodyState, WorldBuilder, WorldSettings};
+//!
+//! let mut builder = WorldBuilder::new(WorldSettings::default());
+//! builder.add(BodySpec::fixed("floor", Shape::block(10.0, 1.0)?, DVec2::new(0.0, -0.5)));
+//! let start = BodyState { position: DVec2::new(0.0, 2.0), ..BodyState::default() };
+//! let ball = builder.add(BodySpec::movable("ball", Shape::disc(0.5)?, 1.0, start));
+//! builder.add_gravity(ball, DVec2::new(0.0, -10.0));
+//!
+//! let mut world = builder.build()?;
+//! let mut impacts = 0;
+//! world.advance_to(2.0, &mut |_| impacts += 1)?;
+//! assert_eq!(impacts, 2);
+//! assert!((world.energy().total() - 20.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+#[cfg(feature = "scene")]
+mod build;
 mod builder;
+#[cfg(feature = "scene")]
+mod check;
 mod event;
 mod overlap;
+#[cfg(feature = "scene")]
+pub mod picture;
+#[cfg(feature = "scene")]
+mod recording;
+#[cfg(feature = "scene")]
+mod result;
+#[cfg(feature = "scene")]
+mod run;
 mod run_error;
 mod scales;
+#[cfg(feature = "scene")]
+pub mod scene;
 mod start;
 mod world;
 
 pub use builder::{BodySpec, DEFAULT_TOLERANCE, WorldBuilder, WorldError, WorldSettings};
+#[cfg(feature = "scene")]
+pub use check::{CheckReport, check};
 pub use event::{Impact, ImpactRow};
 pub use halfgap_collision::{BodyId, BodyState, Tolerances};
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
-pub use run_error::{RunError, StopKind};
+#[cfg(feature = "scene")]
+pub use recording::{Frame, RecordedBody, Recording};
+#[cfg(feature = "scene")]
+pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
+#[cfg(feature = "scene")]
+pub use run::{Record, RunPlan, RunReport, run};
+pub use run_error::{RunError, Status};
 pub use scales::ToleranceOverrides;
 pub use world::{Energy, Inertia, Statistics, World};

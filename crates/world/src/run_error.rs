@@ -6,7 +6,7 @@ use halfgap_contact::ImpactError;
 
 /// How a run that stopped early is summed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StopKind {
+pub enum Status {
     /// The advance cannot go on.
     Stuck,
     /// The contact problem has no solution.
@@ -61,8 +61,8 @@ pub enum RunError {
 impl RunError {
     /// How the run is summed up.
     #[must_use]
-    pub fn kind(&self) -> StopKind {
-        StopKind::Stuck
+    pub fn status(&self) -> Status {
+        Status::Stuck
     }
 
     /// When it stopped [s].

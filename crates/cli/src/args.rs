@@ -1,0 +1,56 @@
+//! The command line.
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Exact, fast 2D rigid-body mechanics.
+///
+/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early.
+#[derive(Debug, Parser)]
+#[command(name = "halfgap", version)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a scene, report how it ended, and record it if asked to.
+    Run(RunOptions),
+    /// Run scenes that have expected states, and compare.
+    Check(CheckOptions),
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct RunOptions {
+    /// The scene, a .toml or .json file.
+    pub(crate) scene: PathBuf,
+    /// Write the recording (CSV and JSON) and pictures (SVG) to this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON object instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Relative accuracy, instead of the scene's.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Duration in seconds, instead of the scene's.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) duration: Option<f64>,
+    /// No progress bar and no table.
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct CheckOptions {
+    /// The scenes, .toml or .json files.
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Print a JSON array instead of lines.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Relative accuracy, instead of the scenes'.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+}

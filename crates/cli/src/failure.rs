@@ -1,0 +1,78 @@
+//! How a command ends, and the messages when it ends badly.
+
+use halfgap::scene::SceneError;
+use std::fmt::Write;
+use std::io;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// How a command ended, apart from errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// Everything was done.
+    Done,
+    /// A check failed.
+    CheckFailed,
+    /// A scene among several could not be read; the others were checked.
+    BadInput,
+    /// The simulation stopped early.
+    Stopped,
+}
+
+impl From<End> for ExitCode {
+    fn from(end: End) -> Self {
+        ExitCode::from(match end {
+            End::Done => 0,
+            End::CheckFailed => 1,
+            End::BadInput => 2,
+            End::Stopped => 3,
+        })
+    }
+}
+
+/// What kept a command from its work.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The scene or an option is wrong.
+    Scene(SceneError),
+    /// A file of the recording could not be written.
+    Write(PathBuf, io::Error),
+}
+
+impl Failure {
+    pub(crate) fn exit_code(&self) -> u8 {
+        // A folder that cannot be written to is a wrong option.
+        2
+    }
+
+    /// Writes the message to standard error.
+    pub(crate) fn report(&self) {
+        eprintln!("{}", self.message());
+    }
+
+    fn message(&self) -> String {
+        match self {
+            Self::Scene(error) => describe(error),
+            Self::Write(path, error) => format!("error: --out: cannot write {}: {error}", path.display()),
+        }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(error)
+    }
+}
+
+/// The message of an error with the line it is about.
+pub(crate) fn describe(error: &SceneError) -> String {
+    let mut text = format!("error: {error}");
+    if let (Some(position), Some(excerpt)) = (error.position(), error.excerpt()) {
+        let number = position.line.to_string();
+        let margin = " ".repeat(number.len());
+        let line = &excerpt.text;
+        let _ =
+            write!(text, "\n {margin} |\n {number} | {line}\n {margin} | {:>1$}", '^', excerpt.before + 1);
+    }
+    text
+}

@@ -1,0 +1,49 @@
+//! The folder that `--out` names: recording, result and pictures.
+
+use crate::failure::Failure;
+use halfgap::picture::{energy_picture, events_picture, scene_picture};
+use halfgap::{Recording, RunResult, World};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// Makes the folder, before the run, so that a run is not lost to a bad path.
+pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.to_path_buf(), error))
+}
+
+/// Writes everything.
+pub(crate) fn write_all(
+    folder: &Path,
+    world: &World,
+    recording: &Recording,
+    result: &RunResult,
+) -> Result<(), Failure> {
+    write(folder, "states.csv", |out| recording.write_states_csv(out))?;
+    write(folder, "impacts.csv", |out| recording.write_impacts_csv(out))?;
+    write(folder, "energy.csv", |out| recording.write_energy_csv(out))?;
+    write(folder, "recording.json", |out| recording.write_json(out))?;
+    write(folder, "result.json", |out| writeln!(out, "{}", result.to_json()))?;
+    let mut ends = Vec::new();
+    ends.extend(recording.frames.first().map(|frame| ("start.svg", frame)));
+    ends.extend(recording.frames.last().map(|frame| ("end.svg", frame)));
+    for (name, frame) in ends {
+        write(folder, name, |out| out.write_all(scene_picture(world, recording, frame).as_bytes()))?;
+    }
+    write(folder, "energy.svg", |out| out.write_all(energy_picture(recording).as_bytes()))?;
+    write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))
+}
+
+fn write(
+    folder: &Path,
+    name: &str,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let path = folder.join(name);
+    let fill_file = || {
+        let mut out = BufWriter::new(File::create(&path)?);
+        fill(&mut out)?;
+        out.flush()
+    };
+    fill_file().map_err(|error| Failure::Write(path.clone(), error))
+}

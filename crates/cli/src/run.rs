@@ -1,0 +1,44 @@
+//! `halfgap run`: runs a scene and reports how it ended.
+
+use crate::args::RunOptions;
+use crate::failure::{End, Failure};
+use crate::progress::Progress;
+use crate::{files, output, table};
+use halfgap::scene::SceneSource;
+use halfgap::{Record, RunPlan, RunResult, World, run as run_world};
+
+pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
+    let source = SceneSource::read(&options.scene)?;
+    let mut scene = source.parse()?;
+    if let Some(tolerance) = options.tolerance {
+        scene.set_tolerance(tolerance, "--tolerance")?;
+    }
+    if let Some(duration) = options.duration {
+        scene.set_duration(duration, "--duration")?;
+    }
+    let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
+    if let Some(folder) = &options.out {
+        files::prepare(folder)?;
+    }
+    let record = if options.out.is_some() { Record::Everything } else { Record::Ends };
+    let plan = RunPlan::of_scene(&scene, record);
+    let progress = Progress::new(!options.quiet && !options.json, &scene.title);
+    let report = run_world(&mut world, &plan, &mut |part| progress.set(part));
+    progress.finish();
+    let result = RunResult::new(&world, &report);
+    if let Some(folder) = &options.out {
+        files::write_all(folder, &world, &report.recording, &result)?;
+    }
+    if options.json {
+        output::print(&format!("{}\n", result.to_json()));
+    } else if !options.quiet {
+        output::print(&table::of_result(&result));
+    }
+    match &report.error {
+        None => Ok(End::Done),
+        Some(error) => {
+            eprintln!("error: {}: stopped early at t = {} s: {error}", options.scene.display(), result.time);
+            Ok(End::Stopped)
+        }
+    }
+}

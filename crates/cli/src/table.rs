@@ -1,0 +1,71 @@
+//! The table that `halfgap run` prints.
+
+use halfgap::RunResult;
+use std::fmt::Write;
+
+/// More bodies than this are not listed one by one; `--json` and `--out` list all.
+const MOST_BODIES: usize = 60;
+/// Longest name that is not cut.
+const LONGEST_NAME: usize = 24;
+
+/// States, energies and counters.
+pub(crate) fn of_result(result: &RunResult) -> String {
+    let mut text = format!("{}: {} at t = {} s\n\n", result.scene, result.status.name(), result.time);
+    push_states(&mut text, result);
+    push_summary(&mut text, result);
+    text
+}
+
+fn push_states(text: &mut String, result: &RunResult) {
+    let listed = &result.bodies[..result.bodies.len().min(MOST_BODIES)];
+    let width = listed.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0).clamp(4, LONGEST_NAME);
+    let heads = ["x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "w [rad/s]"];
+    let _ = write!(text, "{:width$}", "body");
+    for head in heads {
+        let _ = write!(text, " {head:>16}");
+    }
+    text.push('\n');
+    for (name, state) in listed {
+        let short: String = name.chars().take(LONGEST_NAME).collect();
+        let _ = write!(text, "{short:width$}");
+        let (position, velocity) = (state.position, state.velocity);
+        for value in [position.x, position.y, state.angle, velocity.x, velocity.y, state.angular_velocity] {
+            let _ = write!(text, " {:>16}", number(value));
+        }
+        text.push('\n');
+    }
+    if listed.len() < result.bodies.len() {
+        let _ = writeln!(text, "... and {} more", result.bodies.len() - listed.len());
+    }
+    text.push('\n');
+}
+
+fn push_summary(text: &mut String, result: &RunResult) {
+    let (energy, statistics) = (&result.energy, &result.statistics.world);
+    let length = |value: Option<f64>| value.map_or("none".to_owned(), |value| format!("{value:.3e} m"));
+    let change = energy.total - energy.start;
+    let ends = format!("{} J at the start, {} J at the end", number(energy.start), number(energy.total));
+    let rows = [
+        ("energy", format!("{ends} (change {change:.3e} J)")),
+        (
+            "at the end",
+            format!("kinetic {} J, potential {} J", number(energy.kinetic), number(energy.potential)),
+        ),
+        ("steps", format!("{} ({} evaluations)", statistics.steps, statistics.evaluations)),
+        ("impacts", statistics.impacts.to_string()),
+        ("back-ups", statistics.backups.to_string()),
+        ("contact solves", statistics.contact_solves.to_string()),
+        ("smallest gap", length(statistics.smallest_gap)),
+        ("connector error", length(statistics.largest_connector_error)),
+        ("wall time", format!("{:.6} s", result.statistics.wall_seconds)),
+    ];
+    for (name, value) in rows {
+        let _ = writeln!(text, "{name:16} {value}");
+    }
+}
+
+/// Ten digits: enough to read, few enough to compare by eye.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-3..1e5).contains(&size) { format!("{value:.9}") } else { format!("{value:.8e}") }
+}

@@ -1,0 +1,226 @@
+//! The command as a user meets it: exit codes, messages, JSON and files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A scene of one disc that meets nothing.
+const FLIGHT: &str = r#"format = "halfgap-scene-1"
+title = "Free flight"
+
+[run]
+duration = 2.0
+
+[[body]]
+name = "disc"
+shape = { disc = { radius = 0.5 } }
+mass = 2.0
+velocity = [1.0, 0.0]
+
+[[expected]]
+time = 2.0
+position_tolerance = 1e-9
+[expected.bodies.disc]
+position = [2.0, 0.0]
+"#;
+
+/// A folder of a test's own, removed when the test is over.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("halfgap-{test}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a folder for the test");
+        Self(path)
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).expect("a test file");
+        path.display().to_string()
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+
+    /// The text without the folder's name.
+    fn plain(&self, bytes: &[u8]) -> String {
+        String::from_utf8_lossy(bytes).replace(&format!("{}/", self.0.display()), "")
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn halfgap(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_halfgap")).args(arguments).output().expect("the command runs")
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).expect("standard output is JSON")
+}
+
+#[test]
+fn run_prints_a_table() {
+    let folder = Folder::new("table");
+    let output = halfgap(&["run", &folder.write("flight.toml", FLIGHT)]);
+    let text = folder.plain(&output.stdout);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text.starts_with("Free flight: done at t = 2 s\n"), "{text}");
+    assert!(text.contains("disc      2.000000000      0.000000000"), "{text}");
+    assert!(output.stderr.is_empty(), "no progress bar when piped");
+}
+
+#[test]
+fn run_prints_one_json_object() {
+    let folder = Folder::new("json");
+    let output = halfgap(&["run", &folder.write("flight.toml", FLIGHT), "--json", "--duration", "1"]);
+    let result = json(&output);
+    assert_eq!(result["format"], "halfgap-result-1");
+    assert_eq!(result["scene"], "Free flight");
+    assert_eq!(result["status"], "done");
+    assert_eq!(result["bodies"]["disc"]["position"], serde_json::json!([1.0, 0.0]));
+    assert_eq!(result["energy"]["start"], 1.0);
+    assert_eq!(result["statistics"]["largest_connector_error"], serde_json::Value::Null);
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let folder = Folder::new("quiet");
+    let output = halfgap(&["run", &folder.write("flight.toml", FLIGHT), "--quiet"]);
+    assert_eq!((output.stdout.len(), output.stderr.len()), (0, 0));
+}
+
+#[test]
+fn out_writes_recording_and_pictures() {
+    let folder = Folder::new("out");
+    let scene =
+        folder.write("flight.toml", &FLIGHT.replace("2.0\n\n[[body", "2.0\noutput_step = 0.75\n\n[[body"));
+    let out = folder.path("deep/out");
+    assert_eq!(halfgap(&["run", &scene, "--out", &out, "--quiet"]).status.code(), Some(0));
+    let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name)).expect("the file is there");
+    insta::assert_snapshot!(read("states.csv"), @r"
+    time [s],body,x [m],y [m],angle [rad],vx [m/s],vy [m/s],angular_velocity [rad/s]
+    0,disc,0,0,0,1,0,0
+    0.75,disc,0.75,0,0,1,0,0
+    1.5,disc,1.5,0,0,1,0,0
+    2,disc,2,0,0,1,0,0
+    ");
+    insta::assert_snapshot!(read("energy.csv"), @r"
+    time [s],kinetic [J],potential [J],total [J]
+    0,1,0,1
+    0.75,1,0,1
+    1.5,1,0,1
+    2,1,0,1
+    ");
+    assert_eq!(read("impacts.csv").lines().count(), 1);
+    let recording: serde_json::Value = serde_json::from_str(&read("recording.json")).expect("JSON");
+    assert_eq!(recording["frames"].as_array().map(Vec::len), Some(4));
+    assert!(read("result.json").contains("\"status\":\"done\""));
+    for name in ["start.svg", "end.svg", "energy.svg", "events.svg"] {
+        assert!(read(name).starts_with("<svg ") && read(name).ends_with("</svg>\n"), "{name}");
+    }
+    assert!(
+        read("end.svg").contains("A133.333 133.333 0 0 0 "),
+        "arcs are drawn as arcs: {}",
+        read("end.svg")
+    );
+}
+
+#[test]
+fn a_wrong_scene_ends_with_2_and_shows_the_line() {
+    let folder = Folder::new("wrong");
+    let scene = folder.write("scene.toml", &FLIGHT.replace("mass = 2.0", "mass = -2"));
+    let output = halfgap(&["run", &scene]);
+    assert_eq!(output.status.code(), Some(2));
+    insta::assert_snapshot!(folder.plain(&output.stderr), @r"
+    error: scene.toml:10: body[0].mass: must be positive, got -2 kg
+        |
+     10 | mass = -2
+        | ^
+    ");
+    let syntax = folder.write("syntax.toml", &FLIGHT.replace("mass = 2.0", "mass = = 2"));
+    insta::assert_snapshot!(folder.plain(&halfgap(&["run", &syntax]).stderr), @r"
+    error: syntax.toml:10: not valid TOML: extra `=`, expected nothing
+        |
+     10 | mass = = 2
+        |        ^
+    ");
+    let none = halfgap(&["run", &folder.path("none.toml"), "--json"]);
+    assert_eq!((none.status.code(), none.stdout.len()), (Some(2), 0));
+    insta::assert_snapshot!(folder.plain(&none.stderr), @"error: none.toml: cannot be read: No such file or directory (os error 2)");
+}
+
+#[test]
+fn what_is_not_supported_yet_is_refused_with_its_line() {
+    let folder = Folder::new("unsupported");
+    let scene = folder.write("scene.toml", &FLIGHT.replace("mass = 2.0", "mass = 2.0\nfriction = 0.5"));
+    let output = halfgap(&["run", &scene]);
+    assert_eq!(output.status.code(), Some(2));
+    insta::assert_snapshot!(folder.plain(&output.stderr), @r"
+    error: scene.toml:11: body[0].friction: friction is not supported yet
+        |
+     11 | friction = 0.5
+        | ^
+    ");
+}
+
+#[test]
+fn wrong_options_are_named() {
+    let folder = Folder::new("options");
+    let scene = folder.write("flight.toml", FLIGHT);
+    let message = |option: &str, value: &str| {
+        let output = halfgap(&["run", &scene, option, value]);
+        assert_eq!(output.status.code(), Some(2), "{option} {value}");
+        folder.plain(&output.stderr)
+    };
+    insta::assert_snapshot!(message("--tolerance", "-1"), @"error: --tolerance: must be positive, got -1");
+    insta::assert_snapshot!(message("--tolerance", "nan"), @"error: --tolerance: must be a finite number, got NaN");
+    insta::assert_snapshot!(message("--duration", "0"), @"error: --duration: must be positive, got 0 s");
+    let file = folder.write("file", "");
+    insta::assert_snapshot!(message("--out", &format!("{file}/out")), @"error: --out: cannot write file/out: Not a directory (os error 20)");
+}
+
+#[test]
+fn check_compares_and_says_why() {
+    let folder = Folder::new("check");
+    let good = folder.write("good.toml", FLIGHT);
+    let bad = folder.write("bad.toml", &FLIGHT.replace("position = [2.0, 0.0]", "position = [2.5, 0.0]"));
+    assert_eq!(halfgap(&["check", &good]).status.code(), Some(0));
+    let output = halfgap(&["check", &good, &bad]);
+    assert_eq!(output.status.code(), Some(1));
+    insta::assert_snapshot!(folder.plain(&output.stdout), @r"
+    ok     good.toml  position 0.00e0 m  velocity -  energy -
+    FAILED bad.toml  position 5.00e-1 m  velocity -  energy -
+           t = 2 s: disc: position: got [2, 0], expected [2.5, 0] within 1e-9 m
+    ");
+    let output = halfgap(&["check", &good, &bad, "--json"]);
+    insta::assert_snapshot!(folder.plain(&output.stdout), @r#"[{"scene":"Free flight","ok":true,"position_error":0.0,"velocity_error":null,"energy_error":null,"why":[],"file":"good.toml"},{"scene":"Free flight","ok":false,"position_error":0.5,"velocity_error":null,"energy_error":null,"why":["t = 2 s: disc: position: got [2, 0], expected [2.5, 0] within 1e-9 m"],"file":"bad.toml"}]"#);
+}
+
+#[test]
+fn check_reports_the_others_beside_a_scene_that_cannot_be_read() {
+    let folder = Folder::new("check-unreadable");
+    let good = folder.write("good.toml", FLIGHT);
+    let output = halfgap(&["check", &folder.path("none.toml"), &good, "--json"]);
+    assert_eq!(output.status.code(), Some(2));
+    let reports = json(&output);
+    assert_eq!(reports[0]["ok"], false);
+    assert_eq!(reports[1]["ok"], true);
+}
+
+#[test]
+fn the_scenes_to_look_at_can_be_read_and_run() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut count = 0;
+    for entry in std::fs::read_dir(scenes).expect("the scenes are there") {
+        let scene = entry.expect("a readable entry").path().display().to_string();
+        let output = halfgap(&["run", &scene, "--duration", "0.1", "--quiet"]);
+        assert_eq!(output.status.code(), Some(0), "{scene}: {}", String::from_utf8_lossy(&output.stderr));
+        count += 1;
+    }
+    assert!(count >= 6);
+}

@@ -1,0 +1,26 @@
+//! Pictures of runs as SVG: the scene, energy over time, and the impacts on a time line.
+//!
+//! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `view` maps the world
+//! to the page; `scene`, `energy` and `events` are one picture each, the latter two on the `axes` they share.
+
+mod axes;
+mod energy;
+mod events;
+mod outline;
+mod scene;
+mod svg;
+mod ticks;
+mod view;
+
+pub use energy::energy_picture;
+pub use events::events_picture;
+pub use scene::scene_picture;
+
+/// Colours of the bodies, in turn.
+const PALETTE: [&str; 8] =
+    ["#3b6fb6", "#d9822b", "#3f9b6b", "#b5485d", "#7a5fb0", "#2a9db0", "#a8862f", "#5f6f52"];
+
+/// The colour of the movable body at a place.
+fn color(place: usize) -> &'static str {
+    PALETTE[place % PALETTE.len()]
+}

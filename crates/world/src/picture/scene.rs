@@ -1,0 +1,117 @@
+//! The scene at one time: bodies with their true arcs, trails of centres of mass, and a scale bar.
+
+use super::color;
+use super::outline::path_data;
+use super::svg::{Svg, TextStyle, number};
+use super::ticks::{label, round_step};
+use super::view::{FOOT, View};
+use crate::recording::{Frame, Recording, body_ids};
+use crate::world::World;
+use halfgap_collision::{BodyId, BodyState};
+use halfgap_geometry::{Aabb, Pose};
+use std::fmt::Write;
+
+/// Fixed bodies that reach no farther than this beyond what moves are shown whole, as part of the size of that.
+const NEAR: f64 = 1.5;
+/// Of larger ones this much is shown.
+const SURROUNDINGS: f64 = 0.35;
+/// More points of a trail than this are thinned out.
+const LONGEST_TRAIL: usize = 4000;
+
+/// Draws the bodies of a world as they are in a frame of its recording; the trails are those of the whole recording.
+#[must_use]
+pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> String {
+    let view = View::of_box(shown_box(world, recording));
+    let mut svg = Svg::new(view.page_width(), view.page_height());
+    draw_title(&mut svg, recording, frame);
+    svg.open_group(&[("stroke-linejoin", "round"), ("stroke-linecap", "round"), ("fill-rule", "evenodd")]);
+    for body in body_ids(world).filter(|&body| world.is_fixed(body)) {
+        let data = path_data(world.shape(body), &pose(&world.state(body)), &view);
+        svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
+    }
+    draw_trails(&mut svg, recording, &view);
+    for (place, (&body, state)) in recording.movable.iter().zip(&frame.states).enumerate() {
+        draw_movable(&mut svg, world, body, (place, state), &view);
+    }
+    svg.close_group();
+    draw_scale_bar(&mut svg, &view);
+    svg.finish()
+}
+
+fn pose(state: &BodyState) -> Pose {
+    Pose::new(state.position, state.angle)
+}
+
+/// What moves, wherever it goes, and what is fixed near that.
+fn shown_box(world: &World, recording: &Recording) -> Option<Aabb> {
+    let every = recording.frames.len().div_ceil(LONGEST_TRAIL).max(1);
+    let frames = recording.frames.iter().step_by(every).chain(recording.frames.last());
+    let posed = frames.flat_map(|frame| recording.movable.iter().zip(&frame.states));
+    let moving = posed.map(|(&body, state)| world.shape(body).bounds_at(&pose(state))).reduce(Aabb::union);
+    let fixed = body_ids(world).filter(|&body| world.is_fixed(body));
+    let fixed = fixed.map(|body| world.shape(body).bounds_at(&pose(&world.state(body))));
+    let Some(moving) = moving else { return fixed.reduce(Aabb::union) };
+    let size = moving.size().max_element();
+    let (around, near) = (moving.grown(SURROUNDINGS * size), moving.grown(NEAR * size));
+    let shown = fixed.filter(|bounds| bounds.overlaps(&around)).map(|bounds| {
+        if near.contains(&bounds) {
+            bounds
+        } else {
+            Aabb { min: bounds.min.max(around.min), max: bounds.max.min(around.max) }
+        }
+    });
+    Some(shown.fold(moving, Aabb::union))
+}
+
+fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
+    let title = TextStyle { size: 18.0, anchor: "start", color: "#22272b" };
+    svg.text((20.0, 28.0), title, &recording.title);
+    let subtitle = TextStyle { size: 13.0, anchor: "start", color: "#6b7278" };
+    svg.text((20.0, 47.0), subtitle, &format!("t = {} s", label(frame.time, 1e-3)));
+}
+
+fn draw_trails(svg: &mut Svg, recording: &Recording, view: &View) {
+    let every = recording.frames.len().div_ceil(LONGEST_TRAIL).max(1);
+    for place in 0..recording.movable.len() {
+        let mut data = String::new();
+        for frame in recording.frames.iter().step_by(every).chain(recording.frames.last()) {
+            let point = view.to_page(frame.states[place].position);
+            let command = if data.is_empty() { 'M' } else { 'L' };
+            let _ = write!(data, "{command}{} {}", number(point.0), number(point.1));
+        }
+        let attributes =
+            [("fill", "none"), ("stroke", color(place)), ("stroke-width", "1"), ("stroke-opacity", "0.45")];
+        svg.path(&data, &attributes);
+    }
+}
+
+/// Draws a body, its centre of mass, and a line that shows how far it has turned.
+fn draw_movable(svg: &mut Svg, world: &World, body: BodyId, drawn: (usize, &BodyState), view: &View) {
+    let (place, state) = drawn;
+    let pose = pose(state);
+    let data = path_data(world.shape(body), &pose, view);
+    let attributes =
+        [("fill", color(place)), ("fill-opacity", "0.55"), ("stroke", color(place)), ("stroke-width", "1.5")];
+    svg.path(&data, &attributes);
+    let hand = pose.point_to_world(glam::DVec2::new(0.5 * world.shape(body).reach(), 0.0));
+    let center = view.to_page(state.position);
+    svg.line(center, view.to_page(hand), &[("stroke", "#22272b"), ("stroke-width", "1")]);
+    svg.circle(center, 2.0, &[("fill", "#22272b")]);
+}
+
+fn draw_scale_bar(svg: &mut Svg, view: &View) {
+    let length = round_step(view.page_width() / view.scale(), 6.0);
+    let (left, right) = (20.0, 20.0 + length * view.scale());
+    let y = view.page_height() - 0.45 * FOOT;
+    let data = format!(
+        "M{l} {top}L{l} {bottom}M{l} {y}L{r} {y}M{r} {top}L{r} {bottom}",
+        l = number(left),
+        r = number(right),
+        y = number(y),
+        top = number(y - 4.0),
+        bottom = number(y + 4.0)
+    );
+    svg.path(&data, &[("stroke", "#6b7278"), ("stroke-width", "1.5"), ("fill", "none")]);
+    let style = TextStyle { size: 12.0, anchor: "start", color: "#6b7278" };
+    svg.text((right + 8.0, y + 4.0), style, &format!("{} m", label(length, length)));
+}

@@ -1,0 +1,105 @@
+//! Recordings as JSON, format `halfgap-recording-1`: bodies, states, energies and impacts in one object.
+
+use super::{Frame, Recording};
+use crate::event::{Impact, ImpactRow};
+use serde::Serialize;
+use std::io::{self, Write};
+
+#[derive(Serialize)]
+struct RecordingJson<'a> {
+    format: &'static str,
+    scene: &'a str,
+    units: &'static str,
+    bodies: Vec<BodyJson<'a>>,
+    movable: Vec<&'a str>,
+    frames: Vec<FrameJson>,
+    impacts: Vec<ImpactJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct BodyJson<'a> {
+    name: &'a str,
+    fixed: bool,
+}
+
+/// States as `[x, y, angle, vx, vy, angular_velocity]`, in the order of `movable`.
+#[derive(Serialize)]
+struct FrameJson {
+    time: f64,
+    states: Vec<[f64; 6]>,
+    kinetic: f64,
+    potential: f64,
+    total: f64,
+}
+
+#[derive(Serialize)]
+struct ImpactJson<'a> {
+    time: f64,
+    energy_change: f64,
+    rows: Vec<RowJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct RowJson<'a> {
+    primary: &'a str,
+    normal_body: &'a str,
+    point: [f64; 2],
+    normal: [f64; 2],
+    gap: f64,
+    velocity_before: f64,
+    velocity_after: f64,
+    impulse: f64,
+}
+
+impl Recording {
+    /// Writes everything as one JSON object.
+    ///
+    /// # Errors
+    /// Whatever the writer fails with.
+    pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
+        let bodies = self.bodies.iter().map(|body| BodyJson { name: &body.name, fixed: body.fixed });
+        let json = RecordingJson {
+            format: "halfgap-recording-1",
+            scene: &self.title,
+            units: "SI, radians; states are [x, y, angle, vx, vy, angular_velocity] of the movable bodies",
+            bodies: bodies.collect(),
+            movable: self.movable.iter().map(|&body| self.name(body)).collect(),
+            frames: self.frames.iter().map(frame_json).collect(),
+            impacts: self.impacts.iter().map(|impact| self.impact_json(impact)).collect(),
+        };
+        serde_json::to_writer(&mut *out, &json)?;
+        writeln!(out)
+    }
+
+    fn impact_json(&self, impact: &Impact) -> ImpactJson<'_> {
+        let rows = impact.rows.iter().map(|row| self.row_json(row)).collect();
+        ImpactJson { time: impact.time, energy_change: impact.energy_change, rows }
+    }
+
+    fn row_json(&self, row: &ImpactRow) -> RowJson<'_> {
+        RowJson {
+            primary: self.name(row.primary),
+            normal_body: self.name(row.normal_body),
+            point: row.point.to_array(),
+            normal: row.normal.to_array(),
+            gap: row.gap,
+            velocity_before: row.velocity_before,
+            velocity_after: row.velocity_after,
+            impulse: row.impulse,
+        }
+    }
+}
+
+fn frame_json(frame: &Frame) -> FrameJson {
+    let states = frame.states.iter().map(|state| {
+        let (position, velocity) = (state.position, state.velocity);
+        [position.x, position.y, state.angle, velocity.x, velocity.y, state.angular_velocity]
+    });
+    FrameJson {
+        time: frame.time,
+        states: states.collect(),
+        kinetic: frame.energy.kinetic,
+        potential: frame.energy.potential,
+        total: frame.energy.total(),
+    }
+}

@@ -1,0 +1,172 @@
+//! The result of a run in short, and as JSON of the format `halfgap-result-1`.
+
+use crate::recording::Recording;
+use crate::run::RunReport;
+use crate::run_error::Status;
+use crate::world::{Statistics, World};
+use halfgap_collision::BodyState;
+use serde::ser::{SerializeMap, SerializeStruct};
+use serde::{Serialize, Serializer};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It reached its end.
+    Done,
+    /// It could not go on.
+    Stuck,
+    /// No forces satisfy the constraints.
+    Infeasible,
+}
+
+impl Outcome {
+    /// The word for it in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stuck => "stuck",
+            Self::Infeasible => "infeasible",
+        }
+    }
+}
+
+impl From<Status> for Outcome {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Stuck => Self::Stuck,
+            Status::Infeasible => Self::Infeasible,
+        }
+    }
+}
+
+/// The end of a run: states, energy, counters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunResult {
+    /// Title of the scene.
+    pub scene: String,
+    /// How it ended.
+    pub status: Outcome,
+    /// When it ended [s].
+    pub time: f64,
+    /// States of the movable bodies by name, in the order of the scene.
+    pub bodies: Vec<(String, BodyState)>,
+    /// Energies.
+    pub energy: EnergyResult,
+    /// Counters.
+    pub statistics: StatisticsResult,
+}
+
+/// Energy at start and end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EnergyResult {
+    /// Total at the start [J].
+    pub start: f64,
+    /// Kinetic at the end [J].
+    pub kinetic: f64,
+    /// Potential at the end [J].
+    pub potential: f64,
+    /// Total at the end [J].
+    pub total: f64,
+}
+
+/// Counters of a run, and its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StatisticsResult {
+    /// The world's own.
+    pub world: Statistics,
+    /// Time [s] spent on stepping alone.
+    pub wall_seconds: f64,
+}
+
+impl RunResult {
+    /// The result of a run that has just ended.
+    #[must_use]
+    pub fn new(world: &World, report: &RunReport) -> Self {
+        let recording: &Recording = &report.recording;
+        let state = |&body| (world.name(body).to_owned(), world.state(body));
+        let energy = world.energy();
+        Self {
+            scene: recording.title.clone(),
+            status: report.error.as_ref().map_or(Outcome::Done, |error| error.status().into()),
+            time: world.time(),
+            bodies: recording.movable.iter().map(state).collect(),
+            energy: EnergyResult {
+                start: report.start_energy.total(),
+                kinetic: energy.kinetic,
+                potential: energy.potential,
+                total: energy.total(),
+            },
+            statistics: StatisticsResult { world: world.statistics(), wall_seconds: report.wall_seconds },
+        }
+    }
+
+    /// One JSON object; numbers have the shortest form that reads back as the same bits.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a result is strings and numbers only")
+    }
+}
+
+impl Serialize for RunResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut result = serializer.serialize_struct("RunResult", 7)?;
+        result.serialize_field("format", "halfgap-result-1")?;
+        result.serialize_field("scene", &self.scene)?;
+        result.serialize_field("status", &self.status)?;
+        result.serialize_field("time", &self.time)?;
+        result.serialize_field("bodies", &BodiesJson(&self.bodies))?;
+        result.serialize_field("energy", &self.energy)?;
+        result.serialize_field("statistics", &self.statistics)?;
+        result.end()
+    }
+}
+
+/// A map in the order of the scene, which sorted maps would lose.
+struct BodiesJson<'a>(&'a [(String, BodyState)]);
+
+impl Serialize for BodiesJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut bodies = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, state) in self.0 {
+            bodies.serialize_entry(name, &StateJson::from(state))?;
+        }
+        bodies.end()
+    }
+}
+
+#[derive(Serialize)]
+struct StateJson {
+    position: [f64; 2],
+    angle: f64,
+    velocity: [f64; 2],
+    angular_velocity: f64,
+}
+
+impl From<&BodyState> for StateJson {
+    fn from(state: &BodyState) -> Self {
+        Self {
+            position: state.position.to_array(),
+            angle: state.angle,
+            velocity: state.velocity.to_array(),
+            angular_velocity: state.angular_velocity,
+        }
+    }
+}
+
+impl Serialize for StatisticsResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let world = &self.world;
+        let mut statistics = serializer.serialize_struct("StatisticsResult", 8)?;
+        statistics.serialize_field("steps", &world.steps)?;
+        statistics.serialize_field("evaluations", &world.evaluations)?;
+        statistics.serialize_field("impacts", &world.impacts)?;
+        statistics.serialize_field("backups", &world.backups)?;
+        statistics.serialize_field("contact_solves", &world.contact_solves)?;
+        statistics.serialize_field("smallest_gap", &world.smallest_gap)?;
+        statistics.serialize_field("largest_connector_error", &world.largest_connector_error)?;
+        statistics.serialize_field("wall_seconds", &self.wall_seconds)?;
+        statistics.end()
+    }
+}

@@ -1,0 +1,148 @@
+//! Runs a world to the end of its scene and records it.
+
+use crate::event::Impact;
+use crate::recording::{Frame, Recording};
+use crate::run_error::RunError;
+use crate::scene::Scene;
+use crate::world::{Energy, World};
+use std::time::{Duration, Instant};
+
+/// An output this part of a step before the end is the end.
+const LAST_STEP_SHARE: f64 = 1e-6;
+
+/// What a run keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Record {
+    /// States at all output times, and all impacts.
+    Everything,
+    /// The states at start and end.
+    Ends,
+}
+
+/// Until when to run, and what to keep on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunPlan {
+    /// Title of the scene.
+    pub title: String,
+    /// Time at the start [s].
+    pub start_time: f64,
+    /// Time at the end [s].
+    pub end_time: f64,
+    /// Time between output times [s].
+    pub output_step: f64,
+    /// What to keep.
+    pub record: Record,
+    /// Times [s] between start and end, ascending, at which states are wanted besides; see [`RunReport::stops`].
+    pub stops: Vec<f64>,
+}
+
+impl RunPlan {
+    /// The plan that a scene asks for.
+    #[must_use]
+    pub fn of_scene(scene: &Scene, record: Record) -> Self {
+        Self {
+            title: scene.title.clone(),
+            start_time: scene.run.start_time,
+            end_time: scene.run.end_time(),
+            output_step: scene.run.output_step_or_default(),
+            record,
+            stops: Vec::new(),
+        }
+    }
+
+    /// Output time `index` [s]: the end once there is no other left.
+    fn output_time(&self, index: u64) -> f64 {
+        // Counted, not summed up: the times are the same however long the run.
+        let time = self.start_time + index as f64 * self.output_step;
+        if time < self.end_time - LAST_STEP_SHARE * self.output_step { time } else { self.end_time }
+    }
+}
+
+/// How a run went, complete or not.
+#[derive(Debug)]
+pub struct RunReport {
+    /// States and impacts.
+    pub recording: Recording,
+    /// The states at the plan's stops, as far as the run got.
+    pub stops: Vec<Frame>,
+    /// Energy at the start.
+    pub start_energy: Energy,
+    /// Why it stopped early, if it did.
+    pub error: Option<RunError>,
+    /// Time [s] spent on stepping alone.
+    pub wall_seconds: f64,
+}
+
+/// Runs a world as planned; `progress` is called now and then with the part that is done, 0 to 1.
+///
+/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped.
+pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> RunReport {
+    let mut recording = Recording::new(plan.title.clone(), world);
+    recording.frames.push(recording.frame_of(world));
+    let start_energy = world.energy();
+    let mut stepper = Stepper { impacts: Vec::new(), wall: Duration::ZERO, record: plan.record };
+    let mut stops = Vec::new();
+    let mut error = None;
+    let mut output = 1;
+    // Not the world's own time, which is free to differ from the target by rounding.
+    let mut now = plan.start_time;
+    while error.is_none() && now < plan.end_time {
+        let output_time = plan.output_time(output);
+        let stop_time = plan.stops.get(stops.len()).copied().unwrap_or(f64::INFINITY);
+        let target = output_time.min(stop_time);
+        if target > now {
+            error = stepper.advance(world, target).err();
+            now = target;
+        }
+        if error.is_none() && target == stop_time {
+            stops.push(recording.frame_of(world));
+        }
+        if error.is_none() && target == output_time {
+            output += 1;
+            progress(done(now, plan));
+        }
+        let wanted = target == output_time && plan.record == Record::Everything;
+        if error.is_some() || wanted || target == plan.end_time {
+            push_new(&mut recording, world);
+        }
+    }
+    // Stops at the end itself: the loop has passed them.
+    while error.is_none() && stops.len() < plan.stops.len() {
+        stops.push(recording.frame_of(world));
+    }
+    recording.impacts = stepper.impacts;
+    RunReport { recording, stops, start_energy, error, wall_seconds: stepper.wall.as_secs_f64() }
+}
+
+/// Records the world, unless its last frame has this time already.
+fn push_new(recording: &mut Recording, world: &World) {
+    if recording.frames.last().is_none_or(|frame| frame.time < world.time()) {
+        recording.frames.push(recording.frame_of(world));
+    }
+}
+
+fn done(time: f64, plan: &RunPlan) -> f64 {
+    ((time - plan.start_time) / (plan.end_time - plan.start_time)).clamp(0.0, 1.0)
+}
+
+/// Advances a world, collects its impacts and measures the time that takes.
+struct Stepper {
+    impacts: Vec<Impact>,
+    wall: Duration,
+    record: Record,
+}
+
+impl Stepper {
+    fn advance(&mut self, world: &mut World, time: f64) -> Result<(), RunError> {
+        let impacts = &mut self.impacts;
+        let keep = self.record == Record::Everything;
+        let started = Instant::now();
+        let result = world.advance_to(time, &mut |impact| {
+            if keep {
+                impacts.push(impact.clone());
+            }
+        });
+        self.wall += started.elapsed();
+        result
+    }
+}

@@ -1,0 +1,54 @@
+//! Bodies as a scene file gives them.
+
+use super::shape::ShapeData;
+use super::vector::Vector;
+use serde::Deserialize;
+
+/// The name by which points refer to the immovable background. No body may have it.
+pub const WORLD: &str = "world";
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyData {
+    /// Its name, unique in the scene.
+    pub name: String,
+    /// Immovable, as if of infinite mass.
+    #[serde(default)]
+    pub fixed: bool,
+    /// Its shape, in shape coordinates.
+    pub shape: ShapeData,
+    /// Mass [kg]; a movable body has either this or a density.
+    pub mass: Option<f64>,
+    /// Mass per area [kg/m²].
+    pub density: Option<f64>,
+    /// Moment of inertia about the centre of mass [kg·m²]; uniform over the shape if not given.
+    pub moment: Option<f64>,
+    /// Centre of mass in shape coordinates [m]; the shape's centroid if not given.
+    pub center_of_mass: Option<Vector>,
+    /// World position of the centre of mass at the start [m].
+    #[serde(default)]
+    pub position: Vector,
+    /// Angle at the start [rad].
+    #[serde(default)]
+    pub angle: f64,
+    /// Velocity of the centre of mass at the start [m/s].
+    #[serde(default)]
+    pub velocity: Vector,
+    /// Angular velocity at the start [rad/s].
+    #[serde(default)]
+    pub angular_velocity: f64,
+    /// Coefficient of restitution, 0 to 1; a pair uses the lesser of two.
+    #[serde(default = "full_elasticity")]
+    pub elasticity: f64,
+    /// Coulomb coefficient; a pair uses the geometric mean of two.
+    #[serde(default)]
+    pub friction: f64,
+    /// Bodies with which this one never collides (nor they with it).
+    #[serde(default)]
+    pub passes_through: Vec<String>,
+}
+
+fn full_elasticity() -> f64 {
+    1.0
+}

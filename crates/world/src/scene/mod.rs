@@ -1,0 +1,155 @@
+//! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
+//!
+//! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for messages, and
+//! `supported` refuses what is part of the format but not simulated yet. SI units, radians, counter-clockwise positive,
+//! y up.
+
+mod body;
+mod connector;
+mod error;
+mod expected;
+mod field_path;
+mod force;
+mod locate;
+mod one_key;
+mod run_data;
+mod shape;
+mod source;
+mod supported;
+mod validate;
+mod vector;
+
+pub use body::{BodyData, WORLD};
+pub use connector::{
+    ConnectorData, ConnectorOptions, LengthData, NormalFrame, PinData, PointData, RailData, RailPath,
+    RailStopData, SlotData,
+};
+pub use error::{Excerpt, Position, SceneError};
+pub use expected::{ExpectedData, ExpectedState};
+pub use field_path::{FieldPath, Step};
+pub use force::{
+    ConstantData, DampingData, ForceData, ForceFrame, GravityData, MutualGravityData, RotatingData,
+    SpringData,
+};
+pub use run_data::{ImpactLaw, Integrator, RunData, Stabilization};
+pub use shape::{
+    ArcData, BlockData, DiscData, EdgeData, OutlineData, PathData, PolygonData, RingData, RoundedBlockData,
+    ShapeData,
+};
+pub use source::{SceneFormat, SceneSource};
+pub use vector::Vector;
+
+use serde::Deserialize;
+use std::path::Path;
+
+/// A scene: bodies, what ties them together, what acts on them, and how to run it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Version of the format.
+    pub format: FormatVersion,
+    /// A name for people.
+    pub title: String,
+    /// One line for people.
+    pub about: Option<String>,
+    /// How long and how exactly to run.
+    pub run: RunData,
+    /// The bodies.
+    #[serde(default, rename = "body")]
+    pub bodies: Vec<BodyData>,
+    /// What ties bodies together.
+    #[serde(default, rename = "connector")]
+    pub connectors: Vec<ConnectorData>,
+    /// What acts on bodies.
+    #[serde(default, rename = "force")]
+    pub forces: Vec<ForceData>,
+    /// States that a run is expected to reach.
+    #[serde(default)]
+    pub expected: Vec<ExpectedData>,
+}
+
+/// Version of the scene format.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum FormatVersion {
+    /// The first.
+    #[default]
+    #[serde(rename = "halfgap-scene-1")]
+    One,
+}
+
+impl Scene {
+    /// Reads, parses and validates a `.toml` or `.json` file.
+    ///
+    /// Use [`SceneSource`] to keep the text, so that later errors can name their line too.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with file, line and field.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        SceneSource::read(path)?.parse()
+    }
+
+    /// Parses and validates a text.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with line and field.
+    ///
+    /// # Examples
+    /// ```
+    /// use halfgap::scene::{Scene, SceneFormat};
+    ///
+    /// let text = r#"
+    ///     format = "halfgap-scene-1"
+    ///     title = "A disc on its way"
+    ///     run = { duration = 1.0 }
+    ///
+    ///     [[body]]
+    ///     name = "disc"
+    ///     shape = { disc = { radius = 0.5 } }
+    ///     mass = -2
+    /// "#;
+    /// let error = Scene::parse(text, SceneFormat::Toml).expect_err("nothing weighs less than nothing");
+    /// assert_eq!(error.to_string(), "line 9: body[0].mass: must be positive, got -2 kg");
+    /// ```
+    pub fn parse(text: &str, format: SceneFormat) -> Result<Self, SceneError> {
+        SceneSource::new(text, format).parse()
+    }
+
+    /// Checks every value; data from a file have been checked already.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its field.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        validate::validate(self)
+    }
+
+    /// Sets the relative accuracy; `origin` is what an error names instead of a field.
+    ///
+    /// # Errors
+    /// A tolerance that is not a positive number up to 1.
+    pub fn set_tolerance(&mut self, tolerance: f64, origin: &str) -> Result<(), SceneError> {
+        self.set_run(RunData { tolerance, ..self.run.clone() }, origin)
+    }
+
+    /// Sets the duration [s]; `origin` is what an error names instead of a field.
+    ///
+    /// # Errors
+    /// A duration that is not positive and finite, or that is lost in rounding.
+    pub fn set_duration(&mut self, duration: f64, origin: &str) -> Result<(), SceneError> {
+        self.set_run(RunData { duration, ..self.run.clone() }, origin)
+    }
+
+    fn set_run(&mut self, run: RunData, origin: &str) -> Result<(), SceneError> {
+        let renamed = |error: SceneError| SceneError::new(FieldPath::top().field(origin), error.message());
+        validate::validate_run(&run).map_err(renamed)?;
+        self.run = run;
+        Ok(())
+    }
+
+    /// Refuses what is part of the format but not simulated yet.
+    ///
+    /// # Errors
+    /// The first field that is not supported.
+    pub fn check_supported(&self) -> Result<(), SceneError> {
+        supported::check_supported(self)
+    }
+}

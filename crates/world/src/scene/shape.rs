@@ -1,0 +1,112 @@
+//! Shapes as a scene file gives them, in shape coordinates.
+
+use super::one_key::one_key_enum;
+use super::vector::Vector;
+use serde::Deserialize;
+
+one_key_enum! {
+    /// The shape of a body.
+    ShapeData: "shape" {
+        /// A disc about the origin.
+        "disc" => Disc(DiscData),
+        /// A rectangle about the origin.
+        "block" => Block(BlockData),
+        /// A rectangle about the origin with quarter circles for corners.
+        "rounded_block" => RoundedBlock(RoundedBlockData),
+        /// A polygon.
+        "polygon" => Polygon(PolygonData),
+        /// The ring between two circles about the origin.
+        "ring" => Ring(RingData),
+        /// Closed paths; what an odd number of them surrounds is solid.
+        "outline" => Outline(OutlineData),
+    }
+}
+
+/// A disc about the origin.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DiscData {
+    /// Radius [m].
+    pub radius: f64,
+}
+
+/// A rectangle about the origin.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockData {
+    /// Size along x [m].
+    pub width: f64,
+    /// Size along y [m].
+    pub height: f64,
+}
+
+/// A rectangle about the origin with quarter circles for corners.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RoundedBlockData {
+    /// Size along x [m].
+    pub width: f64,
+    /// Size along y [m].
+    pub height: f64,
+    /// Radius of the corners [m], at most half of the shorter side.
+    pub radius: f64,
+}
+
+/// A polygon, in either direction.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PolygonData {
+    /// Corners [m].
+    pub vertices: Vec<Vector>,
+}
+
+/// The ring between two circles about the origin.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RingData {
+    /// Outer radius [m].
+    pub outer: f64,
+    /// Inner radius [m].
+    pub inner: f64,
+}
+
+/// Closed paths that do not cross.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OutlineData {
+    /// The paths; one inside another is a hole.
+    pub paths: Vec<PathData>,
+}
+
+/// A path; each edge starts where the last one ended.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathData {
+    /// First point [m].
+    pub start: Vector,
+    /// The edges in order.
+    pub edges: Vec<EdgeData>,
+}
+
+one_key_enum! {
+    /// An edge of a path.
+    EdgeData: "edge" {
+        /// A straight edge to the given point [m].
+        "line" => Line(Vector),
+        /// A circular arc.
+        "arc" => Arc(ArcData),
+    }
+}
+
+/// A circular arc; a full circle if it ends where it starts.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArcData {
+    /// Where the arc ends [m].
+    pub to: Vector,
+    /// Center of its circle [m].
+    pub center: Vector,
+    /// Which way round it runs.
+    #[serde(default)]
+    pub clockwise: bool,
+}

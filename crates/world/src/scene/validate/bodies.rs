@@ -1,0 +1,65 @@
+//! Checks the bodies.
+
+use super::{At, Names, each, optional, shape};
+use crate::scene::body::WORLD;
+use crate::scene::error::SceneError;
+use crate::scene::{BodyData, Vector};
+use std::collections::BTreeMap;
+
+/// The names of all bodies: not empty, not reserved, no two alike.
+pub(super) fn collect_names<'a>(bodies: &'a [BodyData], at: &At<'_>) -> Result<Names<'a>, SceneError> {
+    let mut first_with = BTreeMap::new();
+    for (index, body) in bodies.iter().enumerate() {
+        let element = at.element(index);
+        let place = element.field("name");
+        if body.name.is_empty() {
+            return Err(place.error("must not be empty"));
+        }
+        if body.name == WORLD {
+            return Err(place.error("\"world\" is reserved for the immovable background"));
+        }
+        if let Some(first) = first_with.insert(body.name.as_str(), index) {
+            return Err(place.error(format!("{:?} is already the name of body[{first}]", body.name)));
+        }
+    }
+    Ok(Names(first_with.into_keys().collect()))
+}
+
+pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
+    shape::validate(&body.shape, &at.field("shape"))?;
+    optional(body.mass, |mass| at.field("mass").positive(mass, "kg"))?;
+    optional(body.density, |density| at.field("density").positive(density, "kg/m^2"))?;
+    optional(body.moment, |moment| at.field("moment").positive(moment, "kg m^2"))?;
+    if !body.fixed {
+        validate_inertia(body, at)?;
+    }
+    optional(body.center_of_mass, |point| at.field("center_of_mass").finite_point(point))?;
+    at.field("position").finite_point(body.position)?;
+    at.field("angle").finite(body.angle)?;
+    at.field("velocity").finite_point(body.velocity)?;
+    at.field("angular_velocity").finite(body.angular_velocity)?;
+    if body.fixed {
+        validate_rest(body, at)?;
+    }
+    at.field("elasticity").zero_to_one(body.elasticity)?;
+    at.field("friction").not_negative(body.friction, "")?;
+    each(&at.field("passes_through"), &body.passes_through, |other, at| names.require(other, at))
+}
+
+fn validate_inertia(body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {
+    match (body.mass, body.density) {
+        (Some(_), Some(_)) => Err(at.field("density").error("give mass or density, not both")),
+        (None, None) => Err(at.error(format!("missing mass or density: body {:?} is not fixed", body.name))),
+        _ => Ok(()),
+    }
+}
+
+fn validate_rest(body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {
+    if body.velocity != Vector::ZERO {
+        return Err(at.field("velocity").error("a fixed body does not move"));
+    }
+    if body.angular_velocity != 0.0 {
+        return Err(at.field("angular_velocity").error("a fixed body does not turn"));
+    }
+    Ok(())
+}

@@ -1,0 +1,44 @@
+//! Checks the force laws.
+
+use super::{At, Names, each};
+use crate::scene::error::SceneError;
+use crate::scene::{ConstantData, ForceData, RotatingData, SpringData};
+
+pub(super) fn validate(force: &ForceData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
+    let at = at.field(force.key());
+    match force {
+        ForceData::Gravity(gravity) => at.field("acceleration").finite_point(gravity.acceleration)?,
+        ForceData::Damping(damping) => {
+            at.field("linear").not_negative(damping.linear, "N s/m")?;
+            at.field("angular").not_negative(damping.angular, "N m s")?;
+        }
+        ForceData::MutualGravity(mutual) => at.field("strength").finite(mutual.strength)?,
+        ForceData::Spring(spring) => validate_spring(spring, names, &at)?,
+        ForceData::Constant(constant) => validate_constant(constant, names, &at)?,
+        ForceData::Rotating(rotating) => validate_rotating(rotating, names, &at)?,
+    }
+    each(&at.field("bodies"), force.bodies().unwrap_or_default(), |name, at| names.require(name, at))
+}
+
+fn validate_spring(spring: &SpringData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
+    names.require_point(&spring.a, &at.field("a"))?;
+    names.require_point(&spring.b, &at.field("b"))?;
+    at.field("rest_length").not_negative(spring.rest_length, "m")?;
+    at.field("stiffness").not_negative(spring.stiffness, "N/m")?;
+    at.field("damping").not_negative(spring.damping, "N s/m")
+}
+
+fn validate_constant(constant: &ConstantData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
+    names.require(&constant.body, &at.field("body"))?;
+    at.field("point").finite_point(constant.point)?;
+    at.field("force").finite_point(constant.force)?;
+    at.field("torque").finite(constant.torque)
+}
+
+fn validate_rotating(rotating: &RotatingData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
+    names.require(&rotating.body, &at.field("body"))?;
+    at.field("point").finite_point(rotating.point)?;
+    at.field("magnitude").finite(rotating.magnitude)?;
+    at.field("rate").finite(rotating.rate)?;
+    at.field("phase").finite(rotating.phase)
+}

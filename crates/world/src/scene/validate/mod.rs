@@ -1,0 +1,58 @@
+//! Checks the values of a scene, in the order of the file, and stops at the first that breaks a rule.
+
+mod bodies;
+mod check;
+mod connectors;
+mod expected;
+mod forces;
+mod run;
+mod shape;
+
+use super::body::WORLD;
+use super::error::SceneError;
+use super::{PointData, RunData, Scene};
+use check::{At, optional};
+use std::collections::BTreeSet;
+
+/// Checks every value of the scene.
+pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
+    let top = At::Top;
+    validate_run(&scene.run)?;
+    let names = bodies::collect_names(&scene.bodies, &top.field("body"))?;
+    each(&top.field("body"), &scene.bodies, |body, at| bodies::validate(body, &names, at))?;
+    each(&top.field("connector"), &scene.connectors, |one, at| connectors::validate(one, &names, at))?;
+    each(&top.field("force"), &scene.forces, |one, at| forces::validate(one, &names, at))?;
+    each(&top.field("expected"), &scene.expected, |one, at| expected::validate(one, &scene.run, &names, at))
+}
+
+/// Checks the table `[run]`.
+pub(super) fn validate_run(run: &RunData) -> Result<(), SceneError> {
+    run::validate(run, &At::Top.field("run"))
+}
+
+/// Applies a check to each element of an array.
+fn each<T>(
+    at: &At<'_>,
+    items: &[T],
+    mut check: impl FnMut(&T, &At<'_>) -> Result<(), SceneError>,
+) -> Result<(), SceneError> {
+    items.iter().enumerate().try_for_each(|(index, item)| check(item, &at.element(index)))
+}
+
+/// The names of the scene's bodies.
+struct Names<'a>(BTreeSet<&'a str>);
+
+impl Names<'_> {
+    fn require(&self, name: &str, at: &At<'_>) -> Result<(), SceneError> {
+        if self.0.contains(name) { Ok(()) } else { Err(at.error(format!("there is no body named {name:?}"))) }
+    }
+
+    fn require_or_world(&self, name: &str, at: &At<'_>) -> Result<(), SceneError> {
+        if name == WORLD { Ok(()) } else { self.require(name, at) }
+    }
+
+    fn require_point(&self, point: &PointData, at: &At<'_>) -> Result<(), SceneError> {
+        self.require_or_world(&point.body, &at.field("body"))?;
+        at.field("point").finite_point(point.point)
+    }
+}

@@ -1,0 +1,40 @@
+//! Checks the table `[run]`.
+
+use super::{At, optional};
+use crate::scene::RunData;
+use crate::scene::error::SceneError;
+
+/// More recorded states than this are taken for a mistake.
+const MOST_OUTPUTS: f64 = 1e7;
+
+pub(super) fn validate(run: &RunData, at: &At<'_>) -> Result<(), SceneError> {
+    at.field("duration").positive(run.duration, "s")?;
+    at.field("start_time").finite(run.start_time)?;
+    if run.end_time() <= run.start_time || !run.end_time().is_finite() {
+        let (start, duration) = (run.start_time, run.duration);
+        let message = format!("is lost in rounding: {start} s + {duration} s is {} s", run.end_time());
+        return Err(at.field("duration").error(message));
+    }
+    optional(run.output_step, |step| {
+        let at = at.field("output_step");
+        at.positive(step, "s")?;
+        let outputs = run.duration / step;
+        let message = format!("would record {outputs:.0} states, at most {MOST_OUTPUTS} are allowed");
+        if outputs <= MOST_OUTPUTS { Ok(()) } else { Err(at.error(message)) }
+    })?;
+    tolerance(run.tolerance, &at.field("tolerance"))?;
+    optional(run.target_gap, |gap| at.field("target_gap").positive(gap, "m"))?;
+    optional(run.velocity_tol, |velocity| at.field("velocity_tol").not_negative(velocity, "m/s"))?;
+    optional(run.accuracy, |accuracy| {
+        at.field("accuracy").positive(accuracy, "m")?;
+        optional(run.target_gap, |gap| at.field("accuracy").below(accuracy, gap, "target_gap", "m"))
+    })?;
+    optional(run.time_step, |step| at.field("time_step").positive(step, "s"))?;
+    optional(run.start_overlap, |depth| at.field("start_overlap").not_negative(depth, "m"))?;
+    optional(run.start_connector_error, |error| at.field("start_connector_error").not_negative(error, "m"))
+}
+
+fn tolerance(value: f64, at: &At<'_>) -> Result<(), SceneError> {
+    at.positive(value, "")?;
+    at.zero_to_one(value)
+}

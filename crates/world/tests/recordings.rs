@@ -1,0 +1,143 @@
+//! Runs, what they record, and pictures of recordings that have nothing much to show.
+#![cfg(feature = "scene")]
+
+use halfgap::picture::{energy_picture, events_picture, scene_picture};
+use halfgap::scene::{Scene, SceneFormat};
+use halfgap::{BodyId, BodyState, Energy, Frame, Impact, ImpactRow, Record, Recording, RunPlan, World, run};
+
+fn scene(duration: f64, run: &str, position: &str) -> Scene {
+    let text = format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"A <b> & co\"\n[run]\nduration = {duration}\n{run}\n\
+         [[body]]\nname = \"rim, \\\"fixed\\\"\"\nfixed = true\nshape = {{ ring = {{ outer = 3.0, inner = 2.5 }} }}\n\
+         [[body]]\nname = \"disc\"\nshape = {{ disc = {{ radius = 0.5 }} }}\nmass = 2.0\n\
+         position = {position}\nvelocity = [0.25, 0.0]\n"
+    );
+    Scene::parse(&text, SceneFormat::Toml).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn world(scene: &Scene) -> World {
+    World::from_scene(scene).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn times(recording: &Recording) -> Vec<f64> {
+    recording.frames.iter().map(|frame| frame.time).collect()
+}
+
+#[test]
+fn output_times_are_counted_from_the_start_and_include_the_end() {
+    let scene = scene(1.0, "start_time = 5.0\noutput_step = 0.4", "[0, 0]");
+    let plan = RunPlan::of_scene(&scene, Record::Everything);
+    let mut parts = Vec::new();
+    let report = run(&mut world(&scene), &plan, &mut |part| parts.push(part));
+    assert_eq!(times(&report.recording), [5.0, 5.4, 5.8, 6.0]);
+    assert_eq!(parts.last(), Some(&1.0));
+    let ends = RunPlan::of_scene(&scene, Record::Ends);
+    assert_eq!(times(&run(&mut world(&scene), &ends, &mut |_| {}).recording), [5.0, 6.0]);
+}
+
+#[test]
+fn a_step_that_divides_the_duration_leaves_no_sliver_at_the_end() {
+    let scene = scene(0.3, "output_step = 0.1", "[0, 0]");
+    let plan = RunPlan::of_scene(&scene, Record::Everything);
+    let recording = run(&mut world(&scene), &plan, &mut |_| {}).recording;
+    assert_eq!(recording.frames.len(), 4);
+    assert_eq!(recording.frames[3].time, 0.3);
+}
+
+#[test]
+fn stops_are_hit_exactly_at_both_ends_and_between() {
+    let scene = scene(1.0, "output_step = 0.4", "[0, 0]");
+    let mut plan = RunPlan::of_scene(&scene, Record::Everything);
+    plan.stops = vec![0.0, 0.3, 0.3, 0.4, 1.0];
+    let report = run(&mut world(&scene), &plan, &mut |_| {});
+    let stops: Vec<f64> = report.stops.iter().map(|frame| frame.time).collect();
+    assert_eq!(stops, plan.stops);
+    assert_eq!(times(&report.recording), [0.0, 0.4, 0.8, 1.0]);
+}
+
+#[test]
+fn names_are_escaped_wherever_they_are_written() {
+    let scene = scene(1.0, "", "[0, 0]");
+    let world = world(&scene);
+    let mut recording = Recording::new(scene.title.clone(), &world);
+    recording.frames.push(recording.frame_of(&world));
+    recording.impacts.push(impact(0.5, 2.0));
+    let mut csv = Vec::new();
+    recording.write_impacts_csv(&mut csv).expect("memory takes everything");
+    let csv = String::from_utf8(csv).expect("text");
+    assert_eq!(csv.lines().nth(1), Some("0,0.5,disc,\"rim, \"\"fixed\"\"\",1,0,-1,0,0.01,-1,1,2,0"));
+    let picture = scene_picture(&world, &recording, &recording.frames[0]);
+    assert!(picture.contains("A &lt;b&gt; &amp; co"), "{picture}");
+}
+
+#[test]
+fn a_ring_is_drawn_as_four_true_half_circles() {
+    let scene = scene(1.0, "", "[0, 0]");
+    let world = world(&scene);
+    let mut recording = Recording::new("", &world);
+    recording.frames.push(recording.frame_of(&world));
+    let picture = scene_picture(&world, &recording, &recording.frames[0]);
+    let ring = picture.lines().find(|line| line.contains("#d8dbd6")).expect("the fixed ring");
+    assert_eq!(ring.matches('A').count(), 4, "{ring}");
+    assert_eq!(ring.matches('Z').count(), 2, "{ring}");
+    assert!(picture.contains("fill-rule=\"evenodd\""));
+}
+
+fn impact(time: f64, impulse: f64) -> Impact {
+    let row = ImpactRow {
+        primary: BodyId(1),
+        normal_body: BodyId(0),
+        point: glam::DVec2::X,
+        normal: glam::DVec2::NEG_X,
+        gap: 0.01,
+        velocity_before: -1.0,
+        velocity_after: 1.0,
+        impulse,
+    };
+    Impact { time, rows: vec![row], energy_change: 0.0 }
+}
+
+/// Pictures must hold no number that a viewer cannot read.
+fn assert_drawable(picture: &str) {
+    assert!(picture.starts_with("<svg ") && picture.ends_with("</svg>\n"), "{picture}");
+    for word in ["NaN", "inf", "e+", "e30"] {
+        assert!(!picture.contains(word), "{word} in {picture}");
+    }
+    assert!(picture.len() < 2_000_000, "{} bytes", picture.len());
+}
+
+#[test]
+fn pictures_survive_recordings_with_nothing_to_show() {
+    for position in ["[0, 0]", "[1e30, -1e30]", "[1e-300, 0]", "[1.7e308, -1.7e308]"] {
+        let scene = scene(1.0, "", position);
+        let world = world(&scene);
+        let mut recording = Recording::new("", &world);
+        assert_drawable(&energy_picture(&recording));
+        assert_drawable(&events_picture(&recording));
+        recording.frames.push(recording.frame_of(&world));
+        for impulse in [0.0, 1.0, f64::NAN, f64::INFINITY] {
+            recording.impacts.push(impact(0.0, impulse));
+        }
+        assert_drawable(&scene_picture(&world, &recording, &recording.frames[0]));
+        assert_drawable(&energy_picture(&recording));
+        assert_drawable(&events_picture(&recording));
+    }
+}
+
+#[test]
+fn pictures_survive_a_million_impacts_and_broken_numbers() {
+    let scene = scene(1.0, "", "[0, 0]");
+    let world = world(&scene);
+    let mut recording = Recording::new("", &world);
+    recording.frames.push(recording.frame_of(&world));
+    for index in 0..20_000 {
+        let bad = if index % 1000 == 7 { f64::NAN } else { 0.0 };
+        let state = BodyState { position: glam::DVec2::new(bad, 1.0), ..world.state(BodyId(1)) };
+        let energy = Energy { kinetic: f64::from(index), potential: bad };
+        recording.frames.push(Frame { time: f64::from(index), states: vec![state], energy });
+    }
+    recording.impacts = (0..1_000_000).map(|index| impact(f64::from(index) * 0.02, 1.0)).collect();
+    assert_drawable(&scene_picture(&world, &recording, &recording.frames[0]));
+    assert_drawable(&energy_picture(&recording));
+    assert_drawable(&events_picture(&recording));
+}
