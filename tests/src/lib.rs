@@ -1,1 +1,53 @@
-//! (outline)
+//! Scenarios that cross the layers of halfgap, and the scenes that they run.
+
+use halfgap::scene::Scene;
+use halfgap::{CheckReport, RunError, World, check};
+use std::path::{Path, PathBuf};
+
+/// Path of a file below the repository's `tests/data`.
+#[must_use]
+pub fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
+}
+
+/// Reads one of the reference scenes.
+///
+/// # Panics
+/// If it cannot be read: the test fails.
+#[must_use]
+pub fn reference_scene(name: &str) -> Scene {
+    Scene::read(data(&format!("scenes/{name}.json"))).expect("a reference scene can be read")
+}
+
+/// Parses a scene and builds its world.
+///
+/// # Panics
+/// If that fails: the test fails.
+#[must_use]
+pub fn world_of(toml: &str) -> World {
+    let scene = Scene::parse(toml, halfgap::scene::SceneFormat::Toml).expect("a fine scene");
+    World::from_scene(&scene).expect("a world that can be built")
+}
+
+/// Runs a scene to its expected states at the given tolerance.
+///
+/// # Panics
+/// If its world cannot be built: the test fails.
+#[must_use]
+pub fn check_at(scene: &Scene, tolerance: Option<f64>) -> CheckReport {
+    let mut scene = scene.clone();
+    if let Some(tolerance) = tolerance {
+        scene.set_tolerance(tolerance, "tolerance").expect("a fine tolerance");
+    }
+    let mut world = World::from_scene(&scene).expect("a world that can be built");
+    check(&mut world, &scene)
+}
+
+/// Advances a world to a time and returns why it stopped early.
+///
+/// # Panics
+/// If it does not stop: the test fails.
+#[must_use]
+pub fn stop_before(world: &mut World, time: f64) -> RunError {
+    world.advance_to(time, &mut |_| {}).expect_err("it stops early")
+}

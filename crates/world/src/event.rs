@@ -1,7 +1,7 @@
 //! What a world tells of an impact.
 
 use glam::DVec2;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, BodyState};
 
 /// One place at which two bodies collided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,4 +33,6 @@ pub struct Impact {
     pub rows: Vec<ImpactRow>,
     /// Change of the kinetic energy [J].
     pub energy_change: f64,
+    /// States of the movable bodies that took part, after the impact.
+    pub states: Vec<(BodyId, BodyState)>,
 }

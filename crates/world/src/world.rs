@@ -204,7 +204,8 @@ impl World {
     /// Something that cannot be simulated happens; the world stays at the time of that event.
     pub fn advance_to(&mut self, time: f64, on_impact: &mut dyn FnMut(&Impact)) -> Result<(), RunError> {
         let until = Time::from_seconds(time);
-        let outcome = advance_until(&mut self.system, until, |_, report| on_impact(&impact(report)));
+        let outcome =
+            advance_until(&mut self.system, until, |system, report| on_impact(&impact(system, report)));
         match outcome {
             Ok(()) => {
                 self.now = self.now.max(until);
@@ -218,7 +219,7 @@ impl World {
     }
 }
 
-fn impact(report: &ImpactReport) -> Impact {
+fn impact(system: &RigidSystem, report: &ImpactReport) -> Impact {
     let rows = report.rows.iter().map(|row| ImpactRow {
         primary: row.collision.parties.primary.body,
         normal_body: row.collision.parties.normal.body,
@@ -229,5 +230,16 @@ fn impact(report: &ImpactReport) -> Impact {
         velocity_after: row.rate_after,
         impulse: row.impulse,
     });
-    Impact { time: report.time.seconds(), rows: rows.collect(), energy_change: report.energy_change }
+    let mut states: Vec<(BodyId, BodyState)> = Vec::new();
+    for body in report
+        .rows
+        .iter()
+        .flat_map(|row| [row.collision.parties.primary.body, row.collision.parties.normal.body])
+    {
+        let flyer = system.flyer(body);
+        if !flyer.body().is_fixed() && states.iter().all(|&(known, _)| known != body) {
+            states.push((body, flyer.state_at(report.time)));
+        }
+    }
+    Impact { time: report.time.seconds(), rows: rows.collect(), energy_change: report.energy_change, states }
 }

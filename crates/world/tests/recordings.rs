@@ -94,7 +94,7 @@ fn impact(time: f64, impulse: f64) -> Impact {
         velocity_after: 1.0,
         impulse,
     };
-    Impact { time, rows: vec![row], energy_change: 0.0 }
+    Impact { time, rows: vec![row], energy_change: 0.0, states: Vec::new() }
 }
 
 /// Pictures must hold no number that a viewer cannot read.

@@ -71,11 +71,12 @@ fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
 }
 
 fn draw_trails(svg: &mut Svg, recording: &Recording, view: &View) {
-    let every = recording.frames.len().div_ceil(LONGEST_TRAIL).max(1);
-    for place in 0..recording.movable.len() {
+    for (place, &body) in recording.movable.iter().enumerate() {
+        let points = trail(recording, place, body);
+        let every = points.len().div_ceil(LONGEST_TRAIL).max(1);
         let mut data = String::new();
-        for frame in recording.frames.iter().step_by(every).chain(recording.frames.last()) {
-            let point = view.to_page(frame.states[place].position);
+        for &(_, position) in points.iter().step_by(every).chain(points.last()) {
+            let point = view.to_page(position);
             let command = if data.is_empty() { 'M' } else { 'L' };
             let _ = write!(data, "{command}{} {}", number(point.0), number(point.1));
         }
@@ -83,6 +84,18 @@ fn draw_trails(svg: &mut Svg, recording: &Recording, view: &View) {
             [("fill", "none"), ("stroke", color(place)), ("stroke-width", "1"), ("stroke-opacity", "0.45")];
         svg.path(&data, &attributes);
     }
+}
+
+/// Where a body's centre of mass was at output times and at its impacts, where the trail has its corners.
+fn trail(recording: &Recording, place: usize, body: BodyId) -> Vec<(f64, glam::DVec2)> {
+    let frames = recording.frames.iter().map(|frame| (frame.time, frame.states[place].position));
+    let impacts = recording.impacts.iter().flat_map(|impact| {
+        let own = impact.states.iter().filter(|(taking_part, _)| *taking_part == body);
+        own.map(|(_, state)| (impact.time, state.position))
+    });
+    let mut points: Vec<_> = frames.chain(impacts).collect();
+    points.sort_by(|p, q| p.0.total_cmp(&q.0));
+    points
 }
 
 /// Draws a body, its centre of mass, and a line that shows how far it has turned.
