@@ -50,6 +50,17 @@ struct Attempt {
     contradiction: f64,
 }
 
+/// Where a solve begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Start<'a> {
+    /// With the rows closed that would close without forces.
+    Nothing,
+    /// With the rows closed that were so in an earlier answer.
+    Earlier(&'a WarmStart),
+    /// With these rows closed, one flag per row.
+    Closed(&'a [bool]),
+}
+
 /// How the pivoting ended.
 enum End {
     Done,
@@ -68,10 +79,10 @@ impl DualActiveSet {
         Ok(DualActiveSet { settings, ..Self::default() })
     }
 
-    fn run(
+    pub(crate) fn run(
         &mut self,
         problem: &Problem,
-        warm: Option<&WarmStart>,
+        warm: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         if !problem.is_symmetric() {
@@ -113,7 +124,7 @@ impl DualActiveSet {
     fn attempt(
         &mut self,
         problem: &Problem,
-        warm: Option<&WarmStart>,
+        warm: Start<'_>,
         solution: &mut Solution,
         attempt: Attempt,
     ) -> Result<(), SolveError> {
@@ -152,15 +163,22 @@ impl DualActiveSet {
         self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
     }
 
-    /// Marks the rows to begin with: those of the warm start; otherwise, and for new rows, those that would close.
-    fn choose_start(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
+    /// Marks the rows to begin with: those given; otherwise, and for new rows, those that would close.
+    fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
         let limit = self.settings.open_tolerance * system.scale;
-        let lookup = warm.map(|warm| warm.lookup(problem));
+        let lookup = match start {
+            Start::Earlier(warm) => Some(warm.lookup(problem)),
+            Start::Nothing | Start::Closed(_) => None,
+        };
         self.start.clear();
         self.start.extend((0..problem.len()).map(|row| {
             let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
-            let closed = earlier.map_or(system.b[row] <= limit, |earlier| earlier.closed);
+            let closed = match (start, earlier) {
+                (Start::Closed(rows), _) => rows[row],
+                (_, Some(earlier)) => earlier.closed,
+                (_, None) => system.b[row] <= limit,
+            };
             closed && system.movable[row] && !problem.bilateral[row]
         }));
     }
@@ -358,7 +376,7 @@ impl Solver for DualActiveSet {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
-        self.run(problem, None, solution)
+        self.run(problem, Start::Nothing, solution)
     }
 
     fn solve_from(
@@ -367,6 +385,6 @@ impl Solver for DualActiveSet {
         start: &WarmStart,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        self.run(problem, Some(start), solution)
+        self.run(problem, Start::Earlier(start), solution)
     }
 }

@@ -6,15 +6,22 @@
 //! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
 //! data before it is returned; every iteration has a cap; the same input gives the same bits.
 
+mod body_factor;
 mod check;
 mod closed_rows;
 mod dependent;
+mod dictionary;
 mod dual_active_set;
 mod error;
 #[cfg(feature = "json")]
 mod json;
+mod lemke;
+mod line_search;
 mod matrix;
 mod problem;
+mod proximal_newton;
+#[cfg(feature = "qp")]
+mod qp;
 mod settings;
 mod skyline;
 mod solution;
@@ -27,7 +34,11 @@ pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 #[cfg(feature = "json")]
 pub use json::{ContactFile, FileError, SolutionFile};
+pub use lemke::Lemke;
 pub use problem::{BodyId, ContactKey, Inertia, Problem, Row};
+pub use proximal_newton::ProximalNewton;
+#[cfg(feature = "qp")]
+pub use qp::Qp;
 pub use settings::{Contradiction, ForceSelection, Settings};
 pub use solution::Solution;
 pub use solver::{Method, Solver};

@@ -42,6 +42,8 @@ pub struct Settings {
     pub outer_iterations: usize,
     /// Cap on Newton steps of the proximal method, in all.
     pub newton_steps: usize,
+    /// Tolerance asked of the interior-point method, on its gap and feasibility, in units of the scale.
+    pub interior_point: f64,
     /// Proximal term the least-norm choice of forces is made with, in units of the scaled diagonal of `A`, which is 1.
     pub least_norm_term: f64,
     /// How forces are chosen where the problem leaves a choice.
@@ -90,6 +92,7 @@ impl Default for Settings {
             refinements: 3,
             outer_iterations: 60,
             newton_steps: 3000,
+            interior_point: 1e-12,
             least_norm_term: 1e-8,
             selection: ForceSelection::Vertex,
             contradiction: Contradiction::SolveExactly,
@@ -114,6 +117,7 @@ impl Settings {
             ("inconsistency", self.inconsistency),
             ("open_tolerance", self.open_tolerance),
             ("rounding", self.rounding),
+            ("interior_point", self.interior_point),
             ("least_norm_term", self.least_norm_term),
         ];
         match numbers.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
