@@ -1,1 +1,1 @@
-//! (outline)
+//! What halfgap costs: the benches of this member.

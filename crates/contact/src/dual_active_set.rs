@@ -17,7 +17,7 @@ use crate::closed_rows::ClosedRows;
 use crate::dependent::Shift;
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::problem::Problem;
-use crate::settings::{Contradiction, Settings};
+use crate::settings::{Contradiction, ForceSelection, Settings};
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
 use crate::warm::WarmStart;
@@ -27,6 +27,11 @@ const BLOCKING: f64 = 1e-14;
 
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 const REFINED: f64 = 0.125;
+
+/// One in so many rows dependent makes a problem a very redundant one; fewer than one in so many independent, a simple
+/// one.
+const REDUNDANT: usize = 5;
+const SUBSTANTIAL: usize = 4;
 
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -38,7 +43,9 @@ pub struct DualActiveSet {
     shift: Shift,
     checker: Checker,
     pivots: usize,
-    pub(crate) rounds: usize,
+    /// Whether to stop where another method is likely to be faster, and whether that was so.
+    may_hand_over: bool,
+    handed_over: bool,
 }
 
 /// How dependent rows are treated.
@@ -93,6 +100,7 @@ impl DualActiveSet {
         for attempt in self.attempts() {
             let error = match self.attempt(problem, warm, solution, attempt) {
                 Ok(()) => return Ok(()),
+                Err(error) if self.handed_over => return Err(error),
                 Err(error) => error,
             };
             let proven = matches!(&error, SolveError::Infeasible(proof)
@@ -106,6 +114,22 @@ impl DualActiveSet {
             }
         }
         Err(failure.expect("there is at least one attempt, and each gives an answer or an error"))
+    }
+
+    /// As [`run`](Self::run), but returns `Ok(false)` once many pivots are in sight on a large problem.
+    pub(crate) fn run_or_hand_over(
+        &mut self,
+        problem: &Problem,
+        start: Start<'_>,
+        solution: &mut Solution,
+    ) -> Result<bool, SolveError> {
+        self.may_hand_over = problem.len() >= self.settings.hand_over_rows;
+        let result = self.run(problem, start, solution);
+        self.may_hand_over = false;
+        match result {
+            Err(SolveError::Unsolved { .. }) if self.handed_over => Ok(false),
+            other => other.map(|()| true),
+        }
     }
 
     /// The ways to treat rows that are dependent or nearly so, in order.
@@ -132,28 +156,78 @@ impl DualActiveSet {
         self.closed.load(problem, attempt.dependence);
         self.shift.reset();
         self.pivots = 0;
-        let end = match self.close_connectors(problem) {
+        self.handed_over = false;
+        self.choose_start(problem, warm);
+        let end = match self.find_start(problem) {
             Some(certificate) => End::Infeasible(certificate),
+            None if self.handed_over => End::Stopped,
             None => {
-                self.choose_start(problem, warm);
-                self.exchange_blocks(problem);
                 self.make_forces_admissible();
                 self.pivot(problem, attempt)
             }
         };
-        self.finish(problem, solution, end)
+        let result = self.finish(problem, solution, end);
+        if result.is_ok() && self.settings.selection == ForceSelection::LeastNorm {
+            self.select_least_norm(problem, solution, attempt);
+        }
+        result
+    }
+
+    /// Moves the forces of an accepted answer to those of least norm: proximal point iterations from zero forces, each
+    /// a problem with a positive definite matrix Â + ε. Keeps the answer if they do not pass the check.
+    fn select_least_norm(&mut self, problem: &Problem, solution: &mut Solution, attempt: Attempt) {
+        let limit = self.noise();
+        for (row, start) in self.start.iter_mut().enumerate() {
+            let at_rest = self.closed.acceleration[row] <= limit && self.closed.system.movable[row];
+            *start = problem.bilateral[row] || at_rest;
+        }
+        let epsilon = self.settings.least_norm_term;
+        self.closed.proximal = epsilon;
+        self.closed.force.fill(0.0);
+        self.closed.kept = 0;
+        self.closed.open_all();
+        let offset = self.closed.system.b.clone();
+        let mut center = vec![0.0; problem.len()];
+        for _ in 0..=self.settings.refinements {
+            for ((b, offset), f) in self.closed.system.b.iter_mut().zip(&offset).zip(&center) {
+                *b = offset - epsilon * f;
+            }
+            self.exchange_blocks();
+            self.make_forces_admissible();
+            if !matches!(self.pivot(problem, attempt), End::Done) {
+                return;
+            }
+            center.copy_from_slice(&self.closed.force);
+            for (row, start) in self.start.iter_mut().enumerate() {
+                *start = self.closed.is_closed(row);
+            }
+        }
+        let mut selected = solution.clone();
+        selected.active.clear();
+        if self.finish(problem, &mut selected, End::Done).is_ok() {
+            *solution = selected;
+        }
+    }
+
+    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the factor narrow;
+    /// if some turn out dependent, they come first, so that what they contradict is each other.
+    fn find_start(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
+        if self.exchange_blocks() {
+            return None;
+        }
+        self.closed.open_all();
+        let certificate = self.close_connectors(problem);
+        if certificate.is_none() {
+            self.exchange_blocks();
+        }
+        certificate
     }
 
     /// Closes the bilateral rows; those that depend on others must agree with them.
     fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
-        let mut dependent = false;
-        for row in 0..problem.len() {
-            if problem.bilateral[row] && !self.closed.try_close(row) {
-                dependent = true;
-            }
-        }
-        self.closed.connectors = self.closed.len();
-        if !dependent {
+        let independent = self.closed.close_flagged(&problem.bilateral);
+        self.closed.kept = self.closed.len();
+        if independent {
             return None;
         }
         self.closed.solve_closed();
@@ -179,52 +253,72 @@ impl DualActiveSet {
                 (_, Some(earlier)) => earlier.closed,
                 (_, None) => system.b[row] <= limit,
             };
-            closed && system.movable[row] && !problem.bilateral[row]
+            problem.bilateral[row] || (closed && system.movable[row])
         }));
     }
 
-    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong.
-    fn exchange_blocks(&mut self, problem: &Problem) {
+    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
+    /// others and the bilateral rows did not come first.
+    fn exchange_blocks(&mut self) -> bool {
         let mut fewest = usize::MAX;
+        let mut tries = 0;
         for _ in 0..self.settings.block_rounds {
-            self.rounds += 1;
             self.closed.open_all();
-            for row in 0..problem.len() {
-                if self.start[row] {
-                    self.closed.try_close(row);
-                }
-            }
+            let independent = self.closed.close_flagged(&self.start);
+            let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
             self.closed.accelerate();
             let limit = -self.noise();
             let mut wrong = 0;
-            for row in 0..problem.len() {
-                if problem.bilateral[row] {
-                    continue;
-                }
-                let closed = self.closed.is_closed(row);
-                let bad =
-                    if closed { self.closed.force[row] < 0.0 } else { self.closed.acceleration[row] < limit };
-                self.start[row] = closed != bad;
+            let closed = &self.closed;
+
+            for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
+                let is_closed = closed.is_closed(row);
+                let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
+                *start = is_closed != bad;
                 wrong += usize::from(bad);
             }
-            if wrong == 0 || wrong >= fewest {
-                return;
+            if self.may_hand_over && wrong > 0 && self.is_redundant(flagged) {
+                self.handed_over = true;
+                return true;
             }
-            fewest = wrong;
+            if !independent && self.closed.kept == 0 {
+                return false;
+            }
+            if wrong < fewest {
+                fewest = wrong;
+                tries = 0;
+            } else {
+                tries += 1;
+            }
+            if wrong == 0 || tries > self.settings.block_tries {
+                break;
+            }
         }
+        true
+    }
+
+    /// Whether a large part of the rows to be closed depends on the rest, so that the closed rows are an arbitrary choice
+    /// among many and most pivots only better it; but the rest is not few (a box on a floor), for then pivots are cheap.
+    fn is_redundant(&self, flagged: usize) -> bool {
+        let closed = self.closed.len();
+        let dependent = flagged - closed;
+        dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL
     }
 
     /// Opens closed rows until no unilateral force is negative.
     fn make_forces_admissible(&mut self) {
         loop {
             let closed = &mut self.closed;
-            let pulls = |closed: &ClosedRows, at: usize| closed.force[closed.rows[at]] < 0.0;
-            let count = (closed.connectors..closed.len()).filter(|&at| pulls(closed, at)).count();
+            let pulls = |closed: &ClosedRows, at: usize| {
+                let row = closed.rows[at];
+                closed.force[row] < 0.0 && !closed.free[row]
+            };
+            let count = (0..closed.len()).filter(|&at| pulls(closed, at)).count();
             if count == 0 {
                 break;
             }
-            for at in (closed.connectors..closed.len()).rev() {
+            for at in (0..closed.len()).rev() {
                 if pulls(closed, at) {
                     closed.open_at(at);
                 }
@@ -305,9 +399,9 @@ impl DualActiveSet {
         let closed = &self.closed;
         let mut found = None;
         let mut shortest = limit;
-        for at in closed.connectors..closed.len() {
-            if closed.step[at] > BLOCKING {
-                let length = closed.force[closed.rows[at]] / closed.step[at];
+        for (at, &row) in closed.rows.iter().enumerate() {
+            if closed.step[at] > BLOCKING && !closed.free[row] {
+                let length = closed.force[row] / closed.step[at];
                 if length < shortest {
                     shortest = length;
                     found = Some((at, length));

@@ -6,6 +6,7 @@
 //! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
 //! data before it is returned; every iteration has a cap; the same input gives the same bits.
 
+mod auto;
 mod body_factor;
 mod check;
 mod closed_rows;
@@ -13,11 +14,13 @@ mod dependent;
 mod dictionary;
 mod dual_active_set;
 mod error;
+mod islands;
 #[cfg(feature = "json")]
 mod json;
 mod lemke;
 mod line_search;
 mod matrix;
+mod order;
 mod problem;
 mod proximal_newton;
 #[cfg(feature = "qp")]
@@ -29,11 +32,12 @@ mod solver;
 mod system;
 mod warm;
 
+pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 #[cfg(feature = "json")]
-pub use json::{ContactFile, FileError, SolutionFile};
+pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};
 pub use lemke::Lemke;
 pub use problem::{BodyId, ContactKey, Inertia, Problem, Row};
 pub use proximal_newton::ProximalNewton;

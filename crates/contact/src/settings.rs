@@ -36,6 +36,10 @@ pub struct Settings {
     pub pivots_per_row: usize,
     /// Cap on rounds in which the active-set method exchanges all wrong rows at once.
     pub block_rounds: usize,
+    /// How many such rounds may pass without fewer rows being wrong.
+    pub block_tries: usize,
+    /// Rows from which the automatic choice hands very redundant problems to the proximal method.
+    pub hand_over_rows: usize,
     /// Cap on steps of iterative refinement of the final forces.
     pub refinements: usize,
     /// Cap on outer (multiplier) iterations of the proximal method.
@@ -89,6 +93,8 @@ impl Default for Settings {
             rounding: 1e-15,
             pivots_per_row: 20,
             block_rounds: 12,
+            block_tries: 0,
+            hand_over_rows: 150,
             refinements: 3,
             outer_iterations: 60,
             newton_steps: 3000,

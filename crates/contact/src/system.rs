@@ -224,9 +224,9 @@ impl System {
 
 /// Products with Ĵ, for problems of bodies.
 impl System {
-    /// Number of columns of Ĵ.
+    /// Number of columns of Ĵ, or of Â.
     pub(crate) fn columns(&self) -> usize {
-        self.root.len()
+        if self.bodies { self.root.len() } else { self.rows() }
     }
 
     /// Where the entries of each row begin, and their columns.

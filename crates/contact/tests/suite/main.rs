@@ -2,5 +2,4 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 mod collected;
-mod probe;
 mod data;
