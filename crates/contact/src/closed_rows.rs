@@ -21,6 +21,10 @@ pub(crate) struct ClosedRows {
     pub(crate) rows: Vec<usize>,
     /// Position of each row, or `OPEN`.
     position: Vec<u32>,
+    /// Envelope of the factor when rows were last closed in order.
+    pub(crate) narrow_envelope: usize,
+    /// Flags and forces while rows are closed anew.
+    again: Vec<bool>,
     /// How many of the first positions are kept when all others are opened: the bilateral rows, if they came first.
     pub(crate) kept: usize,
     /// Which rows are bilateral.
@@ -122,7 +126,25 @@ impl ClosedRows {
                 independent &= !self.free[row];
             }
         }
+        self.narrow_envelope = self.factor.envelope();
         independent
+    }
+
+    /// Closes the same rows again, in order, with the forces they have. Returns false if rounding made one dependent:
+    /// it is open now, without force.
+    pub(crate) fn refactor(&mut self) -> bool {
+        let closed = self.len();
+        let mut again = std::mem::take(&mut self.again);
+        again.clear();
+        again.extend(self.position.iter().map(|&position| position != OPEN));
+        self.step.copy_from_slice(&self.force);
+        self.open_all();
+        self.close_flagged(&again);
+        for &row in &self.rows {
+            self.force[row] = self.step[row];
+        }
+        self.again = again;
+        self.len() == closed
     }
 
     /// Opens the row at a position; its force becomes zero.

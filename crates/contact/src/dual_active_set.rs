@@ -33,6 +33,12 @@ const REFINED: f64 = 0.125;
 const REDUNDANT: usize = 5;
 const SUBSTANTIAL: usize = 4;
 
+/// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
+const MOVING: usize = 50;
+
+/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
+const WIDENED: usize = 2;
+
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
@@ -278,7 +284,7 @@ impl DualActiveSet {
                 *start = is_closed != bad;
                 wrong += usize::from(bad);
             }
-            if self.may_hand_over && wrong > 0 && self.is_redundant(flagged) {
+            if self.may_hand_over && fewest == usize::MAX && wrong > 0 && self.is_redundant(flagged) {
                 self.handed_over = true;
                 return true;
             }
@@ -298,12 +304,14 @@ impl DualActiveSet {
         true
     }
 
-    /// Whether a large part of the rows to be closed depends on the rest, so that the closed rows are an arbitrary choice
-    /// among many and most pivots only better it; but the rest is not few (a box on a floor), for then pivots are cheap.
+    /// Whether a large part of the rows to be closed depends on the rest, which alone keep nearly all others from
+    /// closing, so that the closed rows are an arbitrary choice among many and most pivots would only better it. Not so
+    /// where the rest is few (a box on a floor), for then pivots are cheap.
     fn is_redundant(&self, flagged: usize) -> bool {
         let closed = self.closed.len();
+        let moving = (0..self.start.len()).filter(|&row| self.start[row] && !self.closed.is_closed(row)).count();
         let dependent = flagged - closed;
-        dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL
+        dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }
 
     /// Opens closed rows until no unilateral force is negative.
@@ -336,7 +344,7 @@ impl DualActiveSet {
             let noise = self.noise();
             if let Some(row) = self.worst_open_row(problem, noise) {
                 match self.drive(row, attempt) {
-                    End::Done => {}
+                    End::Done => self.narrow_factor(),
                     other => return other,
                 }
             } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
@@ -347,6 +355,16 @@ impl DualActiveSet {
             } else {
                 return End::Done;
             }
+        }
+    }
+
+    /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
+    fn narrow_factor(&mut self) {
+        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
+            && !self.closed.refactor()
+        {
+            self.closed.solve_closed();
+            self.make_forces_admissible();
         }
     }
 

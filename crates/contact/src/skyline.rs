@@ -49,7 +49,8 @@ impl Skyline {
 
     /// Entries left of the diagonal, in use by the rows.
     pub(crate) fn envelope(&self) -> usize {
-        self.first.iter().enumerate().map(|(i, &first)| i - first).sum()
+        let length = self.first.len();
+        length * length.saturating_sub(1) / 2 - self.first.iter().sum::<usize>()
     }
 
     /// y := L⁻¹ y, where y is zero before `from`. Returns the squared length of the result.

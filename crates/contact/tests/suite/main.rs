@@ -3,3 +3,8 @@
 
 mod collected;
 mod data;
+mod extremes;
+mod files;
+mod least_norm;
+mod properties;
+mod warm;
