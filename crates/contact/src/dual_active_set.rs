@@ -194,7 +194,7 @@ impl DualActiveSet {
         self.closed.open_all();
         let offset = self.closed.system.b.clone();
         let mut center = vec![0.0; problem.len()];
-        for _ in 0..=self.settings.refinements {
+        for _ in 0..self.settings.outer_iterations {
             for ((b, offset), f) in self.closed.system.b.iter_mut().zip(&offset).zip(&center) {
                 *b = offset - epsilon * f;
             }
@@ -203,7 +203,11 @@ impl DualActiveSet {
             if !matches!(self.pivot(problem, attempt), End::Done) {
                 return;
             }
+            let moved = center.iter().zip(&self.closed.force).fold(0.0, |m: f64, (c, f)| m.max((c - f).abs()));
             center.copy_from_slice(&self.closed.force);
+            if epsilon * moved <= self.settings.open_tolerance * self.closed.system.scale {
+                break;
+            }
             for (row, start) in self.start.iter_mut().enumerate() {
                 *start = self.closed.is_closed(row);
             }

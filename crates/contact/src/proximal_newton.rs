@@ -41,6 +41,10 @@ const ROUNDING: f64 = 4e-16;
 /// Residual over the previous one above which an outer iteration counts as stalled, and how many may be.
 const STALLED: f64 = 0.5;
 const STALLS: usize = 3;
+/// Gradient, in units of the largest force, that is rounding.
+const STATIONARY: f64 = 1e-14;
+/// Cap on Newton steps between two updates of the multipliers.
+const INNER_STEPS: usize = 200;
 /// Deviation of a step length from 1 that is rounding.
 const FULL_STEP: f64 = 1e-9;
 
@@ -176,7 +180,8 @@ impl ProximalNewton {
     /// Minimises the augmented Lagrangian. Returns false if that cannot go on.
     fn minimise(&mut self, problem: &Problem, first: bool) -> bool {
         let mut guessed = first;
-        while self.steps < self.settings.newton_steps {
+        let last = self.settings.newton_steps.min(self.steps + INNER_STEPS);
+        while self.steps < last {
             self.steps += 1;
             let mut changed = self.factored != Some(self.epsilon);
             for row in 0..problem.len() {
@@ -196,6 +201,9 @@ impl ProximalNewton {
             // Newton step: minus the gradient u - Ĵᵀ f, through the factor.
             self.system.push(&self.force, &mut self.step);
             self.step.iter_mut().zip(&self.motion).for_each(|(s, u)| *s -= u);
+            if !changed && self.is_stationary() {
+                return true;
+            }
             self.factor.solve(&mut self.step);
             self.system.pull(&self.step, &mut self.change);
             let length = if guessed { 1.0 } else { self.step_length(problem) };
@@ -210,7 +218,14 @@ impl ProximalNewton {
                 return true;
             }
         }
-        false
+        // A row on the edge may change sides for ever; the outer iteration moves the edge.
+        self.steps < self.settings.newton_steps
+    }
+
+    /// Whether the gradient, in `step`, is rounding beside the forces.
+    fn is_stationary(&self) -> bool {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        largest(&self.step) <= STATIONARY * largest(&self.force).max(self.system.scale)
     }
 
     fn same_rows_inside(&self, problem: &Problem) -> bool {

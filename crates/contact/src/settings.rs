@@ -99,7 +99,7 @@ impl Default for Settings {
             outer_iterations: 60,
             newton_steps: 3000,
             interior_point: 1e-12,
-            least_norm_term: 1e-8,
+            least_norm_term: 1e-5,
             selection: ForceSelection::Vertex,
             contradiction: Contradiction::SolveExactly,
         }
