@@ -34,7 +34,9 @@ fn main() {
         .filter(|(_, file)| file.j.is_some() && file.feasible != Some(false))
         .collect();
     cases.sort_by_key(|(name, file)| (file.family.clone(), file.b.len(), name.clone()));
-    println!("| problem | n | method | cold | clarabel | ratio | next cold | next warm | ratio | J cold | J warm | ratio | iterations |");
+    println!(
+        "| problem | n | method | cold | clarabel | ratio | next cold | next warm | ratio | J cold | J warm | ratio | iterations |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, file) in &cases {
         println!("{}", measure(name, file));

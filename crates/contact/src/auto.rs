@@ -154,9 +154,9 @@ impl Methods {
                     Some(warm) => self.proximal.solve_from(problem, warm, solution),
                     None => self.proximal.solve(problem, solution),
                 };
-                found.or_else(|_| self.dual.run(problem, start, solution)).or_else(|error| {
-                    self.try_others(problem, solution, error)
-                })
+                found
+                    .or_else(|_| self.dual.run(problem, start, solution))
+                    .or_else(|error| self.try_others(problem, solution, error))
             }
             Err(error) => self.try_others(problem, solution, error),
         }

@@ -155,7 +155,8 @@ impl Dictionary {
             };
             let least = self.candidates.iter().fold(f64::INFINITY, |m, &row| m.min(ratio(row)));
             let limit = least + TIE * (1.0 + least.abs());
-            let kept: Vec<usize> = self.candidates.iter().copied().filter(|&row| ratio(row) <= limit).collect();
+            let kept: Vec<usize> =
+                self.candidates.iter().copied().filter(|&row| ratio(row) <= limit).collect();
             self.candidates = kept;
             if self.candidates.len() <= 1 {
                 return self.candidates.first().copied();

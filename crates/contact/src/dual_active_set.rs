@@ -203,7 +203,8 @@ impl DualActiveSet {
             if !matches!(self.pivot(problem, attempt), End::Done) {
                 return;
             }
-            let moved = center.iter().zip(&self.closed.force).fold(0.0, |m: f64, (c, f)| m.max((c - f).abs()));
+            let moved =
+                center.iter().zip(&self.closed.force).fold(0.0, |m: f64, (c, f)| m.max((c - f).abs()));
             center.copy_from_slice(&self.closed.force);
             if epsilon * moved <= self.settings.open_tolerance * self.closed.system.scale {
                 break;
@@ -313,7 +314,8 @@ impl DualActiveSet {
     /// where the rest is few (a box on a floor), for then pivots are cheap.
     fn is_redundant(&self, flagged: usize) -> bool {
         let closed = self.closed.len();
-        let moving = (0..self.start.len()).filter(|&row| self.start[row] && !self.closed.is_closed(row)).count();
+        let moving =
+            (0..self.start.len()).filter(|&row| self.start[row] && !self.closed.is_closed(row)).count();
         let dependent = flagged - closed;
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }

@@ -134,7 +134,8 @@ impl Lemke {
                 basis[(at, place[j])] = v * self.scale[i] * self.scale[j];
             }
         }
-        let right = Mat::from_fn(active.len(), 1, |at, _| -problem.offset[active[at]] * self.scale[active[at]]);
+        let right =
+            Mat::from_fn(active.len(), 1, |at, _| -problem.offset[active[at]] * self.scale[active[at]]);
         let factor = PartialPivLu::new(basis.as_ref());
         let mut force = factor.solve(&right);
         for _ in 0..self.settings.refinements {

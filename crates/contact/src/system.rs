@@ -267,7 +267,8 @@ impl System {
     /// Â by Cholesky with diagonal pivoting, ended where at most `dependence` is left of any diagonal entry.
     pub(crate) fn rows_or_factor(&self, dependence: f64) -> (Vec<Vec<(usize, f64)>>, usize) {
         let n = self.rows();
-        let entries = |i: usize| (self.start[i]..self.start[i + 1]).map(|e| (self.column[e] as usize, self.value[e]));
+        let entries =
+            |i: usize| (self.start[i]..self.start[i + 1]).map(|e| (self.column[e] as usize, self.value[e]));
         if self.bodies {
             return ((0..n).map(|i| entries(i).collect()).collect(), self.root.len());
         }

@@ -6,7 +6,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use halfgap_contact::{
-    Auto, BodyId, ContactKey, DualActiveSet, Inertia, Problem, ProximalNewton, Row, Solution, Solver, WarmStart,
+    Auto, BodyId, ContactKey, DualActiveSet, Inertia, Problem, ProximalNewton, Row, Solution, Solver,
+    WarmStart,
 };
 
 thread_local! {

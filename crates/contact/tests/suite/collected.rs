@@ -90,9 +90,8 @@ fn the_proximal_method_solves_every_problem_of_bodies() {
 #[cfg(feature = "qp")]
 #[test]
 fn quadratic_programming_solves_problems_of_bodies_and_small_matrices() {
-    let claims = |case: &Case| {
-        case.problem.has_bodies() || (case.problem.is_symmetric() && case.problem.len() <= 100)
-    };
+    let claims =
+        |case: &Case| case.problem.has_bodies() || (case.problem.is_symmetric() && case.problem.len() <= 100);
     solve_all(&mut halfgap_contact::Qp::default(), claims);
 }
 

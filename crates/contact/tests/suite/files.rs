@@ -20,7 +20,9 @@ fn an_answer_is_written_with_its_residuals() {
     let mut solution = Solution::new();
     Auto::default().solve(&case.problem, &mut solution).unwrap();
     let text = serde_json::to_string(&SolutionFile::of(&solution)).unwrap();
-    assert!(text.starts_with(r#"{"format":"halfgap-solution-1","status":"solved","method":"dual_active_set""#));
+    assert!(
+        text.starts_with(r#"{"format":"halfgap-solution-1","status":"solved","method":"dual_active_set""#)
+    );
 }
 
 #[test]
