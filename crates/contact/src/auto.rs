@@ -6,7 +6,7 @@
 //! reasons and the measurements are in the project's `docs/contact.md`.
 
 use crate::check::Checker;
-use crate::dual_active_set::{DualActiveSet, Start};
+use crate::dual_active_set::DualActiveSet;
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::islands::Islands;
 use crate::lemke::Lemke;
@@ -17,6 +17,7 @@ use crate::qp::Qp;
 use crate::settings::{ForceSelection, Settings};
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
+use crate::start::Start;
 use crate::warm::WarmStart;
 
 /// Rows below which looking for islands costs more than it gains: the factor of a few islands is as narrow.

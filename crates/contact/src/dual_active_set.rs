@@ -8,9 +8,9 @@
 //! direction until one of them vanishes and its row makes room; when none does, the direction certifies that there is
 //! no solution.
 //!
-//! Differences from the papers: connectors are closed first and never leave; the start is all rows with b ≤ 0 (or the
-//! last active set), improved by exchanging all wrong rows at once while that makes fewer of them wrong (L. Portugal,
-//! J. Júdice, L. Vicente, Mathematics of Computation 63, 1994, 625-643); the final forces are refined.
+//! Differences from the papers: bilateral rows are closed at the start and never leave; the start is many rows closed
+//! at once (see `start`); the factor is made anew in a good order when pivots have widened it; the final forces are
+//! refined.
 
 use crate::check::Checker;
 use crate::closed_rows::ClosedRows;
@@ -20,6 +20,7 @@ use crate::problem::Problem;
 use crate::settings::{Contradiction, ForceSelection, Settings};
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
+use crate::start::Start;
 use crate::warm::WarmStart;
 
 /// Part of a unit change below which a force does not count as changed by a null direction: rounding.
@@ -28,54 +29,35 @@ const BLOCKING: f64 = 1e-14;
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 const REFINED: f64 = 0.125;
 
-/// One in so many rows dependent makes a problem a very redundant one; fewer than one in so many independent, a simple
-/// one.
-const REDUNDANT: usize = 5;
-const SUBSTANTIAL: usize = 4;
-
-/// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
-const MOVING: usize = 50;
-
 /// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
 const WIDENED: usize = 2;
 
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
-    settings: Settings,
+    pub(crate) settings: Settings,
     pub(crate) closed: ClosedRows,
     /// Rows that start closed.
-    start: Vec<bool>,
-    shift: Shift,
+    pub(crate) start: Vec<bool>,
+    pub(crate) shift: Shift,
     checker: Checker,
-    pivots: usize,
+    pub(crate) pivots: usize,
     /// Whether to stop where another method is likely to be faster, and whether that was so.
-    may_hand_over: bool,
-    handed_over: bool,
+    pub(crate) may_hand_over: bool,
+    pub(crate) handed_over: bool,
 }
 
 /// How dependent rows are treated.
 #[derive(Clone, Copy, Debug)]
-struct Attempt {
+pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
     dependence: f64,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     contradiction: f64,
 }
 
-/// Where a solve begins.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Start<'a> {
-    /// With the rows closed that would close without forces.
-    Nothing,
-    /// With the rows closed that were so in an earlier answer.
-    Earlier(&'a WarmStart),
-    /// With these rows closed, one flag per row.
-    Closed(&'a [bool]),
-}
-
 /// How the pivoting ended.
-enum End {
+pub(crate) enum End {
     Done,
     Stopped,
     Infeasible(Box<Infeasibility>),
@@ -179,172 +161,8 @@ impl DualActiveSet {
         result
     }
 
-    /// Moves the forces of an accepted answer to those of least norm: proximal point iterations from zero forces, each
-    /// a problem with a positive definite matrix Â + ε. Keeps the answer if they do not pass the check.
-    fn select_least_norm(&mut self, problem: &Problem, solution: &mut Solution, attempt: Attempt) {
-        let limit = self.noise();
-        for (row, start) in self.start.iter_mut().enumerate() {
-            let at_rest = self.closed.acceleration[row] <= limit && self.closed.system.movable[row];
-            *start = problem.bilateral[row] || at_rest;
-        }
-        let epsilon = self.settings.least_norm_term;
-        self.closed.proximal = epsilon;
-        self.closed.force.fill(0.0);
-        self.closed.kept = 0;
-        self.closed.open_all();
-        let offset = self.closed.system.b.clone();
-        let mut center = vec![0.0; problem.len()];
-        for _ in 0..self.settings.outer_iterations {
-            for ((b, offset), f) in self.closed.system.b.iter_mut().zip(&offset).zip(&center) {
-                *b = offset - epsilon * f;
-            }
-            self.exchange_blocks();
-            self.make_forces_admissible();
-            if !matches!(self.pivot(problem, attempt), End::Done) {
-                return;
-            }
-            let moved =
-                center.iter().zip(&self.closed.force).fold(0.0, |m: f64, (c, f)| m.max((c - f).abs()));
-            center.copy_from_slice(&self.closed.force);
-            if epsilon * moved <= self.settings.open_tolerance * self.closed.system.scale {
-                break;
-            }
-            for (row, start) in self.start.iter_mut().enumerate() {
-                *start = self.closed.is_closed(row);
-            }
-        }
-        let mut selected = solution.clone();
-        selected.active.clear();
-        if self.finish(problem, &mut selected, End::Done).is_ok() {
-            *solution = selected;
-        }
-    }
-
-    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the factor narrow;
-    /// if some turn out dependent, they come first, so that what they contradict is each other.
-    fn find_start(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
-        if self.exchange_blocks() {
-            return None;
-        }
-        self.closed.open_all();
-        let certificate = self.close_connectors(problem);
-        if certificate.is_none() {
-            self.exchange_blocks();
-        }
-        certificate
-    }
-
-    /// Closes the bilateral rows; those that depend on others must agree with them.
-    fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
-        let independent = self.closed.close_flagged(&problem.bilateral);
-        self.closed.kept = self.closed.len();
-        if independent {
-            return None;
-        }
-        self.closed.solve_closed();
-        self.closed.accelerate();
-        let noise = self.noise();
-        let limit = self.settings.inconsistency * self.closed.system.scale;
-        self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
-    }
-
-    /// Marks the rows to begin with: those given; otherwise, and for new rows, those that would close.
-    fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
-        let system = &self.closed.system;
-        let limit = self.settings.open_tolerance * system.scale;
-        let lookup = match start {
-            Start::Earlier(warm) => Some(warm.lookup(problem)),
-            Start::Nothing | Start::Closed(_) => None,
-        };
-        self.start.clear();
-        self.start.extend((0..problem.len()).map(|row| {
-            let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
-            let closed = match (start, earlier) {
-                (Start::Closed(rows), _) => rows[row],
-                (_, Some(earlier)) => earlier.closed,
-                (_, None) => system.b[row] <= limit,
-            };
-            problem.bilateral[row] || (closed && system.movable[row])
-        }));
-    }
-
-    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
-    /// others and the bilateral rows did not come first.
-    fn exchange_blocks(&mut self) -> bool {
-        let mut fewest = usize::MAX;
-        let mut tries = 0;
-        for _ in 0..self.settings.block_rounds {
-            self.closed.open_all();
-            let independent = self.closed.close_flagged(&self.start);
-            let flagged = self.start.iter().filter(|start| **start).count();
-            self.closed.solve_closed();
-            self.closed.accelerate();
-            let limit = -self.noise();
-            let mut wrong = 0;
-            let closed = &self.closed;
-
-            for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
-                let is_closed = closed.is_closed(row);
-                let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
-                *start = is_closed != bad;
-                wrong += usize::from(bad);
-            }
-            if self.may_hand_over && fewest == usize::MAX && wrong > 0 && self.is_redundant(flagged) {
-                self.handed_over = true;
-                return true;
-            }
-            if !independent && self.closed.kept == 0 {
-                return false;
-            }
-            if wrong < fewest {
-                fewest = wrong;
-                tries = 0;
-            } else {
-                tries += 1;
-            }
-            if wrong == 0 || tries > self.settings.block_tries {
-                break;
-            }
-        }
-        true
-    }
-
-    /// Whether a large part of the rows to be closed depends on the rest, which alone keep nearly all others from
-    /// closing, so that the closed rows are an arbitrary choice among many and most pivots would only better it. Not so
-    /// where the rest is few (a box on a floor), for then pivots are cheap.
-    fn is_redundant(&self, flagged: usize) -> bool {
-        let closed = self.closed.len();
-        let moving =
-            (0..self.start.len()).filter(|&row| self.start[row] && !self.closed.is_closed(row)).count();
-        let dependent = flagged - closed;
-        dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
-    }
-
-    /// Opens closed rows until no unilateral force is negative.
-    fn make_forces_admissible(&mut self) {
-        loop {
-            let closed = &mut self.closed;
-            let pulls = |closed: &ClosedRows, at: usize| {
-                let row = closed.rows[at];
-                closed.force[row] < 0.0 && !closed.free[row]
-            };
-            let count = (0..closed.len()).filter(|&at| pulls(closed, at)).count();
-            if count == 0 {
-                break;
-            }
-            for at in (0..closed.len()).rev() {
-                if pulls(closed, at) {
-                    closed.open_at(at);
-                }
-            }
-            self.pivots += count;
-            closed.solve_closed();
-        }
-        self.closed.accelerate();
-    }
-
     /// Closes the worst row until none is left, then refines.
-    fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
+    pub(crate) fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
         let mut refinements = 0;
         loop {
             let noise = self.noise();
@@ -458,13 +276,18 @@ impl DualActiveSet {
     }
 
     /// Acceleration below which nothing can be told from rounding, or matters.
-    fn noise(&self) -> f64 {
+    pub(crate) fn noise(&self) -> f64 {
         let scale = self.closed.system.scale;
         self.settings.rounding * (scale + self.closed.terms) + self.settings.open_tolerance * scale
     }
 
     /// Turns the scaled forces into an answer and checks it.
-    fn finish(&mut self, problem: &Problem, solution: &mut Solution, end: End) -> Result<(), SolveError> {
+    pub(crate) fn finish(
+        &mut self,
+        problem: &Problem,
+        solution: &mut Solution,
+        end: End,
+    ) -> Result<(), SolveError> {
         if let End::Infeasible(certificate) = end {
             return Err(SolveError::Infeasible(certificate));
         }

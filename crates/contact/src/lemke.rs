@@ -163,8 +163,7 @@ impl Lemke {
         let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
         let mut image = vec![0.0; n];
         let (mut worth, mut square, mut scale) = (0.0, 0.0, 0.0_f64);
-        for i in 0..n {
-            let z = direction[i];
+        for (i, &z) in direction.iter().enumerate() {
             let (columns, values) = self.matrix.row(i);
             for (&j, &v) in columns.iter().zip(values) {
                 image[j] += v * self.scale[i] * self.scale[j] * z;

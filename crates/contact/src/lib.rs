@@ -17,6 +17,7 @@ mod error;
 mod islands;
 #[cfg(feature = "json")]
 mod json;
+mod least_norm;
 mod lemke;
 mod line_search;
 mod matrix;
@@ -29,6 +30,7 @@ mod settings;
 mod skyline;
 mod solution;
 mod solver;
+mod start;
 mod system;
 mod warm;
 

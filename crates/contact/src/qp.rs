@@ -10,12 +10,13 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
-use crate::dual_active_set::{DualActiveSet, Start};
+use crate::dual_active_set::DualActiveSet;
 use crate::error::{SettingsError, SolveError};
 use crate::problem::Problem;
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
+use crate::start::Start;
 use crate::system::System;
 
 /// Rows up to which a matrix A is factored to get rows J, which is dense work.

@@ -56,8 +56,8 @@ fn any_problem() -> impl Strategy<Value = Raw> {
         let matrix = made.problem().dense();
         let force = |k: usize| if raw[k].6 { raw[k].4 } else { 0.0 };
         let rest = |k: usize| if raw[k].6 || raw[k].5 { 0.0 } else { raw[k].4 };
-        for i in 0..raw.len() {
-            let pushed: f64 = (0..raw.len()).map(|j| matrix[i][j] * force(j)).sum();
+        for (i, entries) in matrix.iter().enumerate() {
+            let pushed: f64 = entries.iter().enumerate().map(|(j, a)| a * force(j)).sum();
             made.rows[i].3 = rest(i) - pushed;
         }
         made
