@@ -7,7 +7,7 @@
 
 use crate::check::Checker;
 use crate::dual_active_set::DualActiveSet;
-use crate::error::{Infeasibility, SettingsError, SolveError};
+use crate::error::{SettingsError, SolveError};
 use crate::islands::Islands;
 use crate::lemke::Lemke;
 use crate::problem::Problem;
@@ -75,7 +75,13 @@ impl Auto {
         }
         solution.reset(problem.len(), Method::Auto);
         for island in 0..islands {
-            self.solve_island(problem, island, warm, solution)?;
+            match self.solve_island(problem, island, warm, solution) {
+                // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
+                Err(SolveError::Infeasible(_)) => {
+                    return self.methods.solve(problem, warm, solution, self.settings.selection);
+                }
+                other => other?,
+            }
         }
         solution.active.sort_unstable();
         solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
@@ -100,12 +106,7 @@ impl Auto {
         let problem_part = self.islands.part(problem, island);
         let result = self.methods.solve(problem_part, start, &mut self.part, self.settings.selection);
         let rows = self.islands.rows(island);
-        match result {
-            Err(SolveError::Infeasible(proof)) => {
-                return Err(SolveError::Infeasible(Box::new(in_the_whole(*proof, rows, problem.len()))));
-            }
-            other => other?,
-        }
+        result?;
         for (&row, &force) in rows.iter().zip(&self.part.force) {
             solution.force[row as usize] = force;
         }
@@ -119,15 +120,6 @@ impl Auto {
         };
         Ok(())
     }
-}
-
-/// A certificate of some rows of a problem as one of the problem.
-fn in_the_whole(proof: Infeasibility, rows: &[u32], n: usize) -> Infeasibility {
-    let mut direction = vec![0.0; n];
-    for (&row, &z) in rows.iter().zip(&proof.direction) {
-        direction[row as usize] = z;
-    }
-    Infeasibility { row: rows[proof.row] as usize, direction, ..proof }
 }
 
 impl Methods {

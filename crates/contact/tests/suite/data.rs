@@ -98,3 +98,18 @@ pub(crate) fn judge(problem: &Problem, force: &[f64]) -> Judged {
     let (natural, growth) = (residual / scale, terms / scale);
     Judged { natural, growth, backward: natural / (1.0 + growth) }
 }
+
+/// Why z proves nothing, if so: it must be z ≥ 0 and Aᵀz ≤ 0 (= 0 for bilateral rows) up to rounding, and bᵀz < 0.
+pub(crate) fn disproof(problem: &Problem, z: &[f64]) -> Option<&'static str> {
+    let (s, scale) = scales(problem);
+    let a = problem.dense();
+    let largest = z.iter().zip(&s).fold(0.0, |m: f64, (z, s)| m.max((z * s).abs()));
+    let worth: f64 = z.iter().zip(problem.offset()).map(|(z, b)| z * b).sum();
+    let mut wrong = worth >= -1e-8 * scale * largest;
+    for j in 0..z.len() {
+        let image: f64 = (0..z.len()).map(|i| a[i][j] * z[i]).sum::<f64>() / s[j];
+        let outside = if problem.bilateral()[j] { image.abs() } else { image.max(-z[j] * s[j]) };
+        wrong |= outside > 1e-12 * largest;
+    }
+    wrong.then_some("not a proof")
+}

@@ -6,5 +6,6 @@ mod data;
 mod extremes;
 mod files;
 mod least_norm;
+mod perturbed;
 mod properties;
 mod warm;
