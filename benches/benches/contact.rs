@@ -17,7 +17,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeCone
 use halfgap_contact::{Auto, ContactFile, Problem, RowsField, Solution, Solver, WarmStart};
 
 /// Time spent on each problem [s], and the most solves of one kind.
-const BUDGET: f64 = 0.6;
+const BUDGET: f64 = 0.25;
 const MOST: usize = 201;
 
 fn main() {

@@ -134,7 +134,7 @@ impl ProximalNewton {
         self.steps = 0;
         self.factorizations = 0;
         self.epsilon = if warm.is_some() { WARM_TERM } else { FIRST_TERM };
-        let limit = self.settings.open_tolerance * self.system.scale;
+        let limit = self.settings.start_closed * self.system.scale;
         let lookup = warm.map(|warm| warm.lookup(problem));
         self.guess.clear();
         for row in 0..n {

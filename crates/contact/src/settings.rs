@@ -30,6 +30,9 @@ pub struct Settings {
     pub inconsistency: f64,
     /// An acceleration within this part of the scale of zero counts as zero while the solver looks for a next row.
     pub open_tolerance: f64,
+    /// A row whose offset b is below this part of the scale starts closed: contacts between bodies at rest on each other
+    /// have b = 0 but for small relative motions.
+    pub start_closed: f64,
     /// The same, in units of the largest sum of terms that an acceleration is made of: a few roundings.
     pub rounding: f64,
     /// Cap on pivots, per row of the problem.
@@ -90,6 +93,7 @@ impl Default for Settings {
             least_dependence: 1e-15,
             inconsistency: 1e-8,
             open_tolerance: 1e-13,
+            start_closed: 1e-2,
             rounding: 1e-15,
             pivots_per_row: 20,
             block_rounds: 12,
@@ -122,6 +126,7 @@ impl Settings {
             ("least_dependence", self.least_dependence),
             ("inconsistency", self.inconsistency),
             ("open_tolerance", self.open_tolerance),
+            ("start_closed", self.start_closed),
             ("rounding", self.rounding),
             ("interior_point", self.interior_point),
             ("least_norm_term", self.least_norm_term),

@@ -63,7 +63,7 @@ impl DualActiveSet {
     /// Marks the rows to begin with: those given; otherwise, and for new rows, those that would close.
     pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
-        let limit = self.settings.open_tolerance * system.scale;
+        let limit = self.settings.start_closed * system.scale;
         let lookup = match start {
             Start::Earlier(warm) => Some(warm.lookup(problem)),
             Start::Nothing => None,
