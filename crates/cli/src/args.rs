@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::solve::SolveArgs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -19,6 +20,8 @@ pub(crate) enum Command {
     Run(RunOptions),
     /// Run scenes that have expected states, and compare.
     Check(CheckOptions),
+    /// Solve one contact problem from a file and explain the answer.
+    Solve(SolveArgs),
 }
 
 #[derive(Debug, clap::Args)]

@@ -1,6 +1,6 @@
-//! The `halfgap` command: runs and checks scene files.
+//! The `halfgap` command: runs and checks scene files, and solves contact problems.
 //!
-//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`) that returns how it ended,
+//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `solve`) that returns how it ended,
 //! `failure` turns what went wrong into messages and exit codes, `output` writes to standard output.
 
 mod args;
@@ -10,6 +10,7 @@ mod files;
 mod output;
 mod progress;
 mod run;
+mod solve;
 mod table;
 
 use args::{Args, Command};
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
     let end = match Args::parse().command {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
+        Command::Solve(options) => return solve::run(&options),
     };
     match end {
         Ok(end) => end.into(),

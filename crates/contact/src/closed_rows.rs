@@ -1,7 +1,9 @@
 //! The closed rows C of an active-set method: which they are, the factor of Â_CC, forces and accelerations.
 //!
-//! All quantities are the scaled ones of [`System`]. Positions 0..n_b of C hold bilateral rows and never leave.
+//! All quantities are the scaled ones of [`System`]. Bilateral rows are free: their force may take any sign, and they
+//! never leave C.
 
+use crate::order::RowOrder;
 use crate::problem::Problem;
 use crate::skyline::Skyline;
 use crate::system::System;
@@ -12,13 +14,21 @@ const OPEN: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClosedRows {
     pub(crate) system: System,
+    /// Order in which rows are closed many at a time.
+    pub(crate) order: RowOrder,
     pub(crate) factor: Skyline,
     /// Row at each position.
     pub(crate) rows: Vec<usize>,
     /// Position of each row, or `OPEN`.
     position: Vec<u32>,
-    /// How many of the first positions hold bilateral rows.
-    pub(crate) connectors: usize,
+    /// Envelope of the factor when rows were last closed in order.
+    pub(crate) narrow_envelope: usize,
+    /// Flags and forces while rows are closed anew.
+    again: Vec<bool>,
+    /// How many of the first positions are kept when all others are opened: the bilateral rows, if they came first.
+    pub(crate) kept: usize,
+    /// Which rows are bilateral.
+    pub(crate) free: Vec<bool>,
     /// Scaled force of every row.
     pub(crate) force: Vec<f64>,
     /// Scaled acceleration of every row.
@@ -49,13 +59,17 @@ impl ClosedRows {
     /// Loads a problem; all rows open, all forces zero.
     pub(crate) fn load(&mut self, problem: &Problem, dependence: f64) {
         self.system.load(problem);
+        let (start, column) = self.system.pattern();
+        self.order.prepare(start, column, self.system.columns());
         let n = problem.len();
         self.dependence = dependence;
         self.proximal = 0.0;
         self.factor.reset(n);
         self.rows.clear();
         self.rows.reserve(n);
-        self.connectors = 0;
+        self.kept = 0;
+        self.free.clear();
+        self.free.extend_from_slice(problem.bilateral());
         for values in [&mut self.force, &mut self.acceleration, &mut self.reach, &mut self.step] {
             values.clear();
             values.resize(n, 0.0);
@@ -102,6 +116,37 @@ impl ClosedRows {
         !relation.dependent
     }
 
+    /// Closes the rows with a flag, as far as they are independent, in the order that keeps the factor narrow. Returns
+    /// whether every bilateral one was.
+    pub(crate) fn close_flagged(&mut self, flags: &[bool]) -> bool {
+        let mut independent = true;
+        for place in 0..self.order.rows.len() {
+            let row = self.order.rows[place] as usize;
+            if flags[row] && !self.is_closed(row) && !self.try_close(row) {
+                independent &= !self.free[row];
+            }
+        }
+        self.narrow_envelope = self.factor.envelope();
+        independent
+    }
+
+    /// Closes the same rows again, in order, with the forces they have. Returns false if rounding made one dependent:
+    /// it is open now, without force.
+    pub(crate) fn refactor(&mut self) -> bool {
+        let closed = self.len();
+        let mut again = std::mem::take(&mut self.again);
+        again.clear();
+        again.extend(self.position.iter().map(|&position| position != OPEN));
+        self.step.copy_from_slice(&self.force);
+        self.open_all();
+        self.close_flagged(&again);
+        for &row in &self.rows {
+            self.force[row] = self.step[row];
+        }
+        self.again = again;
+        self.len() == closed
+    }
+
     /// Opens the row at a position; its force becomes zero.
     pub(crate) fn open_at(&mut self, at: usize) {
         let row = self.rows.remove(at);
@@ -114,16 +159,16 @@ impl ClosedRows {
         }
     }
 
-    /// Opens all rows but the connectors, keeping their factor.
+    /// Opens all rows but those that are kept, whose factor stays.
     pub(crate) fn open_all(&mut self) {
-        for at in self.connectors..self.rows.len() {
+        for at in self.kept..self.rows.len() {
             let row = self.rows[at];
             self.system.open(row);
             self.position[row] = OPEN;
             self.force[row] = 0.0;
         }
-        self.rows.truncate(self.connectors);
-        self.factor.truncate(self.connectors);
+        self.rows.truncate(self.kept);
+        self.factor.truncate(self.kept);
     }
 
     /// Leaves in `step[..closed]` the change of the closed forces, with sign reversed, that keeps the closed
@@ -155,13 +200,18 @@ impl ClosedRows {
         self.factor.solve(&mut self.step[..closed]);
         for (at, &row) in self.rows.iter().enumerate() {
             let force = self.force[row] + self.step[at];
-            self.force[row] = if at < self.connectors { force } else { force.max(0.0) };
+            self.force[row] = if self.free[row] { force } else { force.max(0.0) };
         }
     }
 
     /// Evaluates all accelerations.
     pub(crate) fn accelerate(&mut self) {
         self.terms = self.system.accelerate(&self.force, &mut self.acceleration);
+        if self.proximal > 0.0 {
+            for (a, f) in self.acceleration.iter_mut().zip(&self.force) {
+                *a += self.proximal * f;
+            }
+        }
     }
 
     /// Largest |â| of a closed row.

@@ -101,7 +101,7 @@ fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
     let mut direction = vec![0.0; closed.force.len()];
     for (at, &other) in closed.rows.iter().enumerate() {
         let z = -closed.step[at];
-        direction[other] = if at < closed.connectors { z } else { z.max(0.0) };
+        direction[other] = if closed.free[other] { z } else { z.max(0.0) };
     }
     direction[row] = 1.0;
     direction

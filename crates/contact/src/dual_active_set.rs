@@ -8,18 +8,19 @@
 //! direction until one of them vanishes and its row makes room; when none does, the direction certifies that there is
 //! no solution.
 //!
-//! Differences from the papers: connectors are closed first and never leave; the start is all rows with b ≤ 0 (or the
-//! last active set), improved by exchanging all wrong rows at once while that makes fewer of them wrong (L. Portugal,
-//! J. Júdice, L. Vicente, Mathematics of Computation 63, 1994, 625-643); the final forces are refined.
+//! Differences from the papers: bilateral rows are closed at the start and never leave; the start is many rows closed
+//! at once (see `start`); the factor is made anew in a good order when pivots have widened it; the final forces are
+//! refined.
 
 use crate::check::Checker;
 use crate::closed_rows::ClosedRows;
 use crate::dependent::Shift;
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::problem::Problem;
-use crate::settings::{Contradiction, Settings};
+use crate::settings::{Contradiction, ForceSelection, Settings};
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
+use crate::start::Start;
 use crate::warm::WarmStart;
 
 /// Part of a unit change below which a force does not count as changed by a null direction: rounding.
@@ -28,22 +29,27 @@ const BLOCKING: f64 = 1e-14;
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 const REFINED: f64 = 0.125;
 
+/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
+const WIDENED: usize = 2;
+
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
-    settings: Settings,
+    pub(crate) settings: Settings,
     pub(crate) closed: ClosedRows,
     /// Rows that start closed.
-    start: Vec<bool>,
-    shift: Shift,
+    pub(crate) start: Vec<bool>,
+    pub(crate) shift: Shift,
     checker: Checker,
-    pivots: usize,
-    pub(crate) rounds: usize,
+    pub(crate) pivots: usize,
+    /// Whether to stop where another method is likely to be faster, and whether that was so.
+    pub(crate) may_hand_over: bool,
+    pub(crate) handed_over: bool,
 }
 
 /// How dependent rows are treated.
 #[derive(Clone, Copy, Debug)]
-struct Attempt {
+pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
     dependence: f64,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
@@ -51,7 +57,7 @@ struct Attempt {
 }
 
 /// How the pivoting ended.
-enum End {
+pub(crate) enum End {
     Done,
     Stopped,
     Infeasible(Box<Infeasibility>),
@@ -68,10 +74,10 @@ impl DualActiveSet {
         Ok(DualActiveSet { settings, ..Self::default() })
     }
 
-    fn run(
+    pub(crate) fn run(
         &mut self,
         problem: &Problem,
-        warm: Option<&WarmStart>,
+        warm: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         if !problem.is_symmetric() {
@@ -82,6 +88,7 @@ impl DualActiveSet {
         for attempt in self.attempts() {
             let error = match self.attempt(problem, warm, solution, attempt) {
                 Ok(()) => return Ok(()),
+                Err(error) if self.handed_over => return Err(error),
                 Err(error) => error,
             };
             let proven = matches!(&error, SolveError::Infeasible(proof)
@@ -95,6 +102,22 @@ impl DualActiveSet {
             }
         }
         Err(failure.expect("there is at least one attempt, and each gives an answer or an error"))
+    }
+
+    /// As [`run`](Self::run), but returns `Ok(false)` once many pivots are in sight on a large problem.
+    pub(crate) fn run_or_hand_over(
+        &mut self,
+        problem: &Problem,
+        start: Start<'_>,
+        solution: &mut Solution,
+    ) -> Result<bool, SolveError> {
+        self.may_hand_over = problem.len() >= self.settings.hand_over_rows;
+        let result = self.run(problem, start, solution);
+        self.may_hand_over = false;
+        match result {
+            Err(SolveError::Unsolved { .. }) if self.handed_over => Ok(false),
+            other => other.map(|()| true),
+        }
     }
 
     /// The ways to treat rows that are dependent or nearly so, in order.
@@ -113,7 +136,7 @@ impl DualActiveSet {
     fn attempt(
         &mut self,
         problem: &Problem,
-        warm: Option<&WarmStart>,
+        warm: Start<'_>,
         solution: &mut Solution,
         attempt: Attempt,
     ) -> Result<(), SolveError> {
@@ -121,110 +144,31 @@ impl DualActiveSet {
         self.closed.load(problem, attempt.dependence);
         self.shift.reset();
         self.pivots = 0;
-        let end = match self.close_connectors(problem) {
+        self.handed_over = false;
+        self.choose_start(problem, warm);
+        let end = match self.find_start(problem) {
             Some(certificate) => End::Infeasible(certificate),
+            None if self.handed_over => End::Stopped,
             None => {
-                self.choose_start(problem, warm);
-                self.exchange_blocks(problem);
                 self.make_forces_admissible();
                 self.pivot(problem, attempt)
             }
         };
-        self.finish(problem, solution, end)
-    }
-
-    /// Closes the bilateral rows; those that depend on others must agree with them.
-    fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
-        let mut dependent = false;
-        for row in 0..problem.len() {
-            if problem.bilateral[row] && !self.closed.try_close(row) {
-                dependent = true;
-            }
+        let result = self.finish(problem, solution, end);
+        if result.is_ok() && self.settings.selection == ForceSelection::LeastNorm {
+            self.select_least_norm(problem, solution, attempt);
         }
-        self.closed.connectors = self.closed.len();
-        if !dependent {
-            return None;
-        }
-        self.closed.solve_closed();
-        self.closed.accelerate();
-        let noise = self.noise();
-        let limit = self.settings.inconsistency * self.closed.system.scale;
-        self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
-    }
-
-    /// Marks the rows to begin with: those of the warm start; otherwise, and for new rows, those that would close.
-    fn choose_start(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
-        let system = &self.closed.system;
-        let limit = self.settings.open_tolerance * system.scale;
-        let lookup = warm.map(|warm| warm.lookup(problem));
-        self.start.clear();
-        self.start.extend((0..problem.len()).map(|row| {
-            let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
-            let closed = earlier.map_or(system.b[row] <= limit, |earlier| earlier.closed);
-            closed && system.movable[row] && !problem.bilateral[row]
-        }));
-    }
-
-    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong.
-    fn exchange_blocks(&mut self, problem: &Problem) {
-        let mut fewest = usize::MAX;
-        for _ in 0..self.settings.block_rounds {
-            self.rounds += 1;
-            self.closed.open_all();
-            for row in 0..problem.len() {
-                if self.start[row] {
-                    self.closed.try_close(row);
-                }
-            }
-            self.closed.solve_closed();
-            self.closed.accelerate();
-            let limit = -self.noise();
-            let mut wrong = 0;
-            for row in 0..problem.len() {
-                if problem.bilateral[row] {
-                    continue;
-                }
-                let closed = self.closed.is_closed(row);
-                let bad =
-                    if closed { self.closed.force[row] < 0.0 } else { self.closed.acceleration[row] < limit };
-                self.start[row] = closed != bad;
-                wrong += usize::from(bad);
-            }
-            if wrong == 0 || wrong >= fewest {
-                return;
-            }
-            fewest = wrong;
-        }
-    }
-
-    /// Opens closed rows until no unilateral force is negative.
-    fn make_forces_admissible(&mut self) {
-        loop {
-            let closed = &mut self.closed;
-            let pulls = |closed: &ClosedRows, at: usize| closed.force[closed.rows[at]] < 0.0;
-            let count = (closed.connectors..closed.len()).filter(|&at| pulls(closed, at)).count();
-            if count == 0 {
-                break;
-            }
-            for at in (closed.connectors..closed.len()).rev() {
-                if pulls(closed, at) {
-                    closed.open_at(at);
-                }
-            }
-            self.pivots += count;
-            closed.solve_closed();
-        }
-        self.closed.accelerate();
+        result
     }
 
     /// Closes the worst row until none is left, then refines.
-    fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
+    pub(crate) fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
         let mut refinements = 0;
         loop {
             let noise = self.noise();
             if let Some(row) = self.worst_open_row(problem, noise) {
                 match self.drive(row, attempt) {
-                    End::Done => {}
+                    End::Done => self.narrow_factor(),
                     other => return other,
                 }
             } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
@@ -235,6 +179,16 @@ impl DualActiveSet {
             } else {
                 return End::Done;
             }
+        }
+    }
+
+    /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
+    fn narrow_factor(&mut self) {
+        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
+            && !self.closed.refactor()
+        {
+            self.closed.solve_closed();
+            self.make_forces_admissible();
         }
     }
 
@@ -287,9 +241,9 @@ impl DualActiveSet {
         let closed = &self.closed;
         let mut found = None;
         let mut shortest = limit;
-        for at in closed.connectors..closed.len() {
-            if closed.step[at] > BLOCKING {
-                let length = closed.force[closed.rows[at]] / closed.step[at];
+        for (at, &row) in closed.rows.iter().enumerate() {
+            if closed.step[at] > BLOCKING && !closed.free[row] {
+                let length = closed.force[row] / closed.step[at];
                 if length < shortest {
                     shortest = length;
                     found = Some((at, length));
@@ -322,13 +276,18 @@ impl DualActiveSet {
     }
 
     /// Acceleration below which nothing can be told from rounding, or matters.
-    fn noise(&self) -> f64 {
+    pub(crate) fn noise(&self) -> f64 {
         let scale = self.closed.system.scale;
         self.settings.rounding * (scale + self.closed.terms) + self.settings.open_tolerance * scale
     }
 
     /// Turns the scaled forces into an answer and checks it.
-    fn finish(&mut self, problem: &Problem, solution: &mut Solution, end: End) -> Result<(), SolveError> {
+    pub(crate) fn finish(
+        &mut self,
+        problem: &Problem,
+        solution: &mut Solution,
+        end: End,
+    ) -> Result<(), SolveError> {
         if let End::Infeasible(certificate) = end {
             return Err(SolveError::Infeasible(certificate));
         }
@@ -358,7 +317,7 @@ impl Solver for DualActiveSet {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
-        self.run(problem, None, solution)
+        self.run(problem, Start::Nothing, solution)
     }
 
     fn solve_from(
@@ -367,6 +326,6 @@ impl Solver for DualActiveSet {
         start: &WarmStart,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        self.run(problem, Some(start), solution)
+        self.run(problem, Start::Earlier(start), solution)
     }
 }

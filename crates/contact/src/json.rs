@@ -106,7 +106,7 @@ pub struct Expected {
     /// How closely they must agree, in the same units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// Force per row [N]; others may do where contacts are redundant.
+    /// Force per row \[N\]; others may do where contacts are redundant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<Vec<f64>>,
 }
@@ -224,7 +224,7 @@ pub struct SolutionFile {
     pub status: String,
     /// Name of the method.
     pub method: String,
-    /// Force per row [N].
+    /// Force per row \[N\].
     pub force: Vec<f64>,
     /// Acceleration per row [m/s²].
     pub acceleration: Vec<f64>,
@@ -238,9 +238,9 @@ pub struct SolutionFile {
     pub iterations: usize,
     /// Contradiction between dependent rows, in units of the scale.
     pub inconsistency: f64,
-    /// Time of a solve from nothing [µs].
+    /// Time of a solve from nothing \[µs\].
     pub microseconds: f64,
-    /// Time of a warm solve [µs], if one was made.
+    /// Time of a warm solve \[µs\], if one was made.
     pub microseconds_warm: Option<f64>,
 }
 

@@ -1,36 +1,68 @@
 //! Contact forces and impulses: complementarity problems, solved and checked.
 //!
 //! Rows in, forces out: with A = J M⁻¹ Jᵀ, find a = A f + b with f ≥ 0, a ≥ 0, fᵀa = 0 on unilateral rows (contacts)
-//! and a = 0 on bilateral ones (connectors).
+//! and a = 0 on bilateral ones (connectors). [`Problem`] holds the rows, [`Solution`] the forces with the evidence that
+//! they are right, [`Auto`] chooses a method; each method is also a [`Solver`] of its own, and so can yours be.
 //!
 //! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
-//! data before it is returned; every iteration has a cap; the same input gives the same bits.
+//! data before it is returned; every iteration has a cap; the same input gives the same bits; a warm solve of a size
+//! met before allocates nothing.
+//!
+//! | module | what |
+//! |---|---|
+//! | `problem`, `matrix` | rows of bodies, or the entries of A; checked when built |
+//! | `solution`, `check` | the answer and its residuals |
+//! | `system` | the problem scaled to a unit diagonal, which the symmetric methods work on |
+//! | `dual_active_set`, `start`, `closed_rows`, `skyline`, `order`, `dependent`, `least_norm` | [`DualActiveSet`] |
+//! | `proximal_newton`, `body_factor`, `line_search` | [`ProximalNewton`] |
+//! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
+//! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
+//! | `auto`, `islands` | [`Auto`] |
+//! | `warm` | [`WarmStart`]: carrying an answer over to the next step |
+//! | `json` | feature `json`: problems and answers as files |
 
+mod auto;
+mod body_factor;
 mod check;
 mod closed_rows;
 mod dependent;
+mod dictionary;
 mod dual_active_set;
 mod error;
 mod impact;
+mod islands;
 #[cfg(feature = "json")]
 mod json;
+mod least_norm;
+mod lemke;
+mod line_search;
 mod matrix;
+mod order;
 mod problem;
+mod proximal_newton;
+#[cfg(feature = "qp")]
+mod qp;
 mod row;
 mod settings;
 mod skyline;
 mod solution;
 mod solver;
+mod start;
 mod system;
 mod warm;
 
+pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
-pub use json::{ContactFile, FileError, SolutionFile};
+pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};
+pub use lemke::Lemke;
 pub use problem::{BodyId, ContactKey, Inertia, Problem, Row};
+pub use proximal_newton::ProximalNewton;
+#[cfg(feature = "qp")]
+pub use qp::Qp;
 pub use row::CollisionRow;
 pub use settings::{Contradiction, ForceSelection, Settings};
 pub use solution::Solution;

@@ -111,6 +111,37 @@ impl BodyRows {
     pub(crate) fn new() -> Self {
         BodyRows { rows: SparseMatrix::new(), inverse_mass: Vec::new() }
     }
+
+    /// A = J M⁻¹ Jᵀ, its entries.
+    pub(crate) fn product(&self) -> SparseMatrix {
+        let n = self.rows.rows();
+        let mut touching: Vec<Vec<(usize, f64)>> = vec![Vec::new(); self.inverse_mass.len()];
+        for row in 0..n {
+            let (columns, values) = self.rows.row(row);
+            columns.iter().zip(values).for_each(|(&k, &v)| touching[k].push((row, v)));
+        }
+        let mut product = SparseMatrix::new();
+        let mut sum = vec![0.0; n];
+        for row in 0..n {
+            let (columns, values) = self.rows.row(row);
+            let mut used: Vec<usize> = Vec::new();
+            for (&k, &v) in columns.iter().zip(values) {
+                for &(other, w) in &touching[k] {
+                    used.push(other);
+                    sum[other] += v * self.inverse_mass[k] * w;
+                }
+            }
+            used.sort_unstable();
+            used.dedup();
+            for other in used {
+                product.column.push(other);
+                product.value.push(sum[other]);
+                sum[other] = 0.0;
+            }
+            product.start.push(product.column.len());
+        }
+        product
+    }
 }
 
 /// What A is.

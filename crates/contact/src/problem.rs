@@ -3,7 +3,7 @@
 //! With n rows, find f and a with
 //!
 //! ```text
-//! a = A f + b        A (n, n) [1/kg], b (n) [m/s²], f (n) [N]
+//! a = A f + b        A (n, n) [1/kg], b (n) [m/s²], f (n) \[N\]
 //! f ≥ 0, a ≥ 0, fᵀa = 0      on unilateral rows
 //! a = 0, f free              on bilateral rows
 //! ```
@@ -66,7 +66,7 @@ pub struct Inertia {
 /// One row: how the motion of one or two bodies changes a gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// The primary body and the row's coefficients for its x, y [1] and rotation [m].
+    /// The primary body and the row's coefficients for its x, y \[1\] and rotation \[m\].
     pub primary: (BodyId, [f64; 3]),
     /// The normal body and its coefficients, if the other side is a body of the problem.
     pub normal: Option<(BodyId, [f64; 3])>,

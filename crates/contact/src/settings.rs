@@ -30,18 +30,27 @@ pub struct Settings {
     pub inconsistency: f64,
     /// An acceleration within this part of the scale of zero counts as zero while the solver looks for a next row.
     pub open_tolerance: f64,
+    /// A row whose offset b is below this part of the scale starts closed: contacts between bodies at rest on each other
+    /// have b = 0 but for small relative motions.
+    pub start_closed: f64,
     /// The same, in units of the largest sum of terms that an acceleration is made of: a few roundings.
     pub rounding: f64,
     /// Cap on pivots, per row of the problem.
     pub pivots_per_row: usize,
     /// Cap on rounds in which the active-set method exchanges all wrong rows at once.
     pub block_rounds: usize,
+    /// How many such rounds may pass without fewer rows being wrong.
+    pub block_tries: usize,
+    /// Rows from which the automatic choice hands very redundant problems to the proximal method.
+    pub hand_over_rows: usize,
     /// Cap on steps of iterative refinement of the final forces.
     pub refinements: usize,
     /// Cap on outer (multiplier) iterations of the proximal method.
     pub outer_iterations: usize,
     /// Cap on Newton steps of the proximal method, in all.
     pub newton_steps: usize,
+    /// Tolerance asked of the interior-point method, on its gap and feasibility, in units of the scale.
+    pub interior_point: f64,
     /// Proximal term the least-norm choice of forces is made with, in units of the scaled diagonal of `A`, which is 1.
     pub least_norm_term: f64,
     /// How forces are chosen where the problem leaves a choice.
@@ -84,13 +93,17 @@ impl Default for Settings {
             least_dependence: 1e-15,
             inconsistency: 1e-8,
             open_tolerance: 1e-13,
+            start_closed: 1e-2,
             rounding: 1e-15,
             pivots_per_row: 20,
             block_rounds: 12,
+            block_tries: 0,
+            hand_over_rows: 150,
             refinements: 3,
             outer_iterations: 60,
             newton_steps: 3000,
-            least_norm_term: 1e-8,
+            interior_point: 1e-12,
+            least_norm_term: 1e-5,
             selection: ForceSelection::Vertex,
             contradiction: Contradiction::SolveExactly,
         }
@@ -113,7 +126,9 @@ impl Settings {
             ("least_dependence", self.least_dependence),
             ("inconsistency", self.inconsistency),
             ("open_tolerance", self.open_tolerance),
+            ("start_closed", self.start_closed),
             ("rounding", self.rounding),
+            ("interior_point", self.interior_point),
             ("least_norm_term", self.least_norm_term),
         ];
         match numbers.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {

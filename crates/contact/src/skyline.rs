@@ -49,7 +49,8 @@ impl Skyline {
 
     /// Entries left of the diagonal, in use by the rows.
     pub(crate) fn envelope(&self) -> usize {
-        self.first.iter().enumerate().map(|(i, &first)| i - first).sum()
+        let length = self.first.len();
+        length * length.saturating_sub(1) / 2 - self.first.iter().sum::<usize>()
     }
 
     /// y := L⁻¹ y, where y is zero before `from`. Returns the squared length of the result.
@@ -119,7 +120,7 @@ impl Skyline {
         // Rotation q combines what is carried along with the entry of column k + 1 + q into the new column k + q.
         let (mut carried, begin, lag) =
             if first <= k { (row[k - first], 0, 1) } else { (0.0, first - k - 1, 0) };
-        let shift = if first <= k { k - first } else { 0 };
+        let shift = k.saturating_sub(first);
         for (q, &(cosine, sine)) in self.rotation[begin..].iter().enumerate() {
             let entry = row[shift + q + lag];
             row[shift + q] = cosine * carried + sine * entry;

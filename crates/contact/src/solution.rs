@@ -8,7 +8,7 @@ use crate::solver::Method;
 /// A solution is filled by a solver and can be used again and again: its buffers keep their room.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// Force f_i of each row [N], or impulse [N·s] in an impact problem.
+    /// Force f_i of each row \[N\], or impulse [N·s] in an impact problem.
     pub force: Vec<f64>,
     /// Acceleration a = A f + b of each row [m/s²], or velocity [m/s] in an impact problem, from the original data.
     pub acceleration: Vec<f64>,

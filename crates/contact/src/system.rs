@@ -221,3 +221,77 @@ impl System {
         largest
     }
 }
+
+/// Products with Ĵ, for problems of bodies.
+impl System {
+    /// Number of columns of Ĵ, or of Â.
+    pub(crate) fn columns(&self) -> usize {
+        if self.bodies { self.root.len() } else { self.rows() }
+    }
+
+    /// Where the entries of each row begin, and their columns.
+    pub(crate) fn pattern(&self) -> (&[usize], &[u32]) {
+        (&self.start, &self.column)
+    }
+
+    /// Entries of a row.
+    pub(crate) fn row_values(&self, row: usize) -> &[f64] {
+        &self.value[self.start[row]..self.start[row + 1]]
+    }
+
+    /// u := Ĵᵀ f.
+    pub(crate) fn push(&self, f: &[f64], u: &mut [f64]) {
+        u.fill(0.0);
+        for (i, &force) in f.iter().enumerate() {
+            if force != 0.0 {
+                for e in self.start[i]..self.start[i + 1] {
+                    u[self.column[e] as usize] += self.value[e] * force;
+                }
+            }
+        }
+    }
+
+    /// a := Ĵ u.
+    pub(crate) fn pull(&self, u: &[f64], a: &mut [f64]) {
+        for (i, out) in a.iter_mut().enumerate() {
+            let range = self.start[i]..self.start[i + 1];
+            let terms = self.column[range.clone()].iter().zip(&self.value[range]);
+            *out = terms.map(|(&k, v)| v * u[k as usize]).sum();
+        }
+    }
+}
+
+#[cfg(feature = "qp")]
+impl System {
+    /// Rows Ĵ with Â = Ĵ Ĵᵀ as (column, value), and the number of columns: the rows of bodies themselves, or a factor of
+    /// Â by Cholesky with diagonal pivoting, ended where at most `dependence` is left of any diagonal entry.
+    pub(crate) fn rows_or_factor(&self, dependence: f64) -> (Vec<Vec<(usize, f64)>>, usize) {
+        let n = self.rows();
+        let entries =
+            |i: usize| (self.start[i]..self.start[i + 1]).map(|e| (self.column[e] as usize, self.value[e]));
+        if self.bodies {
+            return ((0..n).map(|i| entries(i).collect()).collect(), self.root.len());
+        }
+        let mut rows: Vec<Vec<f64>> = vec![Vec::new(); n];
+        let mut rest: Vec<f64> = self.movable.iter().map(|&m| f64::from(u8::from(m))).collect();
+        for rank in 0..n {
+            let pivot = (0..n).max_by(|&i, &j| rest[i].total_cmp(&rest[j])).unwrap_or(0);
+            if rest[pivot] <= dependence {
+                break;
+            }
+            let root = rest[pivot].sqrt();
+            let mut line = vec![0.0; n];
+            entries(pivot).for_each(|(j, v)| line[j] = v);
+            let own = rows[pivot].clone();
+            for i in 0..n {
+                let value = (line[i] - rows[i].iter().zip(&own).map(|(x, y)| x * y).sum::<f64>()) / root;
+                debug_assert_eq!(rows[i].len(), rank);
+                rows[i].push(if i == pivot { root } else { value });
+                rest[i] -= value * value;
+            }
+            rest[pivot] = f64::NEG_INFINITY;
+        }
+        let columns = rows.first().map_or(0, Vec::len);
+        (rows.into_iter().map(|row| row.into_iter().enumerate().collect()).collect(), columns)
+    }
+}

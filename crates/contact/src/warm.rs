@@ -19,6 +19,8 @@ struct Entry {
     id: u64,
     force: f64,
     closed: bool,
+    /// False for a place without an earlier row.
+    known: bool,
 }
 
 /// What an earlier answer says about a row.
@@ -40,7 +42,7 @@ impl WarmStart {
         self.entries.clear();
         self.entries.extend(solution.force.iter().enumerate().map(|(row, &force)| {
             let id = if self.by_key { problem.keys[row].0 } else { row as u64 };
-            Entry { id, force, closed: false }
+            Entry { id, force, closed: false, known: true }
         }));
         for &row in &solution.active {
             self.entries[row].closed = true;
@@ -48,6 +50,17 @@ impl WarmStart {
         if self.by_key {
             self.entries.sort_unstable_by_key(|entry| entry.id);
         }
+    }
+
+    /// Makes this the warm start of a part of `problem`, the rows `rows`, identified by their place in it.
+    pub(crate) fn restrict(&mut self, whole: &WarmStart, problem: &Problem, rows: &[u32]) {
+        let lookup = whole.lookup(problem);
+        self.by_key = false;
+        self.entries.clear();
+        self.entries.extend(rows.iter().map(|&row| match lookup.find(row as usize) {
+            Some(Earlier { force, closed }) => Entry { id: 0, force, closed, known: true },
+            None => Entry { id: 0, force: 0.0, closed: false, known: false },
+        }));
     }
 
     /// Prepares for looking up the rows of `problem`.
@@ -80,7 +93,7 @@ impl Lookup<'_> {
             (false, None) => entries.get(row).copied(),
             _ => None,
         };
-        entry.map(|Entry { force, closed, .. }| Earlier { force, closed })
+        entry.filter(|entry| entry.known).map(|Entry { force, closed, .. }| Earlier { force, closed })
     }
 }
 

@@ -31,9 +31,11 @@ impl Case {
         self.file.feasible.unwrap_or(true)
     }
 
-    /// Whether scaling, and with it the classes of rules, is as for great mass ratios.
-    pub(crate) fn family(&self) -> &str {
-        self.file.family.as_deref().unwrap_or("")
+    /// The problem one step later.
+    pub(crate) fn next(&self) -> Problem {
+        let mut next = self.problem.clone();
+        next.set_offset(self.file.b_next.as_ref().unwrap()).unwrap();
+        next
     }
 }
 
@@ -64,28 +66,50 @@ pub(crate) struct Judged {
     pub(crate) backward: f64,
 }
 
+impl Judged {
+    /// Whether the answer is right: to rounding, where that suffices, else backward.
+    pub(crate) fn good(&self) -> bool {
+        if self.growth < 1e3 { self.natural <= 1e-12 } else { self.growth < 1e12 && self.backward <= 1e-14 }
+    }
+}
+
+/// s_i = sqrt(A_ii), 1 where that is zero, and max |b_i / s_i|, 1 where that is zero.
+pub(crate) fn scales(problem: &Problem) -> (Vec<f64>, f64) {
+    let a = problem.dense();
+    let s: Vec<f64> = (0..a.len()).map(|i| if a[i][i] > 0.0 { a[i][i].sqrt() } else { 1.0 }).collect();
+    let scale = problem.offset().iter().zip(&s).fold(0.0, |m: f64, (b, s)| m.max(b.abs() / s));
+    (s, if scale == 0.0 { 1.0 } else { scale })
+}
+
 /// Judges forces by the dense matrix.
 pub(crate) fn judge(problem: &Problem, force: &[f64]) -> Judged {
     let a = problem.dense();
-    let (mut residual, mut terms, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let (s, scale) = scales(problem);
+    let (mut residual, mut terms) = (0.0_f64, 0.0_f64);
     for (i, row) in a.iter().enumerate() {
-        let s = if row[i] > 0.0 { row[i].sqrt() } else { 1.0 };
         let acceleration = row.iter().zip(force).map(|(x, f)| x * f).sum::<f64>() + problem.offset()[i];
         let size: f64 = row.iter().zip(force).map(|(x, f)| (x * f).abs()).sum();
-        let wrong =
-            if problem.bilateral()[i] { acceleration / s } else { (s * force[i]).min(acceleration / s) };
+        let scaled = acceleration / s[i];
+        let wrong = if problem.bilateral()[i] { scaled } else { (s[i] * force[i]).min(scaled) };
         assert!(wrong.is_finite());
         residual = residual.max(wrong.abs());
-        terms = terms.max(size / s);
-        scale = scale.max(problem.offset()[i].abs() / s);
+        terms = terms.max(size / s[i]);
     }
-    let scale = if scale == 0.0 { 1.0 } else { scale };
     let (natural, growth) = (residual / scale, terms / scale);
     Judged { natural, growth, backward: natural / (1.0 + growth) }
 }
 
-impl Judged {
-    pub(crate) fn good(&self) -> bool {
-        if self.growth < 1e3 { self.natural <= 1e-12 } else { self.growth < 1e12 && self.backward <= 1e-14 }
+/// Why z proves nothing, if so: it must be z ≥ 0 and Aᵀz ≤ 0 (= 0 for bilateral rows) up to rounding, and bᵀz < 0.
+pub(crate) fn disproof(problem: &Problem, z: &[f64]) -> Option<&'static str> {
+    let (s, scale) = scales(problem);
+    let a = problem.dense();
+    let largest = z.iter().zip(&s).fold(0.0, |m: f64, (z, s)| m.max((z * s).abs()));
+    let worth: f64 = z.iter().zip(problem.offset()).map(|(z, b)| z * b).sum();
+    let mut wrong = worth >= -1e-8 * scale * largest;
+    for j in 0..z.len() {
+        let image: f64 = (0..z.len()).map(|i| a[i][j] * z[i]).sum::<f64>() / s[j];
+        let outside = if problem.bilateral()[j] { image.abs() } else { image.max(-z[j] * s[j]) };
+        wrong |= outside > 1e-12 * largest;
     }
+    wrong.then_some("not a proof")
 }

@@ -3,3 +3,9 @@
 
 mod collected;
 mod data;
+mod extremes;
+mod files;
+mod least_norm;
+mod perturbed;
+mod properties;
+mod warm;

@@ -1,0 +1,249 @@
+//! `halfgap solve`: one contact problem from a file, its answer explained to a person or printed as JSON.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use halfgap_contact::{
+    Auto, ContactFile, DualActiveSet, FileError, Lemke, Problem, ProximalNewton, Qp, Residuals, Settings,
+    Solution, SolutionFile, SolveError, Solver, WarmStart,
+};
+
+/// The problem has no answer: infeasible, or the method failed.
+const NO_ANSWER: u8 = 3;
+/// The input is wrong.
+const WRONG_INPUT: u8 = 2;
+/// Rows printed in full; of larger problems those that carry most force.
+const SHOWN_ROWS: usize = 40;
+/// Repetitions of a solve, of which the fastest counts.
+const REPETITIONS: usize = 5;
+
+/// What to solve and how.
+#[derive(Debug, Args)]
+pub(crate) struct SolveArgs {
+    /// A problem in the format halfgap-contact-1.
+    problem: PathBuf,
+    /// The method; by default chosen by size and structure.
+    #[arg(long, value_enum, default_value = "auto")]
+    method: Choice,
+    /// Print the answer as JSON (halfgap-solution-1) instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Methods by the names they have in files.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Choice {
+    Auto,
+    DualActiveSet,
+    ProximalNewton,
+    Qp,
+    Lemke,
+}
+
+impl Choice {
+    fn solver(self) -> Box<dyn Solver> {
+        match self {
+            Choice::Auto => Box::new(Auto::default()),
+            Choice::DualActiveSet => Box::new(DualActiveSet::default()),
+            Choice::ProximalNewton => Box::new(ProximalNewton::default()),
+            Choice::Qp => Box::new(Qp::default()),
+            Choice::Lemke => Box::new(Lemke::default()),
+        }
+    }
+}
+
+/// A solve with its times.
+struct Outcome {
+    solution: Solution,
+    result: Result<(), SolveError>,
+    microseconds: f64,
+    microseconds_warm: Option<f64>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &SolveArgs) -> ExitCode {
+    let (file, problem, next) = match read(args) {
+        Ok(read) => read,
+        Err(message) => {
+            eprintln!("{}: {message}", args.problem.display());
+            return ExitCode::from(WRONG_INPUT);
+        }
+    };
+    let outcome = solve(args.method, &problem, next.as_ref());
+    if args.json {
+        println!("{}", json(args.method, &problem, &outcome));
+    } else {
+        print!("{}", explain(&file, &problem, &outcome));
+    }
+    if outcome.result.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(NO_ANSWER) }
+}
+
+/// The file, its problem and that of the next step.
+fn read(args: &SolveArgs) -> Result<(ContactFile, Problem, Option<Problem>), String> {
+    let text = std::fs::read_to_string(&args.problem).map_err(|error| error.to_string())?;
+    let file = ContactFile::parse(&text).map_err(|error| error.to_string())?;
+    let problem = file.problem().map_err(|error| error.to_string())?;
+    let next = match &file.b_next {
+        Some(b) => {
+            let mut next = problem.clone();
+            next.set_offset(b).map_err(|error| format!("field `b_next`: {}", FileError::from(error)))?;
+            Some(next)
+        }
+        None => None,
+    };
+    Ok((file, problem, next))
+}
+
+fn solve(method: Choice, problem: &Problem, next: Option<&Problem>) -> Outcome {
+    let mut solver = method.solver();
+    let mut solution = Solution::new();
+    let begin = Instant::now();
+    let result = solver.solve(problem, &mut solution);
+    let mut microseconds = begin.elapsed().as_secs_f64() * 1e6;
+    let mut microseconds_warm = None;
+    if result.is_ok() {
+        let mut again = Solution::new();
+        microseconds = fastest(microseconds, || solver.solve(problem, &mut again));
+        if let Some(next) = next {
+            let mut warm = WarmStart::new();
+            warm.remember(problem, &solution);
+            let time = fastest(f64::INFINITY, || solver.solve_from(next, &warm, &mut again));
+            microseconds_warm = time.is_finite().then_some(time);
+        }
+    }
+    Outcome { solution, result, microseconds, microseconds_warm }
+}
+
+/// The least time of some repetitions [µs], or `known` if that is less; slow and failing work is not repeated.
+fn fastest(known: f64, mut work: impl FnMut() -> Result<(), SolveError>) -> f64 {
+    let mut least = known;
+    for _ in 0..REPETITIONS {
+        let begin = Instant::now();
+        if work().is_err() {
+            break;
+        }
+        least = least.min(begin.elapsed().as_secs_f64() * 1e6);
+        if least > 1e6 {
+            break;
+        }
+    }
+    least
+}
+
+fn json(method: Choice, problem: &Problem, outcome: &Outcome) -> String {
+    let mut file = SolutionFile::of(&outcome.solution);
+    file.microseconds = outcome.microseconds;
+    file.microseconds_warm = outcome.microseconds_warm;
+    if let Err(error) = &outcome.result {
+        let infeasible = matches!(error, SolveError::Infeasible(_));
+        file.status = if infeasible { "infeasible" } else { "failed" }.to_owned();
+        file.method = method.solver().method().name().to_owned();
+        file.force.resize(problem.len(), 0.0);
+        if infeasible || file.force.iter().any(|f| !f.is_finite()) {
+            file.force.fill(0.0);
+        }
+        let residuals = Residuals::of(problem, &file.force);
+        (file.r_nat, file.growth, file.r_bwd) = (residuals.natural, residuals.growth, residuals.backward);
+        file.acceleration = accelerations(problem, &file.force);
+    }
+    serde_json::to_string(&file).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+}
+
+fn accelerations(problem: &Problem, force: &[f64]) -> Vec<f64> {
+    let change = |row: &Vec<f64>| row.iter().zip(force).map(|(a, f)| a * f).sum::<f64>();
+    problem.dense().iter().zip(problem.offset()).map(|(row, b)| change(row) + b).collect()
+}
+
+/// The answer in words.
+fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
+    let title = file.title.as_deref().unwrap_or("contact problem");
+    let bilateral = problem.bilateral().iter().filter(|b| **b).count();
+    let mut text = format!("{title}: {} rows, {bilateral} of them bilateral\n\n", problem.len());
+    match &outcome.result {
+        Ok(()) => explain_answer(&mut text, problem, outcome),
+        Err(SolveError::Infeasible(proof)) => {
+            let parts = proof.direction.iter().enumerate().filter(|(_, z)| **z != 0.0);
+            let rows: Vec<String> =
+                parts.map(|(row, z)| format!("{row} ({z:.3})")).take(SHOWN_ROWS).collect();
+            let _ = writeln!(
+                text,
+                "INFEASIBLE: {proof}.\nThe rows below, in these parts, move against each other whatever the forces \
+                 (rounding {:.0e}):\n  {}",
+                proof.leakage,
+                rows.join(", ")
+            );
+        }
+        Err(error) => {
+            let _ = writeln!(text, "FAILED: {error}.");
+        }
+    }
+    text
+}
+
+fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {
+    let solution = &outcome.solution;
+    let carrying = solution.force.iter().filter(|f| **f != 0.0).count();
+    let mut rows: Vec<usize> = (0..problem.len()).collect();
+    if rows.len() > SHOWN_ROWS {
+        rows.sort_by(|&i, &j| solution.force[j].abs().total_cmp(&solution.force[i].abs()));
+        rows.truncate(SHOWN_ROWS);
+        let _ = writeln!(text, "the {SHOWN_ROWS} rows with the largest forces:");
+    }
+    let _ = writeln!(text, "{:>6}  {:>13}  {:>13}  state", "row", "force", "acceleration");
+    for row in rows {
+        let (force, acceleration) = (solution.force[row], solution.acceleration[row]);
+        let state =
+            match (problem.bilateral()[row], force != 0.0, solution.active.binary_search(&row).is_ok()) {
+                (true, _, _) => "connector",
+                (false, true, _) => "carries force",
+                (false, false, true) => "closed, no force",
+                (false, false, false) => "free",
+            };
+        let _ = writeln!(text, "{row:>6}  {force:>13.6e}  {acceleration:>13.6e}  {state}");
+    }
+    let _ = writeln!(
+        text,
+        "\n{carrying} of {} rows carry force.\n{}\n{} in {} iterations: {}.",
+        problem.len(),
+        judgement(solution),
+        solution.method,
+        solution.iterations,
+        times(outcome)
+    );
+}
+
+fn times(outcome: &Outcome) -> String {
+    match outcome.microseconds_warm {
+        Some(warm) => {
+            format!("{:.1} µs from nothing, {warm:.1} µs warm for the next step", outcome.microseconds)
+        }
+        None => format!("{:.1} µs", outcome.microseconds),
+    }
+}
+
+/// The residuals in words.
+fn judgement(solution: &Solution) -> String {
+    let Residuals { natural, growth, backward } = solution.residuals;
+    let exact = natural <= Settings::default().natural_residual;
+    let mut text = format!("Residual {natural:.1e} of the largest offset: ");
+    text += if exact {
+        "the answer is exact to rounding."
+    } else if solution.inconsistency > 0.0 {
+        "what contacts that contradict each other leave."
+    } else {
+        "forces are so large beside the offsets that rounding shows."
+    };
+    let _ = write!(text, "\nGrowth {growth:.1e}, backward residual {backward:.1e}.");
+    if solution.inconsistency > 0.0 {
+        let _ = write!(
+            text,
+            "\nDependent rows contradict each other by {:.1e} of the largest offset; solved by least squares.",
+            solution.inconsistency
+        );
+    }
+    text
+}

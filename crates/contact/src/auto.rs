@@ -1,0 +1,199 @@
+//! The automatic choice of a method.
+//!
+//! Unsymmetric problems go to Lemke's method. Of the others, independent islands are solved one by one, each by the
+//! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight: then by the
+//! proximal method. If the first choice fails its check, the others are tried, the quadratic program last. The
+//! reasons and the measurements are in the project's `docs/contact.md`.
+
+use crate::check::Checker;
+use crate::dual_active_set::DualActiveSet;
+use crate::error::{SettingsError, SolveError};
+use crate::islands::Islands;
+use crate::lemke::Lemke;
+use crate::problem::Problem;
+use crate::proximal_newton::ProximalNewton;
+#[cfg(feature = "qp")]
+use crate::qp::Qp;
+use crate::settings::{ForceSelection, Settings};
+use crate::solution::Solution;
+use crate::solver::{Method, Solver};
+use crate::start::Start;
+use crate::warm::WarmStart;
+
+/// Rows below which looking for islands costs more than it gains: the factor of a few islands is as narrow.
+const SPLIT_ROWS: usize = 48;
+
+/// Rows up to which Lemke's method is worth a last try on a symmetric problem.
+const LAST_RESORT_ROWS: usize = 400;
+
+/// Chooses a method, and another if that fails.
+#[derive(Debug, Default)]
+pub struct Auto {
+    settings: Settings,
+    islands: Islands,
+    part: Solution,
+    part_start: WarmStart,
+    methods: Methods,
+    checker: Checker,
+}
+
+#[derive(Debug, Default)]
+struct Methods {
+    dual: DualActiveSet,
+    proximal: ProximalNewton,
+    #[cfg(feature = "qp")]
+    qp: Qp,
+    lemke: Lemke,
+}
+
+impl Auto {
+    /// A solver with these settings.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] names a number that is not usable.
+    pub fn new(settings: Settings) -> Result<Self, SettingsError> {
+        let methods = Methods {
+            dual: DualActiveSet::new(settings)?,
+            proximal: ProximalNewton::new(settings)?,
+            #[cfg(feature = "qp")]
+            qp: Qp::new(settings)?,
+            lemke: Lemke::new(settings)?,
+        };
+        Ok(Auto { settings, methods, ..Self::default() })
+    }
+
+    fn run(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
+        if islands <= 1 {
+            return self.methods.solve(problem, warm, solution, self.settings.selection);
+        }
+        solution.reset(problem.len(), Method::Auto);
+        for island in 0..islands {
+            match self.solve_island(problem, island, warm, solution) {
+                // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
+                Err(SolveError::Infeasible(_)) => {
+                    return self.methods.solve(problem, warm, solution, self.settings.selection);
+                }
+                other => other?,
+            }
+        }
+        solution.active.sort_unstable();
+        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        if solution.residuals.accepted(&self.settings, solution.inconsistency) {
+            return Ok(());
+        }
+        let Solution { residuals, iterations, .. } = *solution;
+        Err(SolveError::Unsolved { method: Method::Auto, residuals, iterations })
+    }
+
+    fn solve_island(
+        &mut self,
+        problem: &Problem,
+        island: usize,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let start = warm.map(|warm| {
+            self.part_start.restrict(warm, problem, self.islands.rows(island));
+            &self.part_start
+        });
+        let problem_part = self.islands.part(problem, island);
+        let result = self.methods.solve(problem_part, start, &mut self.part, self.settings.selection);
+        let rows = self.islands.rows(island);
+        result?;
+        for (&row, &force) in rows.iter().zip(&self.part.force) {
+            solution.force[row as usize] = force;
+        }
+        solution.active.extend(self.part.active.iter().map(|&at| rows[at] as usize));
+        solution.iterations += self.part.iterations;
+        solution.inconsistency = solution.inconsistency.max(self.part.inconsistency);
+        solution.method = match island {
+            0 => self.part.method,
+            _ if solution.method == self.part.method => solution.method,
+            _ => Method::Auto,
+        };
+        Ok(())
+    }
+}
+
+impl Methods {
+    fn solve(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+        selection: ForceSelection,
+    ) -> Result<(), SolveError> {
+        if !problem.is_symmetric() {
+            return self.lemke.solve(problem, solution);
+        }
+        let start = warm.map_or(Start::Nothing, Start::Earlier);
+        let may_hand_over = problem.has_bodies() && selection == ForceSelection::Vertex;
+        let first = if may_hand_over {
+            self.dual.run_or_hand_over(problem, start, solution)
+        } else {
+            self.dual.run(problem, start, solution).map(|()| true)
+        };
+        match first {
+            Ok(true) => Ok(()),
+            Ok(false) => {
+                let found = match warm {
+                    Some(warm) => self.proximal.solve_from(problem, warm, solution),
+                    None => self.proximal.solve(problem, solution),
+                };
+                found
+                    .or_else(|_| self.dual.run(problem, start, solution))
+                    .or_else(|error| self.try_others(problem, solution, error))
+            }
+            Err(error) => self.try_others(problem, solution, error),
+        }
+    }
+
+    /// Another method, where the first one came to nothing; its error stands if none helps.
+    fn try_others(
+        &mut self,
+        problem: &Problem,
+        solution: &mut Solution,
+        error: SolveError,
+    ) -> Result<(), SolveError> {
+        if matches!(error, SolveError::Infeasible(_)) {
+            return Err(error);
+        }
+        if self.proximal.solve(problem, solution).is_ok() {
+            return Ok(());
+        }
+        #[cfg(feature = "qp")]
+        if self.qp.solve(problem, solution).is_ok() {
+            return Ok(());
+        }
+        if problem.len() <= LAST_RESORT_ROWS && self.lemke.solve(problem, solution).is_ok() {
+            return Ok(());
+        }
+        Err(error)
+    }
+}
+
+impl Solver for Auto {
+    fn method(&self) -> Method {
+        Method::Auto
+    }
+
+    fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        self.run(problem, None, solution)
+    }
+
+    fn solve_from(
+        &mut self,
+        problem: &Problem,
+        start: &WarmStart,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        self.run(problem, Some(start), solution)
+    }
+}

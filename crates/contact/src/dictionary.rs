@@ -1,0 +1,220 @@
+//! The dictionary that Lemke's method pivots: basic variables in terms of the others.
+//!
+//! Variables are w_i (index i), z_i (index n + i) and the artificial z_0 (index 2n), starting from w = q + M z + d z_0.
+//! Ties are broken as if q were q + (ε, ε², ..., εⁿ), which cannot tie: R. Cottle, J.-S. Pang, R. Stone, "The Linear
+//! Complementarity Problem", 1992, section 4.9. Row i of B⁻¹, which that needs, is in the columns of the nonbasic w.
+
+/// Part of the largest entry of a column below which an entry is no pivot.
+const PIVOT: f64 = 1e-9;
+
+/// Largest entry of a column below which all of it is rounding, in units of the scaled matrix.
+const COLUMN: f64 = 1e-3;
+
+/// Ratios within this part of each other (or of 1) tie.
+const TIE: f64 = 1e-11;
+
+const NONE: u32 = u32::MAX;
+
+/// Basic variables as affine functions of the nonbasic ones.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Dictionary {
+    n: usize,
+    /// Rows of n + 1 coefficients and the constant.
+    entries: Vec<f64>,
+    /// Variable of each row and of each column.
+    basic: Vec<usize>,
+    nonbasic: Vec<usize>,
+    /// Column in which each w is nonbasic, or `NONE`.
+    column_of_w: Vec<u32>,
+    /// Rows that may take any sign: they never block.
+    free: Vec<bool>,
+    pivot_row: Vec<f64>,
+    candidates: Vec<usize>,
+}
+
+impl Dictionary {
+    /// Starts from w = q + M z + d z_0, with d = 1 on unilateral and 0 on bilateral rows; M is to be filled in.
+    pub(crate) fn reset(&mut self, q: &[f64], bilateral: &[bool]) {
+        let n = q.len();
+        self.n = n;
+        let width = n + 2;
+        self.entries.clear();
+        self.entries.resize(n * width, 0.0);
+        for i in 0..n {
+            self.entries[i * width + n] = f64::from(u8::from(!bilateral[i]));
+            self.entries[i * width + n + 1] = q[i];
+        }
+        self.basic.clear();
+        self.basic.extend(0..n);
+        self.nonbasic.clear();
+        self.nonbasic.extend(n..=2 * n);
+        self.column_of_w.clear();
+        self.column_of_w.resize(n, NONE);
+        self.free.clear();
+        self.free.extend_from_slice(bilateral);
+    }
+
+    /// Sets the coefficient M_ij of the start.
+    pub(crate) fn set(&mut self, i: usize, j: usize, value: f64) {
+        self.entries[i * (self.n + 2) + j] = value;
+    }
+
+    /// The artificial variable.
+    pub(crate) fn artificial(&self) -> usize {
+        2 * self.n
+    }
+
+    /// The complement of a variable w_i or z_i.
+    pub(crate) fn complement(&self, variable: usize) -> usize {
+        if variable < self.n { variable + self.n } else { variable - self.n }
+    }
+
+    fn at(&self, row: usize, column: usize) -> f64 {
+        self.entries[row * (self.n + 2) + column]
+    }
+
+    /// The constant of a row: the value of its variable.
+    fn constant(&self, row: usize) -> f64 {
+        self.at(row, self.n + 1)
+    }
+
+    pub(crate) fn variable(&self, row: usize) -> usize {
+        self.basic[row]
+    }
+
+    /// The variable of a column.
+    pub(crate) fn entering(&self, column: usize) -> usize {
+        self.nonbasic[column]
+    }
+
+    /// Basic variables and their values.
+    pub(crate) fn basic_rows(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.basic.iter().enumerate().map(|(row, &variable)| (variable, self.constant(row)))
+    }
+
+    /// The column of a nonbasic variable.
+    pub(crate) fn column(&self, variable: usize) -> Option<usize> {
+        self.nonbasic.iter().position(|&v| v == variable)
+    }
+
+    /// Makes the z of bilateral rows basic, largest pivots first, and bars their w from entering. Rows that depend on
+    /// others stay as they are.
+    pub(crate) fn eliminate_bilateral(&mut self) {
+        loop {
+            let mut best = (0.0, 0, 0);
+            for row in (0..self.n).filter(|&row| self.free[row] && self.basic[row] < self.n) {
+                for column in 0..self.n {
+                    let variable = self.nonbasic[column];
+                    let size = self.at(row, column).abs();
+                    if variable >= self.n && self.free[variable - self.n] && size > best.0 {
+                        best = (size, row, column);
+                    }
+                }
+            }
+            if best.0 <= PIVOT {
+                return;
+            }
+            self.pivot(best.1, best.2);
+        }
+    }
+
+    /// The row that becomes infeasible first when the artificial variable decreases from far: the most negative
+    /// constant. `None` if no unilateral constant is negative.
+    pub(crate) fn most_negative(&mut self) -> Option<usize> {
+        self.candidates.clear();
+        self.candidates.extend((0..self.n).filter(|&row| !self.free[row]));
+        let least = self.candidates.iter().fold(0.0, |m: f64, &row| m.min(self.constant(row)));
+        if least >= 0.0 {
+            return None;
+        }
+        let column = self.n;
+        self.break_ties(column, None)
+    }
+
+    /// The row that blocks the entering column first. `None`: nothing does.
+    pub(crate) fn blocking(&mut self, column: usize) -> Option<usize> {
+        let largest = (0..self.n).fold(0.0, |m: f64, row| m.max(self.at(row, column).abs()));
+        let least = PIVOT * largest.max(COLUMN);
+        self.candidates.clear();
+        let blocks = |row: &usize| !self.free[*row] && self.at(*row, column) < -least;
+        let rows = (0..self.n).filter(blocks).collect::<Vec<_>>();
+        self.candidates.extend(rows);
+        self.break_ties(column, Some(self.artificial()))
+    }
+
+    /// Narrows the candidates to the one with the lexicographically least ratio.
+    fn break_ties(&mut self, column: usize, preferred: Option<usize>) -> Option<usize> {
+        let mut level = None;
+        loop {
+            let ratio = |row: usize| {
+                let perturbed = match level {
+                    None => self.constant(row),
+                    Some(w) => self.perturbation(row, w),
+                };
+                perturbed / self.at(row, column).abs()
+            };
+            let least = self.candidates.iter().fold(f64::INFINITY, |m, &row| m.min(ratio(row)));
+            let limit = least + TIE * (1.0 + least.abs());
+            let kept: Vec<usize> =
+                self.candidates.iter().copied().filter(|&row| ratio(row) <= limit).collect();
+            self.candidates = kept;
+            if self.candidates.len() <= 1 {
+                return self.candidates.first().copied();
+            }
+            let leaves = |&&row: &&usize| preferred == Some(self.basic[row]);
+            if let Some(&row) = self.candidates.iter().find(leaves) {
+                return Some(row);
+            }
+            let next = level.map_or(0, |w| w + 1);
+            if next == self.n {
+                return self.largest_pivot(column);
+            }
+            level = Some(next);
+        }
+    }
+
+    fn largest_pivot(&self, column: usize) -> Option<usize> {
+        let size = |row: usize| self.at(row, column).abs();
+        self.candidates.iter().copied().max_by(|&a, &b| size(a).total_cmp(&size(b)))
+    }
+
+    /// Entry of B⁻¹ in a row and the column of w: the coefficient of its power of ε.
+    fn perturbation(&self, row: usize, w: usize) -> f64 {
+        match self.column_of_w[w] {
+            NONE => f64::from(u8::from(self.basic[row] == w)),
+            column => -self.at(row, column as usize),
+        }
+    }
+
+    /// Exchanges the variables of a row and a column. Returns the variable that left the basis.
+    pub(crate) fn pivot(&mut self, row: usize, column: usize) -> usize {
+        let (n, width) = (self.n, self.n + 2);
+        let inverse = 1.0 / self.at(row, column);
+        self.pivot_row.clear();
+        self.pivot_row.extend(self.entries[row * width..(row + 1) * width].iter().map(|v| -v * inverse));
+        self.pivot_row[column] = inverse;
+        for (i, entries) in self.entries.chunks_exact_mut(width).enumerate() {
+            let factor = entries[column];
+            if i != row && factor != 0.0 {
+                entries[column] = 0.0;
+                entries.iter_mut().zip(&self.pivot_row).for_each(|(out, p)| *out += factor * p);
+            }
+        }
+        self.entries[row * width..(row + 1) * width].copy_from_slice(&self.pivot_row);
+        let (leaving, entering) = (self.basic[row], self.nonbasic[column]);
+        self.basic[row] = entering;
+        self.nonbasic[column] = leaving;
+        if leaving < n {
+            self.column_of_w[leaving] = column as u32;
+        }
+        if entering < n {
+            self.column_of_w[entering] = NONE;
+        }
+        leaving
+    }
+
+    /// Change of every basic variable per unit of the variable of a column.
+    pub(crate) fn ray(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.basic.iter().enumerate().map(move |(row, &variable)| (variable, self.at(row, column)))
+    }
+}

@@ -1,0 +1,171 @@
+//! Independent groups of rows, solved one by one.
+//!
+//! Rows are coupled when they touch the same movable body; a floor couples nothing. Found with union-find: R. Tarjan,
+//! "Efficiency of a good but not linear set union algorithm", Journal of the ACM 22, 1975.
+
+use crate::matrix::Matrix;
+use crate::problem::Problem;
+
+const NONE: u32 = u32::MAX;
+
+/// The islands of a problem, and room for one of them as a problem of its own.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Islands {
+    parent: Vec<u32>,
+    /// Last row met per column.
+    met: Vec<u32>,
+    /// Rows by island, and where each island begins.
+    rows: Vec<u32>,
+    start: Vec<u32>,
+    island: Vec<u32>,
+    part: Problem,
+    /// Place in the island of each row or column of the whole.
+    local: Vec<u32>,
+}
+
+impl Islands {
+    /// Finds the islands; returns how many there are.
+    pub(crate) fn find(&mut self, problem: &Problem) -> usize {
+        let n = problem.len();
+        self.parent.clear();
+        self.parent.extend(0..n as u32);
+        match &problem.matrix {
+            Matrix::Bodies(bodies) => {
+                self.met.clear();
+                self.met.resize(bodies.inverse_mass.len(), NONE);
+                for row in 0..n {
+                    for &k in bodies.rows.row(row).0.iter().filter(|k| bodies.inverse_mass[**k] > 0.0) {
+                        match self.met[k] {
+                            NONE => self.met[k] = row as u32,
+                            other => self.join(row as u32, other),
+                        }
+                    }
+                }
+            }
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => {
+                for row in 0..n {
+                    let (columns, values) = matrix.row(row);
+                    let coupled = columns.iter().zip(values).filter(|(_, v)| **v != 0.0);
+                    coupled.for_each(|(&k, _)| self.join(row as u32, k as u32));
+                }
+            }
+        }
+        self.sort(n)
+    }
+
+    fn root(&mut self, mut row: u32) -> u32 {
+        while self.parent[row as usize] != row {
+            let above = self.parent[self.parent[row as usize] as usize];
+            self.parent[row as usize] = above;
+            row = above;
+        }
+        row
+    }
+
+    /// The lower row becomes the root, so that islands are numbered by their first rows.
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b) as usize] = a.min(b);
+    }
+
+    /// Lists the rows by island.
+    fn sort(&mut self, n: usize) -> usize {
+        self.island.clear();
+        let mut count = 0;
+        for row in 0..n as u32 {
+            let root = self.root(row);
+            let island = if root == row {
+                count += 1;
+                count - 1
+            } else {
+                self.island[root as usize]
+            };
+            self.island.push(island);
+        }
+        let count = count as usize;
+        self.start.clear();
+        self.start.resize(count + 2, 0);
+        self.island.iter().for_each(|&island| self.start[island as usize + 2] += 1);
+        for i in 2..count + 2 {
+            self.start[i] += self.start[i - 1];
+        }
+        self.rows.clear();
+        self.rows.resize(n, 0);
+        for row in 0..n {
+            let next = &mut self.start[self.island[row] as usize + 1];
+            self.rows[*next as usize] = row as u32;
+            *next += 1;
+        }
+        count
+    }
+
+    /// The rows of an island, ascending.
+    pub(crate) fn rows(&self, island: usize) -> &[u32] {
+        &self.rows[self.start[island] as usize..self.start[island + 1] as usize]
+    }
+
+    /// An island as a problem of its own, without keys.
+    pub(crate) fn part(&mut self, problem: &Problem, island: usize) -> &Problem {
+        let rows = &self.rows[self.start[island] as usize..self.start[island + 1] as usize];
+        let part = &mut self.part;
+        part.offset.clear();
+        part.offset.extend(rows.iter().map(|&row| problem.offset[row as usize]));
+        part.bilateral.clear();
+        part.bilateral.extend(rows.iter().map(|&row| problem.bilateral[row as usize]));
+        part.keys.clear();
+        let (source, masses) = match &problem.matrix {
+            Matrix::Bodies(bodies) => (&bodies.rows, Some(&bodies.inverse_mass)),
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, None),
+        };
+        if std::mem::discriminant(&part.matrix) != std::mem::discriminant(&problem.matrix) {
+            part.matrix = problem.matrix.clone();
+        }
+        let (target, mut target_masses) = match &mut part.matrix {
+            Matrix::Bodies(bodies) => (&mut bodies.rows, Some(&mut bodies.inverse_mass)),
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, None),
+        };
+        self.local.clear();
+        self.local.resize(masses.map_or(problem.len(), |masses| masses.len()), NONE);
+        if let Some(masses) = &mut target_masses {
+            masses.clear();
+        } else {
+            rows.iter().enumerate().for_each(|(at, &row)| self.local[row as usize] = at as u32);
+        }
+        target.start.truncate(1);
+        target.column.clear();
+        target.value.clear();
+        for &row in rows {
+            let (columns, values) = source.row(row as usize);
+            for (&k, &v) in columns.iter().zip(values) {
+                if let (NONE, Some(from), Some(to)) = (self.local[k], masses, &mut target_masses) {
+                    self.local[k] = to.len() as u32;
+                    to.push(from[k]);
+                }
+                if self.local[k] != NONE {
+                    target.column.push(self.local[k] as usize);
+                    target.value.push(v);
+                }
+            }
+            target.start.push(target.column.len());
+        }
+        part
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ProblemError;
+
+    #[test]
+    fn a_floor_couples_nothing() -> Result<(), ProblemError> {
+        // Columns 0 and 1 move, 2 is the floor; rows 0 and 2 touch body 0, row 1 body 1.
+        let rows = [(0, 0, 1.0), (0, 2, -1.0), (1, 1, 1.0), (1, 2, -1.0), (2, 0, 1.0)];
+        let problem = Problem::from_rows(&rows, &[1.0, 1.0, 0.0], &[-1.0, -2.0, -3.0])?;
+        let mut islands = Islands::default();
+        assert_eq!(islands.find(&problem), 2);
+        assert_eq!((islands.rows(0), islands.rows(1)), (&[0, 2][..], &[1][..]));
+        assert_eq!(islands.part(&problem, 0).offset(), [-1.0, -3.0]);
+        Ok(())
+    }
+}

@@ -1,0 +1,77 @@
+//! Exact line search on a convex, piecewise quadratic function.
+//!
+//! Its derivative along a line is piecewise linear and never falls, so the minimum is where it crosses zero: sort the
+//! places where its slope changes and walk along them.
+
+/// Changes of the derivative s + h t along a line.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PiecewiseLinear {
+    value: f64,
+    slope: f64,
+    kinks: Vec<Kink>,
+}
+
+/// From `at` on, the derivative has `value` + `slope` t added.
+#[derive(Clone, Copy, Debug)]
+struct Kink {
+    at: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl PiecewiseLinear {
+    /// The function `value` + `slope` t.
+    pub(crate) fn reset(&mut self, value: f64, slope: f64) {
+        self.value = value;
+        self.slope = slope;
+        self.kinks.clear();
+    }
+
+    /// Adds `value` + `slope` t everywhere.
+    pub(crate) fn add(&mut self, value: f64, slope: f64) {
+        self.value += value;
+        self.slope += slope;
+    }
+
+    /// Adds `value` + `slope` t beyond `at` > 0; it must vanish there.
+    pub(crate) fn add_beyond(&mut self, at: f64, value: f64, slope: f64) {
+        self.kinks.push(Kink { at, value, slope });
+    }
+
+    /// Where the function, negative at 0 and nowhere falling, becomes zero. `None` if it does not.
+    pub(crate) fn find_zero(&mut self) -> Option<f64> {
+        let (mut value, mut slope) = (self.value, self.slope);
+        if value >= 0.0 {
+            return None;
+        }
+        // The rest of the kinks is needed only if the first piece does not end at the zero.
+        let first = -value / slope;
+        if slope > 0.0 && self.kinks.iter().all(|kink| kink.at >= first) {
+            return Some(first);
+        }
+        self.kinks.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+        for kink in &self.kinks {
+            if value + slope * kink.at >= 0.0 {
+                break;
+            }
+            value += kink.value;
+            slope += kink.slope;
+        }
+        let zero = -value / slope;
+        (zero.is_finite() && zero > 0.0).then_some(zero)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_zero_is_found_beyond_a_kink() {
+        let mut derivative = PiecewiseLinear::default();
+        derivative.reset(-3.0, 1.0);
+        derivative.add_beyond(1.0, -1.0, 1.0);
+        // -3 + t up to 1, then -4 + 2 t.
+        assert_eq!(derivative.find_zero(), Some(2.0));
+    }
+}

@@ -1,0 +1,304 @@
+//! Proximal augmented Lagrangian with semismooth Newton steps in body space, for large problems.
+//!
+//! In the scaled quantities of [`System`], with u the change of the bodies' scaled velocities and multipliers g,
+//!
+//! ```text
+//! minimise over u   ½|u|² + ε/2 Σ_i max(0, g_i - â_i/ε)²,   â = Ĵ u + b̂   (no max on bilateral rows)
+//! then              g_i := max(0, g_i - â_i/ε)
+//! ```
+//!
+//! Each minimum is found by Newton steps with the matrix I + Ĵ_Cᵀ Ĵ_C/ε, C the rows inside the max, and an exact line
+//! search; the outer iteration is the proximal point method on the forces, which does not mind redundant contacts and
+//! ends near the forces of least norm. Sources: B. Hermans, A. Themelis, P. Patrinos, "QPALM", CDC 2019; A. Bambade et
+//! al., "PROX-QP", RSS 2022; R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point
+//! algorithm", Mathematics of Operations Research 1, 1976. The first step goes straight to the minimum for a guessed C.
+
+use crate::body_factor::BodyFactor;
+use crate::check::Checker;
+use crate::error::{SettingsError, SolveError};
+use crate::line_search::PiecewiseLinear;
+use crate::problem::Problem;
+use crate::settings::Settings;
+use crate::solution::Solution;
+use crate::solver::{Method, Solver};
+use crate::system::System;
+use crate::warm::WarmStart;
+
+/// Proximal term ε of the first outer iteration from nothing, in units of the unit diagonal of Â.
+const FIRST_TERM: f64 = 1e-4;
+/// The same from an earlier answer, whose closed rows are mostly right.
+const WARM_TERM: f64 = 1e-6;
+/// Least ε: below it the Newton matrix is too ill-conditioned to help.
+const LEAST_TERM: f64 = 1e-11;
+/// Factor by which ε falls where an outer iteration did not gain much.
+const TERM_FACTOR: f64 = 1e-2;
+/// Residual over the previous one below which ε need not fall.
+const GOOD_GAIN: f64 = 1e-3;
+/// Residual, in units of the scale, that ends the iteration.
+const TARGET: f64 = 1e-13;
+/// Residual, in units of the largest force, that ends it: rounding.
+const ROUNDING: f64 = 4e-16;
+/// Residual over the previous one above which an outer iteration counts as stalled, and how many may be.
+const STALLED: f64 = 0.5;
+const STALLS: usize = 3;
+/// Gradient, in units of the largest force, that is rounding.
+const STATIONARY: f64 = 1e-14;
+/// Cap on Newton steps between two updates of the multipliers.
+const INNER_STEPS: usize = 200;
+/// Deviation of a step length from 1 that is rounding.
+const FULL_STEP: f64 = 1e-9;
+
+/// The proximal method with its buffers.
+#[derive(Debug, Default)]
+pub struct ProximalNewton {
+    settings: Settings,
+    system: System,
+    factor: BodyFactor,
+    /// The proximal term and rows of the present factor.
+    factored: Option<f64>,
+    epsilon: f64,
+    inside: Vec<bool>,
+    guess: Vec<bool>,
+    /// u, its change, and the gradient.
+    motion: Vec<f64>,
+    step: Vec<f64>,
+    /// â and its change.
+    acceleration: Vec<f64>,
+    change: Vec<f64>,
+    multiplier: Vec<f64>,
+    force: Vec<f64>,
+    derivative: PiecewiseLinear,
+    checker: Checker,
+    steps: usize,
+    /// Factorisations in the last solve.
+    pub(crate) factorizations: usize,
+}
+
+impl ProximalNewton {
+    /// A solver with these settings.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError`] names a number that is not usable.
+    pub fn new(settings: Settings) -> Result<Self, SettingsError> {
+        settings.validate()?;
+        Ok(ProximalNewton { settings, ..Self::default() })
+    }
+
+    fn run(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let method = Method::ProximalNewton;
+        solution.reset(problem.len(), method);
+        if !problem.has_bodies() {
+            let reason = "it needs the rows of bodies and their masses";
+            return Err(SolveError::NotApplicable { method, reason });
+        }
+        self.load(problem, warm);
+        let columns = self.motion.len();
+        if self.factor.prepare(&self.system, columns) {
+            self.iterate(problem);
+        }
+        for (row, out) in solution.force.iter_mut().enumerate() {
+            *out = self.force[row] / self.system.row_scale[row];
+            if *out != 0.0 {
+                solution.active.push(row);
+            }
+        }
+        solution.iterations = self.steps;
+        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        if solution.residuals.accepted(&self.settings, 0.0) {
+            return Ok(());
+        }
+        Err(SolveError::Unsolved { method, residuals: solution.residuals, iterations: self.steps })
+    }
+
+    fn load(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
+        let n = problem.len();
+        self.system.load(problem);
+        let columns = self.system.columns();
+        for values in [&mut self.acceleration, &mut self.change, &mut self.multiplier, &mut self.force] {
+            values.clear();
+            values.resize(n, 0.0);
+        }
+        for values in [&mut self.motion, &mut self.step] {
+            values.clear();
+            values.resize(columns, 0.0);
+        }
+        self.inside.clear();
+        self.inside.resize(n, false);
+        self.factored = None;
+        self.steps = 0;
+        self.factorizations = 0;
+        self.epsilon = if warm.is_some() { WARM_TERM } else { FIRST_TERM };
+        let limit = self.settings.start_closed * self.system.scale;
+        let lookup = warm.map(|warm| warm.lookup(problem));
+        self.guess.clear();
+        for row in 0..n {
+            let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
+            let closed = earlier.map_or(self.system.b[row] <= limit, |earlier| earlier.closed);
+            self.guess.push(problem.bilateral[row] || closed);
+            self.multiplier[row] = earlier.map_or(0.0, |earlier| earlier.force * self.system.row_scale[row]);
+        }
+        self.system.push(&self.multiplier, &mut self.motion);
+        self.system.pull(&self.motion, &mut self.acceleration);
+        self.acceleration.iter_mut().zip(&self.system.b).for_each(|(a, b)| *a += b);
+    }
+
+    /// The outer iteration.
+    fn iterate(&mut self, problem: &Problem) {
+        let mut previous = f64::INFINITY;
+        let mut stalls = 0;
+        for outer in 0..self.settings.outer_iterations {
+            if !self.minimise(problem, outer == 0) {
+                return;
+            }
+            let (residual, largest) = self.update_multipliers(problem);
+            let scale = self.system.scale;
+            if residual <= TARGET * scale || residual <= ROUNDING * largest {
+                return;
+            }
+            if residual > STALLED * previous && self.epsilon <= LEAST_TERM {
+                stalls += 1;
+                if stalls > STALLS {
+                    return;
+                }
+            }
+            if largest > self.settings.greatest_growth * scale {
+                return;
+            }
+            if residual > GOOD_GAIN * previous {
+                self.epsilon = (self.epsilon * TERM_FACTOR).max(LEAST_TERM);
+            }
+            previous = residual;
+        }
+    }
+
+    /// Minimises the augmented Lagrangian. Returns false if that cannot go on.
+    fn minimise(&mut self, problem: &Problem, first: bool) -> bool {
+        let mut guessed = first;
+        let last = self.settings.newton_steps.min(self.steps + INNER_STEPS);
+        while self.steps < last {
+            self.steps += 1;
+            let mut changed = self.factored != Some(self.epsilon);
+            for row in 0..problem.len() {
+                let force = self.multiplier[row] - self.acceleration[row] / self.epsilon;
+                let inside = if guessed { self.guess[row] } else { problem.bilateral[row] || force > 0.0 };
+                self.force[row] = if inside { force } else { 0.0 };
+                changed |= inside != self.inside[row];
+                self.inside[row] = inside;
+            }
+            if changed {
+                self.factorizations += 1;
+                if !self.factor.factor(&self.system, &self.inside, self.epsilon) {
+                    return false;
+                }
+                self.factored = Some(self.epsilon);
+            }
+            // Newton step: minus the gradient u - Ĵᵀ f, through the factor.
+            self.system.push(&self.force, &mut self.step);
+            self.step.iter_mut().zip(&self.motion).for_each(|(s, u)| *s -= u);
+            if !changed && self.is_stationary() {
+                return true;
+            }
+            self.factor.solve(&mut self.step);
+            self.system.pull(&self.step, &mut self.change);
+            let length = if guessed { 1.0 } else { self.step_length(problem) };
+            for (u, s) in self.motion.iter_mut().zip(&self.step) {
+                *u += length * s;
+            }
+            for (a, d) in self.acceleration.iter_mut().zip(&self.change) {
+                *a += length * d;
+            }
+            guessed = false;
+            if (length - 1.0).abs() < FULL_STEP && self.same_rows_inside(problem) {
+                return true;
+            }
+        }
+        // A row on the edge may change sides for ever; the outer iteration moves the edge.
+        self.steps < self.settings.newton_steps
+    }
+
+    /// Whether the gradient, in `step`, is rounding beside the forces.
+    fn is_stationary(&self) -> bool {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        largest(&self.step) <= STATIONARY * largest(&self.force).max(self.system.scale)
+    }
+
+    fn same_rows_inside(&self, problem: &Problem) -> bool {
+        (0..problem.len()).all(|row| {
+            let force = self.multiplier[row] - self.acceleration[row] / self.epsilon;
+            self.inside[row] == (problem.bilateral[row] || force > 0.0)
+        })
+    }
+
+    /// Exact minimum along the step.
+    fn step_length(&mut self, problem: &Problem) -> f64 {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (u, s) in self.motion.iter().zip(&self.step) {
+            value += u * s;
+            slope += s * s;
+        }
+        self.derivative.reset(value, slope);
+        for row in 0..problem.len() {
+            let change = self.change[row];
+            let force = self.multiplier[row] - self.acceleration[row] / self.epsilon;
+            let inside = problem.bilateral[row] || force > 0.0;
+            let (value, slope) = (-force * change, change * change / self.epsilon);
+            if inside {
+                self.derivative.add(value, slope);
+            }
+            if !problem.bilateral[row] && change != 0.0 {
+                let at = force * self.epsilon / change;
+                if at > 0.0 {
+                    let sign = if inside { -1.0 } else { 1.0 };
+                    self.derivative.add_beyond(at, sign * value, sign * slope);
+                }
+            }
+        }
+        self.derivative.find_zero().unwrap_or(1.0)
+    }
+
+    /// Takes the forces as multipliers, and the velocities that go with them. Returns the largest residual and force.
+    fn update_multipliers(&mut self, problem: &Problem) -> (f64, f64) {
+        for row in 0..problem.len() {
+            let force = self.multiplier[row] - self.acceleration[row] / self.epsilon;
+            self.multiplier[row] = if problem.bilateral[row] { force } else { force.max(0.0) };
+        }
+        self.force.copy_from_slice(&self.multiplier);
+        self.system.push(&self.force, &mut self.motion);
+        self.system.pull(&self.motion, &mut self.acceleration);
+        let (mut residual, mut largest) = (0.0_f64, 0.0_f64);
+        for row in 0..problem.len() {
+            let acceleration = self.acceleration[row] + self.system.b[row];
+            self.acceleration[row] = acceleration;
+            let force = self.force[row];
+            let wrong = if problem.bilateral[row] { acceleration } else { force.min(acceleration) };
+            residual = residual.max(wrong.abs());
+            largest = largest.max(force.abs());
+        }
+        (residual, largest)
+    }
+}
+
+impl Solver for ProximalNewton {
+    fn method(&self) -> Method {
+        Method::ProximalNewton
+    }
+
+    fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        self.run(problem, None, solution)
+    }
+
+    fn solve_from(
+        &mut self,
+        problem: &Problem,
+        start: &WarmStart,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        self.run(problem, Some(start), solution)
+    }
+}

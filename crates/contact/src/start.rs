@@ -1,0 +1,160 @@
+//! The rows that the dual active-set method closes to begin with.
+//!
+//! Those that would close without forces, or that were closed before; then all wrong rows are exchanged at once while
+//! that makes fewer of them wrong, which it mostly does (L. Portugal, J. Júdice, L. Vicente, "A comparison of block
+//! pivoting and interior-point algorithms for linear least squares problems with nonnegative variables", Mathematics of
+//! Computation 63, 1994, 625-643); at last rows whose force would pull are opened, so that pivoting can begin.
+
+use crate::closed_rows::ClosedRows;
+use crate::dual_active_set::DualActiveSet;
+use crate::error::Infeasibility;
+use crate::problem::Problem;
+use crate::warm::WarmStart;
+
+/// One in so many rows dependent makes a problem a very redundant one; fewer than one in so many independent, a simple
+/// one.
+const REDUNDANT: usize = 5;
+const SUBSTANTIAL: usize = 4;
+
+/// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
+const MOVING: usize = 50;
+
+/// Where a solve begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Start<'a> {
+    /// With the rows closed that would close without forces.
+    Nothing,
+    /// With the rows closed that were so in an earlier answer.
+    Earlier(&'a WarmStart),
+    /// With these rows closed, one flag per row.
+    #[cfg(feature = "qp")]
+    Closed(&'a [bool]),
+}
+
+impl DualActiveSet {
+    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the factor narrow;
+    /// if some turn out dependent, they come first, so that what they contradict is each other.
+    pub(crate) fn find_start(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
+        if self.exchange_blocks() {
+            return None;
+        }
+        self.closed.open_all();
+        let certificate = self.close_connectors(problem);
+        if certificate.is_none() {
+            self.exchange_blocks();
+        }
+        certificate
+    }
+
+    /// Closes the bilateral rows; those that depend on others must agree with them.
+    fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
+        let independent = self.closed.close_flagged(&problem.bilateral);
+        self.closed.kept = self.closed.len();
+        if independent {
+            return None;
+        }
+        self.closed.solve_closed();
+        self.closed.accelerate();
+        let noise = self.noise();
+        let limit = self.settings.inconsistency * self.closed.system.scale;
+        self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
+    }
+
+    /// Marks the rows to begin with: those given; otherwise, and for new rows, those that would close.
+    pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
+        let system = &self.closed.system;
+        let limit = self.settings.start_closed * system.scale;
+        let lookup = match start {
+            Start::Earlier(warm) => Some(warm.lookup(problem)),
+            Start::Nothing => None,
+            #[cfg(feature = "qp")]
+            Start::Closed(_) => None,
+        };
+        self.start.clear();
+        self.start.extend((0..problem.len()).map(|row| {
+            let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
+            let closed = match (start, earlier) {
+                #[cfg(feature = "qp")]
+                (Start::Closed(rows), _) => rows[row],
+                (_, Some(earlier)) => earlier.closed,
+                (_, None) => system.b[row] <= limit,
+            };
+            problem.bilateral[row] || (closed && system.movable[row])
+        }));
+    }
+
+    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
+    /// others and the bilateral rows did not come first.
+    pub(crate) fn exchange_blocks(&mut self) -> bool {
+        let mut fewest = usize::MAX;
+        let mut tries = 0;
+        for _ in 0..self.settings.block_rounds {
+            self.closed.open_all();
+            let independent = self.closed.close_flagged(&self.start);
+            let flagged = self.start.iter().filter(|start| **start).count();
+            self.closed.solve_closed();
+            self.closed.accelerate();
+            let limit = -self.noise();
+            let mut wrong = 0;
+            let closed = &self.closed;
+
+            for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
+                let is_closed = closed.is_closed(row);
+                let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
+                *start = is_closed != bad;
+                wrong += usize::from(bad);
+            }
+            if self.may_hand_over && fewest == usize::MAX && wrong > 0 && self.is_redundant(flagged) {
+                self.handed_over = true;
+                return true;
+            }
+            if !independent && self.closed.kept == 0 {
+                return false;
+            }
+            if wrong < fewest {
+                fewest = wrong;
+                tries = 0;
+            } else {
+                tries += 1;
+            }
+            if wrong == 0 || tries > self.settings.block_tries {
+                break;
+            }
+        }
+        true
+    }
+
+    /// Whether a large part of the rows to be closed depends on the rest, which alone keep nearly all others from
+    /// closing, so that the closed rows are an arbitrary choice among many and most pivots would only better it. Not so
+    /// where the rest is few (a box on a floor), for then pivots are cheap.
+    fn is_redundant(&self, flagged: usize) -> bool {
+        let closed = self.closed.len();
+        let moving =
+            (0..self.start.len()).filter(|&row| self.start[row] && !self.closed.is_closed(row)).count();
+        let dependent = flagged - closed;
+        dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
+    }
+
+    /// Opens closed rows until no unilateral force is negative.
+    pub(crate) fn make_forces_admissible(&mut self) {
+        loop {
+            let closed = &mut self.closed;
+            let pulls = |closed: &ClosedRows, at: usize| {
+                let row = closed.rows[at];
+                closed.force[row] < 0.0 && !closed.free[row]
+            };
+            let count = (0..closed.len()).filter(|&at| pulls(closed, at)).count();
+            if count == 0 {
+                break;
+            }
+            for at in (0..closed.len()).rev() {
+                if pulls(closed, at) {
+                    closed.open_at(at);
+                }
+            }
+            self.pivots += count;
+            closed.solve_closed();
+        }
+        self.closed.accelerate();
+    }
+}

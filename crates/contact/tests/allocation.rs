@@ -1,0 +1,77 @@
+//! A warm solve of a known size allocates nothing.
+#![allow(unsafe_code, reason = "counting allocations takes a global allocator, and that is an unsafe trait")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use halfgap_contact::{
+    Auto, BodyId, ContactKey, DualActiveSet, Inertia, Problem, ProximalNewton, Row, Solution, Solver,
+    WarmStart,
+};
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Passes everything to the system and counts the calls of this thread.
+struct Counting;
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller's promises are those that the system's allocator needs.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Fills `problem` with a stack of boxes on the floor at one step: the offsets differ from step to step.
+fn fill(problem: &mut Problem, boxes: usize, step: usize) {
+    problem.clear();
+    for i in 0..boxes {
+        problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 12.0 }).unwrap();
+        for (corner, arm) in [(0, -0.5), (1, 0.5)] {
+            let wobble = 1e-3 * ((7 * i + 3 * step + 5 * corner) % 11) as f64;
+            let offset = if i == 0 { -9.81 } else { 0.0 };
+            let row = Row::new(BodyId(i as u32), [0.0, 1.0, arm], offset - wobble);
+            let row = if i == 0 { row } else { row.against(BodyId(i as u32 - 1), [0.0, -1.0, -arm]) };
+            problem.add_row(&row.with_key(ContactKey((2 * i + corner) as u64))).unwrap();
+        }
+    }
+}
+
+/// Allocations of filling and solving warm, after steps that made all the room.
+fn allocations(solver: &mut dyn Solver, boxes: usize) -> usize {
+    let (mut problem, mut solution, mut warm) = (Problem::new(), Solution::new(), WarmStart::new());
+    fill(&mut problem, boxes, 0);
+    solver.solve(&problem, &mut solution).unwrap();
+    warm.remember(&problem, &solution);
+    let mut before = 0;
+    for step in 1..20 {
+        if step == 10 {
+            before = COUNT.with(Cell::get);
+        }
+        fill(&mut problem, boxes, step);
+        solver.solve_from(&problem, &warm, &mut solution).unwrap();
+        warm.remember(&problem, &solution);
+    }
+    COUNT.with(Cell::get) - before
+}
+
+#[test]
+fn a_warm_solve_of_known_size_allocates_nothing() {
+    for boxes in [1, 5, 50, 200] {
+        assert_eq!(allocations(&mut DualActiveSet::default(), boxes), 0, "dual active set, {boxes} boxes");
+        assert_eq!(allocations(&mut ProximalNewton::default(), boxes), 0, "proximal method, {boxes} boxes");
+        assert_eq!(allocations(&mut Auto::default(), boxes), 0, "automatic choice, {boxes} boxes");
+    }
+}

@@ -1,0 +1,60 @@
+//! Warm starts: the same answer, whatever became of the contacts in between.
+
+use halfgap_contact::{Auto, ContactKey, DualActiveSet, Inertia, Problem, Row, Solution, Solver, WarmStart};
+
+use crate::data::{Case, collection, judge};
+
+#[test]
+fn a_warm_start_finds_the_next_answer() {
+    let (mut solution, mut warm) = (Solution::new(), WarmStart::new());
+    let mut auto = Auto::default();
+    for case in collection().iter().filter(|case| case.file.b_next.is_some()) {
+        auto.solve(&case.problem, &mut solution).unwrap();
+        warm.remember(&case.problem, &solution);
+        let next = case.next();
+        auto.solve_from(&next, &warm, &mut solution).unwrap();
+        let judged = judge(&next, &solution.force);
+        assert!(judged.good(), "{}: {judged:?}", case.name);
+    }
+}
+
+/// Blocks of 1 kg in a row on a floor, two corners each, keyed by corner.
+fn blocks(names: &[u64]) -> Problem {
+    let mut problem = Problem::new();
+    for &name in names {
+        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
+        for (corner, arm) in [(0, -0.5), (1, 0.5)] {
+            let key = ContactKey(2 * name + corner);
+            problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81).with_key(key)).unwrap();
+        }
+    }
+    problem
+}
+
+#[test]
+fn contacts_are_found_again_by_their_keys() {
+    let mut solver = DualActiveSet::default();
+    let (mut solution, mut warm) = (Solution::new(), WarmStart::new());
+    let before = blocks(&[7, 3, 5]);
+    solver.solve(&before, &mut solution).unwrap();
+    warm.remember(&before, &solution);
+    let after = blocks(&[5, 9, 7, 3]);
+    solver.solve_from(&after, &warm, &mut solution).unwrap();
+    assert!(solution.force.iter().all(|f| (f - 4.905).abs() < 1e-12));
+}
+
+#[test]
+fn a_misleading_warm_start_does_no_harm() {
+    let case = Case::named("wall_20");
+    let (mut right, mut solution, mut warm) = (Solution::new(), Solution::new(), WarmStart::new());
+    let mut solver = DualActiveSet::default();
+    solver.solve(&case.problem, &mut right).unwrap();
+    // Everything open that was closed, and closed that was open.
+    let mut wrong = right.clone();
+    wrong.active = (0..case.problem.len()).filter(|row| !right.active.contains(row)).collect();
+    warm.remember(&case.problem, &wrong);
+    solver.solve_from(&case.problem, &warm, &mut solution).unwrap();
+    for (a, b) in solution.acceleration.iter().zip(&right.acceleration) {
+        assert!((a - b).abs() < 1e-11);
+    }
+}
