@@ -89,8 +89,10 @@ impl DualActiveSet {
         let mut fewest = usize::MAX;
         let mut tries = 0;
         for _ in 0..self.settings.block_rounds {
-            self.closed.open_all();
-            let independent = self.closed.close_flagged(&self.start);
+            let independent = self.closed.still_closed(&self.start) || {
+                self.closed.open_all();
+                self.closed.close_flagged(&self.start)
+            };
             let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
             self.closed.accelerate();
