@@ -137,8 +137,10 @@ impl DualActiveSet {
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }
 
-    /// Opens closed rows until no unilateral force is negative.
+    /// Opens closed rows until no unilateral force is negative. The forces must be those with zero acceleration of the
+    /// closed rows, and the accelerations up to date; they are so afterwards.
     pub(crate) fn make_forces_admissible(&mut self) {
+        let before = self.closed.len();
         loop {
             let closed = &mut self.closed;
             let pulls = |closed: &ClosedRows, at: usize| {
@@ -157,6 +159,8 @@ impl DualActiveSet {
             self.pivots += count;
             closed.solve_closed();
         }
-        self.closed.accelerate();
+        if self.closed.len() != before {
+            self.closed.accelerate();
+        }
     }
 }
