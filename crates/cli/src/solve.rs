@@ -118,7 +118,7 @@ fn solve(method: Choice, problem: &Problem, next: Option<&Problem>) -> Outcome {
     Outcome { solution, result, microseconds, microseconds_warm }
 }
 
-/// The least time of some repetitions [µs], or `known` if that is less; slow and failing work is not repeated.
+/// The least time of some repetitions \[µs\], or `known` if that is less; slow and failing work is not repeated.
 fn fastest(known: f64, mut work: impl FnMut() -> Result<(), SolveError>) -> f64 {
     let mut least = known;
     for _ in 0..REPETITIONS {

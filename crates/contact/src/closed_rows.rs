@@ -21,6 +21,8 @@ pub(crate) struct ClosedRows {
     pub(crate) rows: Vec<usize>,
     /// Position of each row, or `OPEN`.
     position: Vec<u32>,
+    /// Whether the closed rows and the factor are still those of the last solve, of the same matrix.
+    reusable: bool,
     /// Envelope of the factor when rows were last closed in order.
     pub(crate) narrow_envelope: usize,
     /// Flags and forces while rows are closed anew.
@@ -56,12 +58,22 @@ pub(crate) struct Relation {
 }
 
 impl ClosedRows {
-    /// Loads a problem; all rows open, all forces zero.
+    /// Loads a problem; all forces zero. The rows closed before and their factor stay if only b has changed.
     pub(crate) fn load(&mut self, problem: &Problem, dependence: f64) {
-        self.system.load(problem);
+        let same = self.system.load(problem);
+        let n = problem.len();
+        for values in [&mut self.force, &mut self.acceleration, &mut self.reach, &mut self.step] {
+            values.clear();
+            values.resize(n, 0.0);
+        }
+        let plain = self.proximal == 0.0 && self.kept == 0 && self.dependence == dependence;
+        self.reusable = same && plain && self.free == problem.bilateral;
+        if self.reusable {
+            return;
+        }
+        self.system.open_everything();
         let (start, column) = self.system.pattern();
         self.order.prepare(start, column, self.system.columns());
-        let n = problem.len();
         self.dependence = dependence;
         self.proximal = 0.0;
         self.factor.reset(n);
@@ -70,12 +82,14 @@ impl ClosedRows {
         self.kept = 0;
         self.free.clear();
         self.free.extend_from_slice(problem.bilateral());
-        for values in [&mut self.force, &mut self.acceleration, &mut self.reach, &mut self.step] {
-            values.clear();
-            values.resize(n, 0.0);
-        }
         self.position.clear();
         self.position.resize(n, OPEN);
+    }
+
+    /// Whether the rows with a flag are just those that are closed already, from the last solve.
+    pub(crate) fn still_closed(&mut self, flags: &[bool]) -> bool {
+        let reusable = std::mem::take(&mut self.reusable);
+        reusable && flags.iter().zip(&self.position).all(|(flag, position)| *flag == (*position != OPEN))
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -188,6 +188,7 @@ impl DualActiveSet {
             && !self.closed.refactor()
         {
             self.closed.solve_closed();
+            self.closed.accelerate();
             self.make_forces_admissible();
         }
     }
@@ -269,6 +270,7 @@ impl DualActiveSet {
             None => {
                 self.closed.force[row] = 0.0;
                 self.closed.solve_closed();
+                self.closed.accelerate();
                 self.make_forces_admissible();
                 End::Done
             }

@@ -45,6 +45,9 @@ pub enum ProblemError {
         /// How many columns there are.
         columns: usize,
     },
+    /// Bodies or rows were to be added to a problem made from a matrix.
+    #[error("bodies and rows cannot be added to a problem given by a matrix A")]
+    NoBodies,
     /// A list has the wrong length.
     #[error("{what} has {found} entries, expected {expected}")]
     BadLength {

@@ -10,11 +10,25 @@ use crate::error::ProblemError;
 const SYMMETRY: f64 = 1e-9;
 
 /// A sparse matrix stored by rows, entries of a row in ascending order of column, none twice.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub(crate) struct SparseMatrix {
     pub(crate) start: Vec<usize>,
     pub(crate) column: Vec<usize>,
     pub(crate) value: Vec<f64>,
+}
+
+impl Clone for SparseMatrix {
+    fn clone(&self) -> Self {
+        let SparseMatrix { start, column, value } = self;
+        SparseMatrix { start: start.clone(), column: column.clone(), value: value.clone() }
+    }
+
+    /// Reuses the room there is, which the derived one would not.
+    fn clone_from(&mut self, source: &Self) {
+        self.start.clone_from(&source.start);
+        self.column.clone_from(&source.column);
+        self.value.clone_from(&source.value);
+    }
 }
 
 impl SparseMatrix {

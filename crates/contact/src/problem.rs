@@ -197,10 +197,10 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// [`ProblemError::BadInverseMass`]; [`ProblemError::NoSuchColumn`] if the problem was made from a matrix A.
+    /// [`ProblemError::BadInverseMass`]; [`ProblemError::NoBodies`] if the problem was made from a matrix A.
     pub fn add_body(&mut self, inertia: Inertia) -> Result<BodyId, ProblemError> {
         let Matrix::Bodies(bodies) = &mut self.matrix else {
-            return Err(ProblemError::NoSuchColumn { row: 0, column: 0, columns: 0 });
+            return Err(ProblemError::NoBodies);
         };
         let first = bodies.inverse_mass.len();
         check_inverse_mass(first, inertia.inverse_mass)?;
@@ -217,7 +217,7 @@ impl Problem {
     pub fn add_row(&mut self, row: &Row) -> Result<usize, ProblemError> {
         let index = self.offset.len();
         let Matrix::Bodies(bodies) = &mut self.matrix else {
-            return Err(ProblemError::NoSuchColumn { row: index, column: 0, columns: 0 });
+            return Err(ProblemError::NoBodies);
         };
         let columns = bodies.inverse_mass.len();
         check_finite(index, "the offset b", row.offset)?;

@@ -89,8 +89,10 @@ impl DualActiveSet {
         let mut fewest = usize::MAX;
         let mut tries = 0;
         for _ in 0..self.settings.block_rounds {
-            self.closed.open_all();
-            let independent = self.closed.close_flagged(&self.start);
+            let independent = self.closed.still_closed(&self.start) || {
+                self.closed.open_all();
+                self.closed.close_flagged(&self.start)
+            };
             let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
             self.closed.accelerate();
@@ -135,8 +137,10 @@ impl DualActiveSet {
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }
 
-    /// Opens closed rows until no unilateral force is negative.
+    /// Opens closed rows until no unilateral force is negative. The forces must be those with zero acceleration of the
+    /// closed rows, and the accelerations up to date; they are so afterwards.
     pub(crate) fn make_forces_admissible(&mut self) {
+        let before = self.closed.len();
         loop {
             let closed = &mut self.closed;
             let pulls = |closed: &ClosedRows, at: usize| {
@@ -155,6 +159,8 @@ impl DualActiveSet {
             self.pivots += count;
             closed.solve_closed();
         }
-        self.closed.accelerate();
+        if self.closed.len() != before {
+            self.closed.accelerate();
+        }
     }
 }

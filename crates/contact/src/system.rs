@@ -29,6 +29,9 @@ pub(crate) struct System {
     /// sqrt(M⁻¹) per column; then Ĵᵀ f̂ with the sum of the absolute terms.
     root: Vec<f64>,
     motion: Vec<[f64; 2]>,
+    /// The matrix that is loaded, to know it again.
+    source_rows: SparseMatrix,
+    source_mass: Vec<f64>,
     /// Doubly linked lists of the entries of closed rows, one list per column.
     head: Vec<u32>,
     next: Vec<u32>,
@@ -41,21 +44,37 @@ impl System {
         self.b.len()
     }
 
-    /// Scales `problem`, whose matrix must not be a general one.
-    pub(crate) fn load(&mut self, problem: &Problem) {
-        self.start.clear();
-        self.start.push(0);
-        self.column.clear();
-        self.value.clear();
-        self.row_scale.clear();
+    /// Scales `problem`, whose matrix must not be a general one. If only b differs from what is loaded, the rest stays,
+    /// the lists of closed rows included, and the answer is true.
+    pub(crate) fn load(&mut self, problem: &Problem) -> bool {
+        let (rows, mass, bodies): (_, &[f64], _) = match &problem.matrix {
+            Matrix::Bodies(bodies) => (&bodies.rows, &bodies.inverse_mass, true),
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, &[], false),
+        };
+        let same = self.bodies == bodies && self.source_mass == mass && self.source_rows == *rows;
         self.b.clear();
-        self.movable.clear();
-        match &problem.matrix {
-            Matrix::Bodies(bodies) => self.load_bodies(bodies, &problem.offset),
-            Matrix::Symmetric(matrix) | Matrix::General(matrix) => self.load_matrix(matrix, &problem.offset),
+        if same {
+            self.b.extend(problem.offset.iter().zip(&self.row_scale).map(|(b, s)| b * (1.0 / s)));
+        } else {
+            self.source_rows.clone_from(rows);
+            self.source_mass.clear();
+            self.source_mass.extend_from_slice(mass);
+            self.start.clear();
+            self.start.push(0);
+            self.column.clear();
+            self.value.clear();
+            self.row_scale.clear();
+            self.movable.clear();
+            match &problem.matrix {
+                Matrix::Bodies(bodies) => self.load_bodies(bodies, &problem.offset),
+                Matrix::Symmetric(matrix) | Matrix::General(matrix) => {
+                    self.load_matrix(matrix, &problem.offset);
+                }
+            }
         }
         let largest = self.b.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
         self.scale = if largest > 0.0 { largest } else { 1.0 };
+        same
     }
 
     fn load_bodies(&mut self, bodies: &BodyRows, offset: &[f64]) {
@@ -142,6 +161,11 @@ impl System {
             }
         }
         first
+    }
+
+    /// Takes all rows off the lists of closed rows.
+    pub(crate) fn open_everything(&mut self) {
+        self.head.fill(NONE);
     }
 
     /// Lists a row as closed.
