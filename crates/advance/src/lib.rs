@@ -12,6 +12,8 @@
 //! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; `rigid` implements
 //! the trait for bodies in free flight with impacts.
 
+#![forbid(unsafe_code)]
+
 mod queue;
 #[cfg(feature = "rigid")]
 pub mod rigid;

@@ -16,6 +16,8 @@
 //! two moving bodies first close to their target gap: by `closed` forms where motions are polynomial, by the `march`
 //! along second-order bounds otherwise. `broad` keeps the pairs that are near enough to matter.
 
+#![forbid(unsafe_code)]
+
 mod body;
 mod broad;
 mod closed;

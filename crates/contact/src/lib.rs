@@ -21,6 +21,8 @@
 //! | `warm` | [`WarmStart`]: carrying an answer over to the next step |
 //! | `json` | feature `json`: problems and answers as files |
 
+#![forbid(unsafe_code)]
+
 mod auto;
 mod body_factor;
 mod check;

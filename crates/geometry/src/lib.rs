@@ -32,6 +32,8 @@
 //! # Ok::<(), halfgap_geometry::ShapeError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod arc;
 mod bounds;
 mod build;
