@@ -77,8 +77,11 @@ fn shape(random: &mut Random, thin: bool) -> Shape {
     };
     let built = built.expect("fine measures");
     // Half of the bodies are lopsided: their centre of mass is not where their symmetry is.
-    let shift =
-        if random.next() % 2 == 0 { random.direction() * random.between(0.0, 0.3) } else { DVec2::ZERO };
+    let shift = if random.next().is_multiple_of(2) {
+        random.direction() * random.between(0.0, 0.3)
+    } else {
+        DVec2::ZERO
+    };
     built.translated(shift)
 }
 
@@ -95,7 +98,7 @@ impl Case {
         let class = random.next() % 6;
         let thin = class == 1;
         let (shape_a, shape_b) = (shape(random, thin), {
-            let also = thin && random.next() % 2 == 0;
+            let also = thin && random.next().is_multiple_of(2);
             shape(random, also)
         });
         let speed = match class {
