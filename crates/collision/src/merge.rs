@@ -3,7 +3,8 @@
 use crate::record::Collision;
 use std::cmp::Ordering;
 
-/// Two normals are one when their directions agree to this sine [-]: far more than rounding, far less than a corner.
+/// Two normals are one when their directions agree to this sine [-] at least: far more than rounding, far less than a
+/// corner.
 const PARALLEL: f64 = 1e-6;
 
 /// True if two records are the same physical collision: the same two bodies touch at one place along one normal.
@@ -21,10 +22,19 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     let swapped = a.parties.primary.body != b.parties.primary.body;
     let normal_b = if swapped { -b.geometry.normal } else { b.geometry.normal };
     let normal_a = a.geometry.normal;
-    let parallel = normal_a.dot(normal_b) > 0.0 && normal_a.perp_dot(normal_b).abs() < PARALLEL;
+    let parallel =
+        normal_a.dot(normal_b) > 0.0 && normal_a.perp_dot(normal_b).abs() < PARALLEL.max(lean(a, b));
     let middle = |c: &Collision| 0.5 * (c.geometry.point_primary + c.geometry.point_normal);
     let near = a.tolerances.distance_tol().max(b.tolerances.distance_tol());
     parallel && (middle(a) - middle(b)).length() <= near
+}
+
+/// Angle [rad] between the normals of one spot found on both sides of a seam: over an arc's radius it makes up twice the
+/// accuracy, by which detection lets a contact lie outside of its feature.
+fn lean(a: &Collision, b: &Collision) -> f64 {
+    let radii = [a, b].map(|c| [c.geometry.radius_primary, c.geometry.radius_normal]);
+    let curved = radii.into_iter().flatten().flatten().map(f64::abs).filter(|&radius| radius > 0.0);
+    2.0 * a.tolerances.accuracy.max(b.tolerances.accuracy) / curved.fold(f64::INFINITY, f64::min)
 }
 
 /// Drops records that are the same physical collision as a more exact one: edge-edge wins over vertex-edge over

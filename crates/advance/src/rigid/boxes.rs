@@ -55,6 +55,10 @@ impl Room {
             return None;
         }
         let core = fat_box.grown(-(self.reach + self.skin));
+        if core.min.cmpgt(core.max).any() {
+            // The tight box of a body that was at rest: it has no room to move in, not even to turn.
+            return Some(time);
+        }
         let offset = flyer.offset(time);
         match flyer.flight().polynomial_from(offset) {
             Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),

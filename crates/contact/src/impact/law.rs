@@ -8,7 +8,7 @@ use super::shuffle::Shuffle;
 /// Which rows are solved together, and what happens after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactLaw {
-    /// All rows in one problem.
+    /// All rows that close or rest in one problem, again while it leaves some closing.
     Simultaneous,
     /// Together those that close on the same bodies, one after another otherwise.
     #[default]
@@ -58,7 +58,9 @@ pub enum ImpactError {
 /// Rows that may act at once.
 pub(super) const MOST_ROWS: usize = 2;
 /// A row closing slower than this part of the impact's fastest is done: with it the ricochets end.
-pub(super) const RICOCHET: f64 = 1e-12;
+const RICOCHET: f64 = 1e-12;
+/// Rounds per row after which the rest of an impact is stopped without elasticity.
+pub(super) const ROUNDS_PER_ROW: usize = 200;
 
 impl ImpactLaw {
     /// Finds the impulses of an impact; `random` counts the impacts of a seeded run.
@@ -101,25 +103,36 @@ impl ImpactLaw {
 }
 
 impl Impact {
-    /// One problem of all rows, each that closes now to rebound; rows that the impulses make close are held.
+    /// Problems of all rows: each that closes is to rebound, and rows at rest are held.
+    ///
+    /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it then closes, it
+    /// is solved in the next round, with all others that do.
     fn solve_all(&mut self, small: f64) -> Result<(), ImpactError> {
-        let targets: Vec<f64> = (0..self.rows.len()).map(|row| self.rebound(row)).collect();
-        self.solve_growing(&targets, small)
+        for _ in 0..ROUNDS_PER_ROW * self.rows.len() {
+            if !self.rates.iter().any(|&rate| rate < -small) {
+                return Ok(());
+            }
+            let targets: Vec<f64> = (0..self.rows.len()).map(|row| self.rebound(row)).collect();
+            self.solve_growing(&targets, small, small)?;
+        }
+        self.solve_all_inelastic(small)
     }
 
     /// One problem of all rows without elasticity.
     pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
-        self.solve_growing(&vec![0.0; self.rows.len()], small)
+        self.solve_growing(&vec![0.0; self.rows.len()], small, f64::INFINITY)
     }
 
-    /// Solves the closing rows together; as long as others are driven to close, with these too.
-    fn solve_growing(&mut self, targets: &[f64], small: f64) -> Result<(), ImpactError> {
+    /// Solves the closing rows together; as long as others are driven to close that opened at most at the rate `slow`,
+    /// with these too.
+    fn solve_growing(&mut self, targets: &[f64], small: f64, slow: f64) -> Result<(), ImpactError> {
         let before = (self.rates.clone(), self.impulses.clone());
         let mut set: Vec<usize> = (0..self.rows.len()).filter(|&row| self.rates[row] < -small).collect();
         loop {
             self.solve_together(&set, targets)?;
-            let driven = (0..self.rows.len()).filter(|row| !set.contains(row) && self.rates[*row] < -small);
-            let driven: Vec<usize> = driven.collect();
+            let is_driven =
+                |row: &usize| !set.contains(row) && before.0[*row] <= slow && self.rates[*row] < -small;
+            let driven: Vec<usize> = (0..self.rows.len()).filter(is_driven).collect();
             if driven.is_empty() {
                 return Ok(());
             }

@@ -5,11 +5,8 @@
 //! ricochets after many rounds (bodies in a tight chain) is stopped without elasticity.
 
 use super::Impact;
-use super::law::{ImpactError, RICOCHET};
+use super::law::{ImpactError, ROUNDS_PER_ROW};
 use super::shuffle::Shuffle;
-
-/// Rounds per row after which the rest of an impact is stopped without elasticity.
-const ROUNDS_PER_ROW: usize = 200;
 
 /// Which rows join the focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +39,7 @@ pub(super) fn resolve_serially(
         let targets: Vec<f64> = (0..impact.rows.len()).map(|row| impact.rebound(row)).collect();
         impact.solve_together(&set, &targets)?;
     }
-    impact.solve_all_inelastic(small.max(RICOCHET))
+    impact.solve_all_inelastic(small)
 }
 
 /// The row to solve next: the fastest, ties by place, or a random one of those that close.

@@ -1,0 +1,8 @@
+//! The advance of rigid bodies, as its users see it.
+
+mod box_of_bodies;
+mod determinism;
+mod energy;
+mod limits;
+mod no_overlap;
+mod refusals;
