@@ -133,6 +133,11 @@ impl Progress {
 }
 
 impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
+    /// At least one: every call makes progress.
+    fn march_steps(&self) -> u32 {
+        self.settings.march_steps.max(1)
+    }
+
     /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
     fn directly(&self, from: f64, span: f64) -> Option<Search> {
         let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
@@ -190,7 +195,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     fn by_windows(&self, from: f64, span: f64) -> Search {
         let mut start = from;
         let mut length = None;
-        for _ in 0..self.settings.windows {
+        for _ in 0..self.settings.windows.max(1) {
             if start >= span {
                 break;
             }
@@ -250,7 +255,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             None => {
                 let whole =
                     Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, span);
-                match whole.march(&pair, start, span, self.settings.march_steps) {
+                match whole.march(&pair, start, span, self.march_steps()) {
                     MarchEnd::Closes(time) | MarchEnd::NoneBefore(time) => time,
                 }
             }
@@ -309,7 +314,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             }
             return;
         }
-        match window.march(pair, start, limit, self.settings.march_steps) {
+        match window.march(pair, start, limit, self.march_steps()) {
             MarchEnd::Closes(time) if time < limit => {
                 progress.offer(FirstContact { time, feature_a: ids[0], feature_b: ids[1] });
             }

@@ -25,7 +25,7 @@ pub struct ImpactRow {
 }
 
 /// An impact: everything that collided at one moment.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impact {
     /// When [s].
     pub time: f64,

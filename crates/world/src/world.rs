@@ -73,6 +73,8 @@ pub struct World {
     now: Time,
     warnings: Vec<String>,
     start_correction: f64,
+    /// The last impact told.
+    told: Impact,
 }
 
 impl World {
@@ -83,7 +85,7 @@ impl World {
         warnings: Vec<String>,
         start_correction: f64,
     ) -> Self {
-        Self { system, bodies, now, warnings, start_correction }
+        Self { system, bodies, now, warnings, start_correction, told: Impact::default() }
     }
 
     /// The present time [s].
@@ -204,8 +206,11 @@ impl World {
     /// Something that cannot be simulated happens; the world stays at the time of that event.
     pub fn advance_to(&mut self, time: f64, on_impact: &mut dyn FnMut(&Impact)) -> Result<(), RunError> {
         let until = Time::from_seconds(time);
-        let outcome =
-            advance_until(&mut self.system, until, |system, report| on_impact(&impact(system, report)));
+        let (system, told) = (&mut self.system, &mut self.told);
+        let outcome = advance_until(system, until, |system, _| {
+            write_impact(told, system.last_impact());
+            on_impact(told);
+        });
         match outcome {
             Ok(()) => {
                 self.now = self.now.max(until);
@@ -219,8 +224,12 @@ impl World {
     }
 }
 
-fn impact(system: &RigidSystem, report: &ImpactReport) -> Impact {
-    let rows = report.rows.iter().map(|row| ImpactRow {
+/// Tells an impact in the world's words, in a buffer that is used again and again.
+fn write_impact(impact: &mut Impact, report: &ImpactReport) {
+    impact.time = report.time.seconds();
+    impact.energy_change = report.energy_change;
+    impact.rows.clear();
+    impact.rows.extend(report.rows.iter().map(|row| ImpactRow {
         primary: row.collision.parties.primary.body,
         normal_body: row.collision.parties.normal.body,
         point: row.collision.geometry.point_primary,
@@ -229,17 +238,6 @@ fn impact(system: &RigidSystem, report: &ImpactReport) -> Impact {
         velocity_before: row.rate_before,
         velocity_after: row.rate_after,
         impulse: row.impulse,
-    });
-    let mut states: Vec<(BodyId, BodyState)> = Vec::new();
-    for body in report
-        .rows
-        .iter()
-        .flat_map(|row| [row.collision.parties.primary.body, row.collision.parties.normal.body])
-    {
-        let flyer = system.flyer(body);
-        if !flyer.body().is_fixed() && states.iter().all(|&(known, _)| known != body) {
-            states.push((body, flyer.state_at(report.time)));
-        }
-    }
-    Impact { time: report.time.seconds(), rows: rows.collect(), energy_change: report.energy_change, states }
+    }));
+    impact.states.clone_from(&report.states);
 }

@@ -4,7 +4,7 @@ use super::error::{AdvanceError, Between};
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, Moment, Zone, detect_pair};
+use halfgap_collision::{BodyId, BodyState, Collision, Moment, Moving, Zone, detect_pair};
 use halfgap_contact::{CollisionRow, Impact, Inertia};
 
 /// Rates and accelerations below this many machine epsilons of what they were computed from are zero.
@@ -24,7 +24,7 @@ pub struct RowReport {
 }
 
 /// An impact, as told to the outside.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpactReport {
     /// When.
     pub time: Time,
@@ -32,6 +32,8 @@ pub struct ImpactReport {
     pub rows: Vec<RowReport>,
     /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2.
     pub energy_change: f64,
+    /// States of the movable bodies that took part, after the impact.
+    pub states: Vec<(BodyId, BodyState)>,
 }
 
 /// Buffers of the handling of an impact, kept from one to the next.
@@ -52,13 +54,15 @@ impl ImpactWork {
 impl RigidSystem {
     /// Collects the touching rows of the group around two bodies and resolves their impact at a time.
     ///
-    /// The bodies' segments are cut at that time; predictions are left to the caller. `None` if no row needed an impulse.
+    /// The bodies' segments are cut at that time; predictions are left to the caller. False if no row needed an impulse;
+    /// else `report` tells of it.
     pub(crate) fn resolve_impact(
         &mut self,
         work: &mut ImpactWork,
+        report: &mut ImpactReport,
         bodies: [BodyId; 2],
         time: Time,
-    ) -> Result<Option<ImpactReport>, AdvanceError> {
+    ) -> Result<bool, AdvanceError> {
         self.collect_group(work, bodies, time);
         let inertia = |body: BodyId| {
             let body = self.flyer(body).body();
@@ -82,9 +86,9 @@ impl RigidSystem {
         })?;
         self.counts.contact_solves += work.impact.solves();
         self.apply_impulses(work, time);
-        let report = report(work, time);
+        self.write_report(work, report, time);
         self.refuse_resting(work, time)?;
-        Ok((!report.rows.is_empty()).then_some(report))
+        Ok(!report.rows.is_empty())
     }
 
     /// The bodies that touch each other around two given ones, and their records in the target zone or nearer.
@@ -95,6 +99,7 @@ impl RigidSystem {
         let mut next = 0;
         while next < work.group.len() {
             let body = work.group[next];
+            let moving = self.flyer(body).moving_at(time);
             for &pair in self.pairs.of_body(body) {
                 let [a, b] = self.pairs.get(pair).bodies;
                 let other = if a == body { b } else { a };
@@ -102,9 +107,7 @@ impl RigidSystem {
                 if work.group[..next].contains(&other) {
                     continue;
                 }
-                let before = work.records.len();
-                self.detect([a, b], time, &mut work.records);
-                let touches = work.records.len() > before;
+                let touches = self.detect((body, &moving), other, time, &mut work.records);
                 if touches && !self.flyer(other).body().is_fixed() && !work.group.contains(&other) {
                     work.group.push(other);
                 }
@@ -113,23 +116,42 @@ impl RigidSystem {
         }
     }
 
-    fn detect(&self, [a, b]: [BodyId; 2], time: Time, records: &mut Vec<Collision>) {
-        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
-        let moment_a = Moment { id: a, body: flyer_a.body(), moving: flyer_a.moving_at(time) };
-        let moment_b = Moment { id: b, body: flyer_b.body(), moving: flyer_b.moving_at(time) };
+    /// Adds the records of two bodies in the target zone or nearer; true if there are any.
+    fn detect(
+        &self,
+        (body, moving): (BodyId, &Moving),
+        other: BodyId,
+        time: Time,
+        records: &mut Vec<Collision>,
+    ) -> bool {
         let tolerances = &self.settings.tolerances;
-        let reach = flyer_a.body().shape.reach() + flyer_b.body().shape.reach() + tolerances.distance_tol();
-        let distance_sq = (moment_a.moving.pose.position - moment_b.moving.pose.position).length_squared();
-        if distance_sq > reach * reach {
-            return;
+        let (flyer, other_flyer) = (self.flyer(body), self.flyer(other));
+        let reach = flyer.body().shape.reach() + other_flyer.body().shape.reach() + tolerances.distance_tol();
+        let other_moving = other_flyer.moving_at(time);
+        if (moving.pose.position - other_moving.pose.position).length_squared() > reach * reach {
+            return false;
         }
-        let first = records.len();
-        detect_pair(&moment_a, &moment_b, tolerances, tolerances.distance_tol(), time.seconds(), records);
-        let mut index = first;
+        // The lesser body first: records do not depend on which of the two was found first.
+        let moments = [
+            Moment { id: body, body: flyer.body(), moving: *moving },
+            Moment { id: other, body: other_flyer.body(), moving: other_moving },
+        ];
+        let [first, second] = if body < other { [0, 1] } else { [1, 0] };
+        let before = records.len();
+        detect_pair(
+            &moments[first],
+            &moments[second],
+            tolerances,
+            tolerances.distance_tol(),
+            time.seconds(),
+            records,
+        );
+        let mut index = before;
         while index < records.len() {
             // Farther than the target zone a row fires in its own time.
             if records[index].zone() < Zone::Target { _ = records.remove(index) } else { index += 1 }
         }
+        records.len() > before
     }
 
     fn apply_impulses(&mut self, work: &mut ImpactWork, time: Time) {
@@ -150,6 +172,24 @@ impl RigidSystem {
             record.response.impulse = Some(impulse);
             self.counts.note_gap(record.geometry.distance);
         }
+    }
+
+    fn write_report(&self, work: &ImpactWork, report: &mut ImpactReport, time: Time) {
+        report.time = time;
+        report.energy_change = 0.0;
+        report.rows.clear();
+        for (index, record) in work.records.iter().enumerate() {
+            let impulse = work.impact.impulses()[index];
+            let (rate_before, rate_after) = (work.impact.rows()[index].rate, work.impact.rates()[index]);
+            if impulse != 0.0 {
+                report.energy_change += 0.5 * impulse * (rate_before + rate_after);
+                report.rows.push(RowReport { collision: *record, rate_before, rate_after, impulse });
+            }
+        }
+        report.states.clear();
+        let takes_part = |body: BodyId| report.rows.iter().any(|row| row.collision.involves_body(body));
+        let states = work.group.iter().filter(|&&body| takes_part(body));
+        report.states.extend(states.map(|&body| (body, self.flyer(body).state_at(time))));
     }
 
     /// A row that neither opens nor accelerates away would need a contact force.
@@ -196,18 +236,4 @@ impl RigidSystem {
             );
         }
     }
-}
-
-fn report(work: &ImpactWork, time: Time) -> ImpactReport {
-    let mut energy_change = 0.0;
-    let mut rows = Vec::new();
-    for (index, record) in work.records.iter().enumerate() {
-        let impulse = work.impact.impulses()[index];
-        let (rate_before, rate_after) = (work.impact.rows()[index].rate, work.impact.rates()[index]);
-        if impulse != 0.0 {
-            energy_change += 0.5 * impulse * (rate_before + rate_after);
-            rows.push(RowReport { collision: *record, rate_before, rate_after, impulse });
-        }
-    }
-    ImpactReport { time, rows, energy_change }
 }

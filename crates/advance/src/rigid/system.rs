@@ -77,6 +77,7 @@ pub struct RigidSystem {
     queue: EventQueue,
     now: Time,
     work: ImpactWork,
+    last_impact: ImpactReport,
     touched: Vec<PairId>,
     neighbours: Vec<BodyId>,
 }
@@ -108,6 +109,7 @@ impl RigidSystem {
             queue: EventQueue::new(),
             now: start,
             work: ImpactWork::default(),
+            last_impact: ImpactReport::default(),
             touched: Vec::new(),
             neighbours: Vec::new(),
         };
@@ -142,6 +144,12 @@ impl RigidSystem {
     #[must_use]
     pub fn settings(&self) -> &RigidSettings {
         &self.settings
+    }
+
+    /// The last impact.
+    #[must_use]
+    pub fn last_impact(&self) -> &ImpactReport {
+        &self.last_impact
     }
 
     /// Time of the last event handled.
@@ -288,11 +296,13 @@ impl RigidSystem {
         self.touched = touched;
     }
 
-    fn handle_contact(&mut self, pair: PairId) -> Result<Option<ImpactReport>, AdvanceError> {
+    fn handle_contact(&mut self, pair: PairId) -> Result<Option<Time>, AdvanceError> {
         let bodies = self.pairs.get(pair).bodies;
         self.note_repeat(pair)?;
         let mut work = std::mem::take(&mut self.work);
-        let outcome = self.resolve_impact(&mut work, bodies, self.now);
+        let mut report = std::mem::take(&mut self.last_impact);
+        let outcome = self.resolve_impact(&mut work, &mut report, bodies, self.now);
+        self.last_impact = report;
         if outcome.is_ok() {
             self.counts.impacts += 1;
             for &body in work.group() {
@@ -301,7 +311,7 @@ impl RigidSystem {
             self.predict_all_of(work.group(), true);
         }
         self.work = work;
-        outcome
+        Ok(outcome?.then_some(self.now))
     }
 
     fn note_repeat(&mut self, pair: PairId) -> Result<(), AdvanceError> {
@@ -325,14 +335,15 @@ fn moving_shape(flyer: &Flyer, from: Time) -> MovingShape<'_, Flight> {
 }
 
 impl EventDriven for RigidSystem {
-    type Report = ImpactReport;
+    /// The time of an impact; [`RigidSystem::last_impact`] tells the rest.
+    type Report = Time;
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
         self.queue.first().map(|entry| entry.time)
     }
 
-    fn handle_next(&mut self) -> Result<Option<ImpactReport>, AdvanceError> {
+    fn handle_next(&mut self) -> Result<Option<Time>, AdvanceError> {
         let Some(event) = self.queue.first() else { return Ok(None) };
         self.counts.events += 1;
         self.now = event.time;

@@ -27,7 +27,8 @@ fn reports_book_the_energy_that_impacts_take() {
     let before = energy(&system, 0.0);
     let mut booked = 0.0;
     let until = 5.0;
-    advance_until(&mut system, Time::from_seconds(until), |_, report| {
+    advance_until(&mut system, Time::from_seconds(until), |system, _| {
+        let report = system.last_impact();
         assert!(report.energy_change <= 0.0);
         assert!(report.rows.iter().all(|row| row.impulse > 0.0 && row.rate_after >= 0.0));
         booked += report.energy_change;
