@@ -96,6 +96,26 @@ pub fn search_step<A: Motion, B: Motion>(
     search.directly(from, span).unwrap_or_else(|| search.by_windows(from, span))
 }
 
+/// [`first_contact`] of two discs about their centres of mass, given as motion, offset [s] and radius [m], without a look
+/// at their shapes; `None` if it has no closed form.
+#[must_use]
+pub fn disc_contact<A: Motion, B: Motion>(
+    (motion_a, offset_a, radius_a): (&A, f64, f64),
+    (motion_b, offset_b, radius_b): (&B, f64, f64),
+    span: f64,
+    tolerances: &Tolerances,
+) -> Option<Search> {
+    let (circle_a, circle_b) = (reach_circle(radius_a), reach_circle(radius_b));
+    let (a, b) = ((&circle_a, motion_a), (&circle_b, motion_b));
+    let curve = quadratic(PairKind::Outer, a, b, [offset_a, offset_b], tolerances.target_gap)?;
+    let time = curve.first_closing(tolerances.distance_tol()).filter(|&time| time < span);
+    // A disc has one feature.
+    let (feature_a, feature_b) = (FeatureId(0), FeatureId(0));
+    Some(time.map_or(Search::NoneBefore(span), |time| {
+        Search::Contact(FirstContact { time, feature_a, feature_b })
+    }))
+}
+
 struct PairSearch<'a, A, B> {
     a: &'a MovingShape<'a, A>,
     b: &'a MovingShape<'a, B>,

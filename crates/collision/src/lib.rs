@@ -38,7 +38,9 @@ pub use body::{Body, BodyId};
 pub use broad::BroadPhase;
 pub use detect::{Moment, detect_pair};
 pub use estimate::{EstimatePoint, estimate_target_time};
-pub use first_contact::{FirstContact, MovingShape, Search, SearchSettings, first_contact, search_step};
+pub use first_contact::{
+    FirstContact, MovingShape, Search, SearchSettings, disc_contact, first_contact, search_step,
+};
 pub use flight::Flight;
 pub use kinematics::{Arms, GapKinematics, Spin};
 pub use merge::{is_same_collision, merge_collisions};

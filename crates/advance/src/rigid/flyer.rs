@@ -3,6 +3,8 @@
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, Flight, Motion, Moving, Spin};
+use halfgap_geometry::{DirectionRange, Feature, Shape};
+use std::sync::Arc;
 
 /// What acts on a body in free flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,10 +20,14 @@ pub struct FlightLaw {
 /// A body and its segment: a flight and when it started.
 #[derive(Clone, Debug)]
 pub struct Flyer {
-    body: Body,
-    law: FlightLaw,
     start: Time,
     flight: Flight,
+    reach: f64,
+    /// Radius [m], if the body is nothing but a disc about its centre of mass.
+    disc: Option<f64>,
+    law: FlightLaw,
+    /// Shared with clones, and away from what every prediction reads.
+    body: Arc<Body>,
 }
 
 impl Flyer {
@@ -33,7 +39,8 @@ impl Flyer {
         } else {
             Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
         };
-        Self { body, law, start: time, flight }
+        let (reach, disc) = (body.shape.reach(), disc_radius(&body.shape));
+        Self { start: time, flight, reach, disc, law, body: Arc::new(body) }
     }
 
     /// The body.
@@ -72,6 +79,15 @@ impl Flyer {
         time.since(self.start)
     }
 
+    /// Largest distance [m] of a point of the body from its centre of mass.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    pub(crate) fn disc(&self) -> Option<f64> {
+        self.disc
+    }
+
     pub(crate) fn flight(&self) -> &Flight {
         &self.flight
     }
@@ -86,5 +102,15 @@ impl Flyer {
         };
         self.start = time;
         self.flight = Flight::new(state, self.law.acceleration, self.law.linear_rate, self.law.angular_rate);
+    }
+}
+
+/// The radius of a shape that is one full circle about the origin.
+fn disc_radius(shape: &Shape) -> Option<f64> {
+    match shape.features() {
+        [Feature::Round(round)] if round.center == DVec2::ZERO && round.range == DirectionRange::Full => {
+            (round.radius > 0.0).then_some(round.radius)
+        }
+        _ => None,
     }
 }

@@ -126,7 +126,7 @@ impl RigidSystem {
     ) -> bool {
         let tolerances = &self.settings.tolerances;
         let (flyer, other_flyer) = (self.flyer(body), self.flyer(other));
-        let reach = flyer.body().shape.reach() + other_flyer.body().shape.reach() + tolerances.distance_tol();
+        let reach = flyer.reach() + other_flyer.reach() + tolerances.distance_tol();
         let other_moving = other_flyer.moving_at(time);
         if (moving.pose.position - other_moving.pose.position).length_squared() > reach * reach {
             return false;

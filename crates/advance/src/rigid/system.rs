@@ -12,7 +12,8 @@ use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
 use halfgap_collision::{
-    Body, BodyId, BodyState, BroadPhase, Flight, MovingShape, Search, SearchSettings, Tolerances, search_step,
+    Body, BodyId, BodyState, BroadPhase, Flight, MovingShape, Search, SearchSettings, Tolerances,
+    disc_contact, search_step,
 };
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
@@ -248,10 +249,8 @@ impl RigidSystem {
         let prediction = if until <= from {
             Prediction::Quiet
         } else {
-            let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
-            let (side_a, side_b) = (moving_shape(flyer_a, from), moving_shape(flyer_b, from));
             let span = until.since(from).min(LONGEST_SPAN);
-            match search_step(&side_a, &side_b, 0.0, span, &self.settings.tolerances, &self.settings.search) {
+            match self.search([a, b], from, span) {
                 Search::Contact(contact) => Prediction::Contact(from.plus(contact.time)),
                 Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => Prediction::Quiet,
                 Search::NoneBefore(time) => Prediction::SearchOn(from.plus(time)),
@@ -270,6 +269,21 @@ impl RigidSystem {
                 self.queue.clear(source);
             }
         }
+    }
+
+    /// Searches for a contact of two bodies in the given span [s] from a time on.
+    fn search(&self, [a, b]: [BodyId; 2], from: Time, span: f64) -> Search {
+        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
+        let tolerances = &self.settings.tolerances;
+        if let (Some(radius_a), Some(radius_b)) = (flyer_a.disc(), flyer_b.disc()) {
+            let side_a = (flyer_a.flight(), flyer_a.offset(from), radius_a);
+            let side_b = (flyer_b.flight(), flyer_b.offset(from), radius_b);
+            if let Some(found) = disc_contact(side_a, side_b, span, tolerances) {
+                return found;
+            }
+        }
+        let (side_a, side_b) = (moving_shape(flyer_a, from), moving_shape(flyer_b, from));
+        search_step(&side_a, &side_b, 0.0, span, tolerances, &self.settings.search)
     }
 
     fn leave_box(&mut self, body: BodyId) {
