@@ -263,3 +263,25 @@ fn a_run_that_stops_early_keeps_its_recording_and_exits_with_3() {
         assert!(Path::new(&folder.path("out")).join(name).exists(), "{name} is missing");
     }
 }
+
+#[test]
+fn shapes_that_cannot_be_are_named_with_line_path_and_edge() {
+    let folder = Folder::new("bad-shapes");
+    let message = |shape: &str| {
+        let scene = folder.write("shape.toml", &FLIGHT.replace("{ disc = { radius = 0.5 } }", shape));
+        let output = halfgap(&["run", &scene]);
+        assert_eq!(output.status.code(), Some(2));
+        folder.plain(&output.stderr).lines().next().unwrap_or_default().to_owned()
+    };
+    assert_eq!(
+        message("{ polygon = { vertices = [[0, 0], [1, 1], [1, 0], [0, 1]] } }"),
+        "error: shape.toml:9: body[0].shape: path 0, edge 0 meets path 0, edge 2 at (0.5, 0.5) m"
+    );
+    let off_by_a_percent = "{ outline = { paths = [{ start = [0, 1], edges = [\
+        { arc = { to = [1.01, 0], center = [0, 0], clockwise = true } }, { line = [0, 0] }, { line = [0, 1] }] }] } }";
+    assert_eq!(
+        message(off_by_a_percent),
+        "error: shape.toml:9: body[0].shape: path 0, edge 0: arc radius is 1 m at its start but 1.01 m at its end: \
+         off by 0.010000000000000009 m"
+    );
+}
