@@ -28,6 +28,19 @@ pub struct Impact {
     delassus: Vec<f64>,
     /// How many complementarity problems were solved.
     solves: u64,
+    scratch: Scratch,
+}
+
+/// Buffers of the laws, kept from one impact to the next.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    /// The rows that are solved together.
+    set: Vec<usize>,
+    /// Rates [m/s] that rows are to reach.
+    targets: Vec<f64>,
+    /// Rates [m/s] and impulses [N s] to go back to.
+    rates: Vec<f64>,
+    impulses: Vec<f64>,
 }
 
 impl Impact {

@@ -112,40 +112,60 @@ impl Impact {
             if !self.rates.iter().any(|&rate| rate < -small) {
                 return Ok(());
             }
-            let targets: Vec<f64> = (0..self.rows.len()).map(|row| self.rebound(row)).collect();
-            self.solve_growing(&targets, small, small)?;
+            self.aim_at_rebounds();
+            self.solve_growing(small, small)?;
         }
         self.solve_all_inelastic(small)
     }
 
     /// One problem of all rows without elasticity.
     pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
-        self.solve_growing(&vec![0.0; self.rows.len()], small, f64::INFINITY)
+        self.scratch.targets.clear();
+        self.scratch.targets.resize(self.rows.len(), 0.0);
+        self.solve_growing(small, f64::INFINITY)
+    }
+
+    /// Sets each row's target to its rebound from the rate that it has now.
+    pub(super) fn aim_at_rebounds(&mut self) {
+        let mut targets = std::mem::take(&mut self.scratch.targets);
+        targets.clear();
+        targets.extend((0..self.rows.len()).map(|row| self.rebound(row)));
+        self.scratch.targets = targets;
     }
 
     /// Solves the closing rows together; as long as others are driven to close that opened at most at the rate `slow`,
     /// with these too.
-    fn solve_growing(&mut self, targets: &[f64], small: f64, slow: f64) -> Result<(), ImpactError> {
-        let before = (self.rates.clone(), self.impulses.clone());
-        let mut set: Vec<usize> = (0..self.rows.len()).filter(|&row| self.rates[row] < -small).collect();
-        loop {
-            self.solve_together(&set, targets)?;
-            let is_driven =
-                |row: &usize| !set.contains(row) && before.0[*row] <= slow && self.rates[*row] < -small;
-            let driven: Vec<usize> = (0..self.rows.len()).filter(is_driven).collect();
-            if driven.is_empty() {
-                return Ok(());
+    fn solve_growing(&mut self, small: f64, slow: f64) -> Result<(), ImpactError> {
+        self.scratch.rates.clone_from(&self.rates);
+        self.scratch.impulses.clone_from(&self.impulses);
+        let mut set = std::mem::take(&mut self.scratch.set);
+        set.clear();
+        set.extend((0..self.rows.len()).filter(|&row| self.rates[row] < -small));
+        let outcome = loop {
+            if let Err(error) = self.solve_together(&set) {
+                break Err(error);
             }
-            set.extend(driven);
+            let count = set.len();
+            for row in 0..self.rows.len() {
+                let is_driven = self.scratch.rates[row] <= slow && self.rates[row] < -small;
+                if is_driven && !set[..count].contains(&row) {
+                    set.push(row);
+                }
+            }
+            if set.len() == count {
+                break Ok(());
+            }
             set.sort_unstable();
-            self.rates.clone_from(&before.0);
-            self.impulses.clone_from(&before.1);
-        }
+            self.rates.clone_from(&self.scratch.rates);
+            self.impulses.clone_from(&self.scratch.impulses);
+        };
+        self.scratch.set = set;
+        outcome
     }
 
-    /// Solves the rows of a set together, each to reach its target rate [m/s], and applies the impulses.
-    pub(super) fn solve_together(&mut self, set: &[usize], targets: &[f64]) -> Result<(), ImpactError> {
-        let b = |row: usize| self.rates[row] - targets[row];
+    /// Solves the rows of a set together, each to reach its target rate, and applies the impulses.
+    pub(super) fn solve_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
+        let b = |row: usize| self.rates[row] - self.scratch.targets[row];
         match *set {
             [] => {}
             [row] => {

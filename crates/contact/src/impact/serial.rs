@@ -25,19 +25,23 @@ pub(super) fn resolve_serially(
 ) -> Result<(), ImpactError> {
     for _ in 0..ROUNDS_PER_ROW * impact.rows.len() {
         let Some(focus) = focus(impact, shuffle.as_deref_mut(), small) else { return Ok(()) };
-        let set: Vec<usize> = match grouping {
-            Grouping::One => vec![focus],
+        let mut set = std::mem::take(&mut impact.scratch.set);
+        set.clear();
+        match grouping {
+            Grouping::One => set.push(focus),
             Grouping::SameBodies => {
                 let joins = |row: &usize| {
                     *row == focus
                         || (impact.rates[*row] < -small
                             && impact.rows[*row].shares_movable_body(&impact.rows[focus]))
                 };
-                (0..impact.rows.len()).filter(joins).collect()
+                set.extend((0..impact.rows.len()).filter(joins));
             }
-        };
-        let targets: Vec<f64> = (0..impact.rows.len()).map(|row| impact.rebound(row)).collect();
-        impact.solve_together(&set, &targets)?;
+        }
+        impact.aim_at_rebounds();
+        let outcome = impact.solve_together(&set);
+        impact.scratch.set = set;
+        outcome?;
     }
     impact.solve_all_inelastic(small)
 }

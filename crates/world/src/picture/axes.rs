@@ -3,6 +3,9 @@
 use super::svg::{Svg, TextStyle, number};
 use super::ticks::{label, round_step, ticks};
 
+/// A range narrower than this part of its values is drawn as a flat line.
+const FLAT: f64 = 1e-9;
+
 /// Width of a plot's page [px].
 pub(super) const WIDTH: f64 = 900.0;
 const LEFT: f64 = 130.0;
@@ -97,7 +100,7 @@ fn widened((low, high): (f64, f64)) -> (f64, f64) {
     }
     let size = low.abs().max(high.abs());
     // Below this the range is rounding: a constant.
-    if high - low > 1e-9 * size {
+    if high - low > FLAT * size {
         (low, high)
     } else if size > f64::MIN_POSITIVE {
         (low - 0.1 * size, high + 0.1 * size)

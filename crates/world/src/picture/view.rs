@@ -3,6 +3,9 @@
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
+/// What is smaller than this part of its distance from the origin cannot be drawn larger.
+const LEAST_SIZE: f64 = 1e-9;
+
 /// Longer side of the part of the page that shows the world [px].
 const LONG_SIDE: f64 = 800.0;
 /// Shorter side at least [px].
@@ -31,7 +34,7 @@ impl View {
         let shown = shown.filter(usable).unwrap_or(Aabb::around(DVec2::ZERO));
         let center = 0.5 * shown.min + 0.5 * shown.max;
         // A point, or coordinates so large that the size is lost in their rounding.
-        let least = (1e-9 * center.abs().max_element()).max(f64::MIN_POSITIVE.sqrt());
+        let least = (LEAST_SIZE * center.abs().max_element()).max(f64::MIN_POSITIVE.sqrt());
         let size = shown.size().max(DVec2::splat(least));
         let scale = LONG_SIDE / size.max_element();
         let inner = (size * scale).max(DVec2::splat(SHORT_SIDE));

@@ -119,7 +119,7 @@ pub enum Stabilization {
 }
 
 fn default_tolerance() -> f64 {
-    1e-8
+    crate::builder::DEFAULT_TOLERANCE
 }
 
 fn yes() -> bool {
