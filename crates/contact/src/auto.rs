@@ -88,8 +88,8 @@ impl Auto {
         if solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
         }
-        let Solution { residuals, iterations, .. } = *solution;
-        Err(SolveError::Unsolved { method: Method::Auto, residuals, iterations })
+        // Growth is judged against the offsets of all rows: an island's forces may be too small for it.
+        self.methods.solve(problem, warm, solution, self.settings.selection)
     }
 
     fn solve_island(

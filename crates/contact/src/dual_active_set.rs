@@ -40,6 +40,8 @@ pub struct DualActiveSet {
     /// Rows that start closed.
     pub(crate) start: Vec<bool>,
     pub(crate) shift: Shift,
+    /// Whether contacts contradicted each other in the last attempt, connectors not counted.
+    pub(crate) contacts_contradict: bool,
     checker: Checker,
     pub(crate) pivots: usize,
     /// Whether to stop where another method is likely to be faster, and whether that was so.
@@ -51,9 +53,9 @@ pub struct DualActiveSet {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
-    dependence: f64,
+    pub(crate) dependence: f64,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
-    contradiction: f64,
+    pub(crate) contradiction: f64,
 }
 
 /// How the pivoting ended.
@@ -87,6 +89,12 @@ impl DualActiveSet {
         let mut failure = None;
         for attempt in self.attempts() {
             let error = match self.attempt(problem, warm, solution, attempt) {
+                Ok(()) if self.owes_to_contacts(solution) => {
+                    // What is within rounding of the rows as given comes before least squares.
+                    return self
+                        .raise(problem, warm, solution)
+                        .or_else(|_| self.attempt(problem, warm, solution, attempt));
+                }
                 Ok(()) => return Ok(()),
                 Err(error) if self.handed_over => return Err(error),
                 Err(error) => error,
@@ -140,12 +148,7 @@ impl DualActiveSet {
         solution: &mut Solution,
         attempt: Attempt,
     ) -> Result<(), SolveError> {
-        solution.reset(problem.len(), Method::DualActiveSet);
-        self.closed.load(problem, attempt.dependence);
-        self.shift.reset();
-        self.pivots = 0;
-        self.handed_over = false;
-        self.choose_start(problem, warm);
+        self.prepare(problem, warm, solution, attempt);
         let end = match self.find_start(problem) {
             Some(certificate) => End::Infeasible(certificate),
             None if self.handed_over => End::Stopped,
@@ -159,6 +162,23 @@ impl DualActiveSet {
             self.select_least_norm(problem, solution, attempt);
         }
         result
+    }
+
+    /// Loads the problem and chooses the rows to start with.
+    pub(crate) fn prepare(
+        &mut self,
+        problem: &Problem,
+        warm: Start<'_>,
+        solution: &mut Solution,
+        attempt: Attempt,
+    ) {
+        solution.reset(problem.len(), Method::DualActiveSet);
+        self.closed.load(problem, attempt.dependence);
+        self.shift.reset();
+        self.contacts_contradict = false;
+        self.pivots = 0;
+        self.handed_over = false;
+        self.choose_start(problem, warm);
     }
 
     /// Closes the worst row until none is left, then refines.
@@ -268,6 +288,7 @@ impl DualActiveSet {
         match self.shift.reconcile(&mut self.closed, row, limit) {
             Some(certificate) => End::Infeasible(certificate),
             None => {
+                self.contacts_contradict = true;
                 self.closed.force[row] = 0.0;
                 self.closed.solve_closed();
                 self.closed.accelerate();
