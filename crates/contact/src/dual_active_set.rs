@@ -191,6 +191,9 @@ impl DualActiveSet {
                     End::Done => self.narrow_factor(),
                     other => return other,
                 }
+            } else if self.closed.terms_bound {
+                // Nothing is wrong beyond a bound on the rounding: look again with the rounding itself.
+                self.closed.accelerate();
             } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
             {
                 refinements += 1;
@@ -250,7 +253,7 @@ impl DualActiveSet {
                 None => {
                     self.advance(row, full);
                     self.closed.close(row, relation);
-                    self.closed.accelerate();
+                    self.closed.accelerate_roughly();
                     return End::Done;
                 }
             }

@@ -19,6 +19,9 @@ const SUBSTANTIAL: usize = 4;
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
 const MOVING: usize = 50;
 
+/// One in so many closed rows to be opened at once makes a new factor cheaper than taking them out of the old one.
+const MANY: usize = 8;
+
 /// Where a solve begins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Start<'a> {
@@ -151,9 +154,18 @@ impl DualActiveSet {
             if count == 0 {
                 break;
             }
-            for at in (0..closed.len()).rev() {
-                if pulls(closed, at) {
-                    closed.open_at(at);
+            if count > closed.len() / MANY && closed.proximal == 0.0 && closed.kept == 0 {
+                self.start.clear();
+                self.start.extend(
+                    (0..closed.force.len())
+                        .map(|row| closed.is_closed(row) && (closed.force[row] >= 0.0 || closed.free[row])),
+                );
+                closed.open_unflagged(&self.start);
+            } else {
+                for at in (0..closed.len()).rev() {
+                    if pulls(closed, at) {
+                        closed.open_at(at);
+                    }
                 }
             }
             self.pivots += count;

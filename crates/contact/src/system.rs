@@ -29,6 +29,8 @@ pub(crate) struct System {
     /// sqrt(M⁻¹) per column; then Ĵᵀ f̂ with the sum of the absolute terms.
     root: Vec<f64>,
     motion: Vec<[f64; 2]>,
+    /// Ĵᵀ f̂ alone.
+    speed: Vec<f64>,
     /// The matrix that is loaded, to know it again.
     source_rows: SparseMatrix,
     source_mass: Vec<f64>,
@@ -106,6 +108,8 @@ impl System {
         self.previous.resize(self.value.len(), NONE);
         self.motion.clear();
         self.motion.resize(bodies.inverse_mass.len(), [0.0; 2]);
+        self.speed.clear();
+        self.speed.resize(bodies.inverse_mass.len(), 0.0);
     }
 
     fn load_matrix(&mut self, matrix: &SparseMatrix, offset: &[f64]) {
@@ -228,6 +232,18 @@ impl System {
             largest = largest.max(terms);
         }
         largest
+    }
+
+    /// a := Â f + b̂, without its terms, for rows of bodies. Returns whether they are.
+    pub(crate) fn evaluate(&mut self, f: &[f64], a: &mut [f64]) -> bool {
+        if self.bodies {
+            let mut speed = std::mem::take(&mut self.speed);
+            self.push(f, &mut speed);
+            self.pull(&speed, a);
+            a.iter_mut().zip(&self.b).for_each(|(a, b)| *a += b);
+            self.speed = speed;
+        }
+        self.bodies
     }
 
     fn accelerate_matrix(&self, f: &[f64], a: &mut [f64]) -> f64 {
