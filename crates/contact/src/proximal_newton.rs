@@ -85,6 +85,11 @@ impl ProximalNewton {
         Ok(ProximalNewton { settings, ..Self::default() })
     }
 
+    /// Whether the last problem solved had the matrix of this one, so that its factor is of use.
+    pub(crate) fn is_loaded(&self, problem: &Problem) -> bool {
+        self.system.is_loaded(problem)
+    }
+
     fn run(
         &mut self,
         problem: &Problem,

@@ -46,18 +46,21 @@ impl System {
         self.b.len()
     }
 
+    /// Whether the matrix of `problem` is the one that is loaded.
+    pub(crate) fn is_loaded(&self, problem: &Problem) -> bool {
+        let (rows, mass, bodies) = source(problem);
+        self.bodies == bodies && self.source_mass == mass && self.source_rows == *rows
+    }
+
     /// Scales `problem`, whose matrix must not be a general one. If only b differs from what is loaded, the rest stays,
     /// the lists of closed rows included, and the answer is true.
     pub(crate) fn load(&mut self, problem: &Problem) -> bool {
-        let (rows, mass, bodies): (_, &[f64], _) = match &problem.matrix {
-            Matrix::Bodies(bodies) => (&bodies.rows, &bodies.inverse_mass, true),
-            Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, &[], false),
-        };
-        let same = self.bodies == bodies && self.source_mass == mass && self.source_rows == *rows;
+        let same = self.is_loaded(problem);
         self.b.clear();
         if same {
             self.b.extend(problem.offset.iter().zip(&self.row_scale).map(|(b, s)| b * (1.0 / s)));
         } else {
+            let (rows, mass, _) = source(problem);
             self.source_rows.clone_from(rows);
             self.source_mass.clear();
             self.source_mass.extend_from_slice(mass);
@@ -259,6 +262,14 @@ impl System {
             largest = largest.max(terms);
         }
         largest
+    }
+}
+
+/// The matrix and masses of a problem, and whether its rows are those of bodies.
+fn source(problem: &Problem) -> (&SparseMatrix, &[f64], bool) {
+    match &problem.matrix {
+        Matrix::Bodies(bodies) => (&bodies.rows, &bodies.inverse_mass, true),
+        Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, &[], false),
     }
 }
 
