@@ -29,9 +29,6 @@ const BLOCKING: f64 = 1e-14;
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 const REFINED: f64 = 0.125;
 
-/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
-const WIDENED: usize = 2;
-
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
@@ -202,17 +199,6 @@ impl DualActiveSet {
             } else {
                 return End::Done;
             }
-        }
-    }
-
-    /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
-    fn narrow_factor(&mut self) {
-        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
-            && !self.closed.refactor()
-        {
-            self.closed.solve_closed();
-            self.closed.accelerate();
-            self.make_forces_admissible();
         }
     }
 

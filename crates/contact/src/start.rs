@@ -22,6 +22,9 @@ const MOVING: usize = 50;
 /// One in so many closed rows to be opened at once makes a new factor cheaper than taking them out of the old one.
 const MANY: usize = 8;
 
+/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
+const WIDENED: usize = 2;
+
 /// Where a solve begins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Start<'a> {
@@ -138,6 +141,17 @@ impl DualActiveSet {
             (0..self.start.len()).filter(|&row| self.start[row] && !self.closed.is_closed(row)).count();
         let dependent = flagged - closed;
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
+    }
+
+    /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
+    pub(crate) fn narrow_factor(&mut self) {
+        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
+            && !self.closed.refactor()
+        {
+            self.closed.solve_closed();
+            self.closed.accelerate();
+            self.make_forces_admissible();
+        }
     }
 
     /// Opens closed rows until no unilateral force is negative. The forces must be those with zero acceleration of the
