@@ -23,6 +23,9 @@ use crate::warm::WarmStart;
 /// Rows below which looking for islands costs more than it gains: the factor of a few islands is as narrow.
 const SPLIT_ROWS: usize = 48;
 
+/// Islands that keep buffers of their own, and with them a factor for the next step; later ones share the last.
+const KEPT_ISLANDS: usize = 64;
+
 /// Rows up to which Lemke's method is worth a last try on a symmetric problem.
 const LAST_RESORT_ROWS: usize = 400;
 
@@ -34,6 +37,8 @@ pub struct Auto {
     part: Solution,
     part_start: WarmStart,
     methods: Methods,
+    /// The same for each of the first islands.
+    by_island: Vec<Methods>,
     checker: Checker,
 }
 
@@ -53,13 +58,7 @@ impl Auto {
     ///
     /// [`SettingsError`] names a number that is not usable.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
-        let methods = Methods {
-            dual: DualActiveSet::new(settings)?,
-            proximal: ProximalNewton::new(settings)?,
-            #[cfg(feature = "qp")]
-            qp: Qp::new(settings)?,
-            lemke: Lemke::new(settings)?,
-        };
+        let methods = Methods::new(settings)?;
         Ok(Auto { settings, methods, ..Self::default() })
     }
 
@@ -88,8 +87,8 @@ impl Auto {
         if solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
         }
-        let Solution { residuals, iterations, .. } = *solution;
-        Err(SolveError::Unsolved { method: Method::Auto, residuals, iterations })
+        // Growth is judged against the offsets of all rows: an island's forces may be too small for it.
+        self.methods.solve(problem, warm, solution, self.settings.selection)
     }
 
     fn solve_island(
@@ -104,7 +103,12 @@ impl Auto {
             &self.part_start
         });
         let problem_part = self.islands.part(problem, island);
-        let result = self.methods.solve(problem_part, start, &mut self.part, self.settings.selection);
+        let slot = island.min(KEPT_ISLANDS - 1);
+        while self.by_island.len() <= slot {
+            self.by_island.push(Methods::new(self.settings).expect("the settings were checked before"));
+        }
+        let methods = &mut self.by_island[slot];
+        let result = methods.solve(problem_part, start, &mut self.part, self.settings.selection);
         let rows = self.islands.rows(island);
         result?;
         for (&row, &force) in rows.iter().zip(&self.part.force) {
@@ -123,6 +127,16 @@ impl Auto {
 }
 
 impl Methods {
+    fn new(settings: Settings) -> Result<Self, SettingsError> {
+        Ok(Methods {
+            dual: DualActiveSet::new(settings)?,
+            proximal: ProximalNewton::new(settings)?,
+            #[cfg(feature = "qp")]
+            qp: Qp::new(settings)?,
+            lemke: Lemke::new(settings)?,
+        })
+    }
+
     fn solve(
         &mut self,
         problem: &Problem,
@@ -135,7 +149,11 @@ impl Methods {
         }
         let start = warm.map_or(Start::Nothing, Start::Earlier);
         let may_hand_over = problem.has_bodies() && selection == ForceSelection::Vertex;
-        let first = if may_hand_over {
+        // What was handed over a step ago is so again: the redundancy lies in the rows, which are the same.
+        let again = may_hand_over && warm.is_some() && self.proximal.is_loaded(problem);
+        let first = if again {
+            Ok(false)
+        } else if may_hand_over {
             self.dual.run_or_hand_over(problem, start, solution)
         } else {
             self.dual.run(problem, start, solution).map(|()| true)

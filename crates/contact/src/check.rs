@@ -63,8 +63,10 @@ impl fmt::Display for Residuals {
 /// Computes residuals in buffers of its own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Checker {
-    /// M⁻¹ Jᵀ f per column.
-    velocity: Vec<f64>,
+    /// M⁻¹ Jᵀ f per column, and the sum of its absolute terms.
+    velocity: Vec<[f64; 2]>,
+    /// Per row, a bound on its growth, and 1/s.
+    bound: Vec<[f64; 2]>,
     /// Rows with force per column: offsets and (row, J M⁻¹ f of that entry).
     start: Vec<usize>,
     entry: Vec<(usize, f64)>,
@@ -92,27 +94,63 @@ impl Checker {
         force: &[f64],
         acceleration: &mut [f64],
     ) -> Residuals {
-        self.load(bodies, force);
+        self.push(bodies, force);
         let mut sums = Sums::default();
+        self.bound.clear();
         for (i, out) in acceleration.iter_mut().enumerate() {
             let (columns, values) = bodies.rows.row(i);
-            let (mut diagonal, mut change) = (0.0, 0.0);
+            let (mut diagonal, mut change, mut bound) = (0.0, 0.0, 0.0);
             for (&k, &v) in columns.iter().zip(values) {
+                let [velocity, terms] = self.velocity[k];
                 diagonal += v * v * bodies.inverse_mass[k];
-                change += v * self.velocity[k];
+                change += v * velocity;
+                bound += v.abs() * terms;
             }
             *out = change + problem.offset[i];
-            let terms = self.sum_of_terms(columns, values);
-            sums.add(diagonal, problem.offset[i], force[i], *out, terms, problem.bilateral[i]);
+            let s = sums.add(diagonal, problem.offset[i], force[i], *out, 0.0, problem.bilateral[i]);
+            self.bound.push([bound / s, 1.0 / s]);
         }
+        sums.terms = self.largest_terms(bodies, force);
         sums.finish()
     }
 
-    /// Computes M⁻¹ Jᵀ f and lists, per column, the rows that carry force.
-    fn load(&mut self, bodies: &BodyRows, force: &[f64]) {
-        let columns = bodies.inverse_mass.len();
+    /// Computes M⁻¹ Jᵀ f and the sums of its absolute terms.
+    fn push(&mut self, bodies: &BodyRows, force: &[f64]) {
         self.velocity.clear();
-        self.velocity.resize(columns, 0.0);
+        self.velocity.resize(bodies.inverse_mass.len(), [0.0; 2]);
+        for (j, &f) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
+            let (columns, values) = bodies.rows.row(j);
+            for (&k, &v) in columns.iter().zip(values) {
+                let push = v * bodies.inverse_mass[k] * f;
+                let [velocity, terms] = &mut self.velocity[k];
+                *velocity += push;
+                *terms += push.abs();
+            }
+        }
+    }
+
+    /// max_i Σ_j |A_ij f_j| / s_i. The sums by column bound those by row, so that only rows whose bound exceeds what is
+    /// found already need be looked at.
+    fn largest_terms(&mut self, bodies: &BodyRows, force: &[f64]) -> f64 {
+        let Some(top) = (0..force.len()).max_by(|&i, &j| self.bound[i][0].total_cmp(&self.bound[j][0]))
+        else {
+            return 0.0;
+        };
+        self.list(bodies, force);
+        let mut largest = 0.0_f64;
+        for i in std::iter::once(top).chain(0..force.len()) {
+            let [bound, inverse] = self.bound[i];
+            if bound > largest {
+                let (columns, values) = bodies.rows.row(i);
+                largest = largest.max(self.sum_of_terms(columns, values) * inverse);
+            }
+        }
+        largest
+    }
+
+    /// Lists, per column, the rows that carry force.
+    fn list(&mut self, bodies: &BodyRows, force: &[f64]) {
+        let columns = bodies.inverse_mass.len();
         self.start.clear();
         self.start.resize(columns + 2, 0);
         self.term.clear();
@@ -129,9 +167,7 @@ impl Checker {
         for (j, &f) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
             let (row_columns, values) = bodies.rows.row(j);
             for (&k, &v) in row_columns.iter().zip(values) {
-                let push = v * bodies.inverse_mass[k] * f;
-                self.velocity[k] += push;
-                self.entry[self.start[k + 1]] = (j, push);
+                self.entry[self.start[k + 1]] = (j, v * bodies.inverse_mass[k] * f);
                 self.start[k + 1] += 1;
             }
         }
@@ -192,7 +228,16 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, diagonal: f64, b: f64, force: f64, acceleration: f64, terms: f64, bilateral: bool) {
+    /// Adds a row; returns its s.
+    fn add(
+        &mut self,
+        diagonal: f64,
+        b: f64,
+        force: f64,
+        acceleration: f64,
+        terms: f64,
+        bilateral: bool,
+    ) -> f64 {
         let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
         let scaled = acceleration / s;
         let residual = if bilateral { scaled.abs() } else { (s * force).min(scaled).abs() };
@@ -200,6 +245,7 @@ impl Sums {
         self.residual = self.residual.max(residual);
         self.terms = self.terms.max(terms / s);
         self.scale = self.scale.max(b.abs() / s);
+        s
     }
 
     fn finish(self) -> Residuals {

@@ -35,8 +35,10 @@ pub(crate) struct ClosedRows {
     pub(crate) force: Vec<f64>,
     /// Scaled acceleration of every row.
     pub(crate) acceleration: Vec<f64>,
-    /// Largest sum of terms of an acceleration at the last evaluation.
+    /// Largest sum of terms of an acceleration at the last evaluation, or a bound on it.
     pub(crate) terms: f64,
+    /// Whether `terms` is only a bound, Σ|f̂|, for no entry of Â exceeds 1.
+    pub(crate) terms_bound: bool,
     /// What [`consider`](Self::consider) found: L⁻¹ Â_Cd.
     reach: Vec<f64>,
     /// Solutions of systems with the factor.
@@ -151,12 +153,7 @@ impl ClosedRows {
         let mut again = std::mem::take(&mut self.again);
         again.clear();
         again.extend(self.position.iter().map(|&position| position != OPEN));
-        self.step.copy_from_slice(&self.force);
-        self.open_all();
-        self.close_flagged(&again);
-        for &row in &self.rows {
-            self.force[row] = self.step[row];
-        }
+        self.open_unflagged(&again);
         self.again = again;
         self.len() == closed
     }
@@ -221,10 +218,35 @@ impl ClosedRows {
     /// Evaluates all accelerations.
     pub(crate) fn accelerate(&mut self) {
         self.terms = self.system.accelerate(&self.force, &mut self.acceleration);
+        self.terms_bound = false;
+        self.add_proximal();
+    }
+
+    /// The same in less time, with a bound on their terms.
+    pub(crate) fn accelerate_roughly(&mut self) {
+        if !self.system.evaluate(&self.force, &mut self.acceleration) {
+            return self.accelerate();
+        }
+        self.terms = self.force.iter().map(|f| f.abs()).sum();
+        self.terms_bound = true;
+        self.add_proximal();
+    }
+
+    fn add_proximal(&mut self) {
         if self.proximal > 0.0 {
             for (a, f) in self.acceleration.iter_mut().zip(&self.force) {
                 *a += self.proximal * f;
             }
+        }
+    }
+
+    /// Opens the rows without a flag. Forces of the others stay.
+    pub(crate) fn open_unflagged(&mut self, flags: &[bool]) {
+        self.step.copy_from_slice(&self.force);
+        self.open_all();
+        self.close_flagged(flags);
+        for &row in &self.rows {
+            self.force[row] = self.step[row];
         }
     }
 

@@ -14,11 +14,14 @@ use crate::problem::Problem;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shift {
     taken: Vec<f64>,
+    /// Whether bilateral rows contradicted each other.
+    pub(crate) connectors: bool,
 }
 
 impl Shift {
     pub(crate) fn reset(&mut self) {
         self.taken.clear();
+        self.connectors = false;
     }
 
     /// Largest change of a row's b̂, in units of the scale.
@@ -50,6 +53,7 @@ impl Shift {
         if !(0..problem.len()).any(|row| contradicts(row, closed.acceleration[row])) {
             return None;
         }
+        self.connectors = true;
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for row in 0..problem.len() {
             if !problem.bilateral[row] || closed.is_closed(row) {

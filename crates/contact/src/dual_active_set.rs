@@ -29,9 +29,6 @@ const BLOCKING: f64 = 1e-14;
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 const REFINED: f64 = 0.125;
 
-/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
-const WIDENED: usize = 2;
-
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
@@ -40,6 +37,8 @@ pub struct DualActiveSet {
     /// Rows that start closed.
     pub(crate) start: Vec<bool>,
     pub(crate) shift: Shift,
+    /// Whether contacts contradicted each other in the last attempt, connectors not counted.
+    pub(crate) contacts_contradict: bool,
     checker: Checker,
     pub(crate) pivots: usize,
     /// Whether to stop where another method is likely to be faster, and whether that was so.
@@ -51,9 +50,9 @@ pub struct DualActiveSet {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
-    dependence: f64,
+    pub(crate) dependence: f64,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
-    contradiction: f64,
+    pub(crate) contradiction: f64,
 }
 
 /// How the pivoting ended.
@@ -87,6 +86,12 @@ impl DualActiveSet {
         let mut failure = None;
         for attempt in self.attempts() {
             let error = match self.attempt(problem, warm, solution, attempt) {
+                Ok(()) if self.owes_to_contacts(solution) => {
+                    // What is within rounding of the rows as given comes before least squares.
+                    return self
+                        .raise(problem, warm, solution)
+                        .or_else(|_| self.attempt(problem, warm, solution, attempt));
+                }
                 Ok(()) => return Ok(()),
                 Err(error) if self.handed_over => return Err(error),
                 Err(error) => error,
@@ -140,12 +145,7 @@ impl DualActiveSet {
         solution: &mut Solution,
         attempt: Attempt,
     ) -> Result<(), SolveError> {
-        solution.reset(problem.len(), Method::DualActiveSet);
-        self.closed.load(problem, attempt.dependence);
-        self.shift.reset();
-        self.pivots = 0;
-        self.handed_over = false;
-        self.choose_start(problem, warm);
+        self.prepare(problem, warm, solution, attempt);
         let end = match self.find_start(problem) {
             Some(certificate) => End::Infeasible(certificate),
             None if self.handed_over => End::Stopped,
@@ -161,6 +161,23 @@ impl DualActiveSet {
         result
     }
 
+    /// Loads the problem and chooses the rows to start with.
+    pub(crate) fn prepare(
+        &mut self,
+        problem: &Problem,
+        warm: Start<'_>,
+        solution: &mut Solution,
+        attempt: Attempt,
+    ) {
+        solution.reset(problem.len(), Method::DualActiveSet);
+        self.closed.load(problem, attempt.dependence);
+        self.shift.reset();
+        self.contacts_contradict = false;
+        self.pivots = 0;
+        self.handed_over = false;
+        self.choose_start(problem, warm);
+    }
+
     /// Closes the worst row until none is left, then refines.
     pub(crate) fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
         let mut refinements = 0;
@@ -171,6 +188,9 @@ impl DualActiveSet {
                     End::Done => self.narrow_factor(),
                     other => return other,
                 }
+            } else if self.closed.terms_bound {
+                // Nothing is wrong beyond a bound on the rounding: look again with the rounding itself.
+                self.closed.accelerate();
             } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
             {
                 refinements += 1;
@@ -179,17 +199,6 @@ impl DualActiveSet {
             } else {
                 return End::Done;
             }
-        }
-    }
-
-    /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
-    fn narrow_factor(&mut self) {
-        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
-            && !self.closed.refactor()
-        {
-            self.closed.solve_closed();
-            self.closed.accelerate();
-            self.make_forces_admissible();
         }
     }
 
@@ -230,7 +239,7 @@ impl DualActiveSet {
                 None => {
                     self.advance(row, full);
                     self.closed.close(row, relation);
-                    self.closed.accelerate();
+                    self.closed.accelerate_roughly();
                     return End::Done;
                 }
             }
@@ -268,6 +277,7 @@ impl DualActiveSet {
         match self.shift.reconcile(&mut self.closed, row, limit) {
             Some(certificate) => End::Infeasible(certificate),
             None => {
+                self.contacts_contradict = true;
                 self.closed.force[row] = 0.0;
                 self.closed.solve_closed();
                 self.closed.accelerate();

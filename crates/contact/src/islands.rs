@@ -18,6 +18,10 @@ pub(crate) struct Islands {
     rows: Vec<u32>,
     start: Vec<u32>,
     island: Vec<u32>,
+    /// The rows of bodies that the islands are those of: offsets, columns, and which columns move.
+    known_start: Vec<usize>,
+    known_column: Vec<usize>,
+    known_movable: Vec<bool>,
     part: Problem,
     /// Place in the island of each row or column of the whole.
     local: Vec<u32>,
@@ -27,6 +31,9 @@ impl Islands {
     /// Finds the islands; returns how many there are.
     pub(crate) fn find(&mut self, problem: &Problem) -> usize {
         let n = problem.len();
+        if self.is_known(problem) {
+            return self.start.len() - 2;
+        }
         self.parent.clear();
         self.parent.extend(0..n as u32);
         match &problem.matrix {
@@ -51,6 +58,25 @@ impl Islands {
             }
         }
         self.sort(n)
+    }
+
+    /// Whether the same rows touch the same movable bodies as last time; remembers them.
+    fn is_known(&mut self, problem: &Problem) -> bool {
+        let Matrix::Bodies(bodies) = &problem.matrix else {
+            self.known_start.clear();
+            return false;
+        };
+        let movable = bodies.inverse_mass.iter().map(|w| *w > 0.0);
+        let known = self.known_start == bodies.rows.start
+            && self.known_column == bodies.rows.column
+            && movable.clone().eq(self.known_movable.iter().copied());
+        if !known {
+            self.known_start.clone_from(&bodies.rows.start);
+            self.known_column.clone_from(&bodies.rows.column);
+            self.known_movable.clear();
+            self.known_movable.extend(movable);
+        }
+        known
     }
 
     fn root(&mut self, mut row: u32) -> u32 {

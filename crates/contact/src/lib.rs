@@ -13,7 +13,7 @@
 //! | `problem`, `matrix` | rows of bodies, or the entries of A; checked when built |
 //! | `solution`, `check` | the answer and its residuals |
 //! | `system` | the problem scaled to a unit diagonal, which the symmetric methods work on |
-//! | `dual_active_set`, `start`, `closed_rows`, `skyline`, `order`, `dependent`, `least_norm` | [`DualActiveSet`] |
+//! | `dual_active_set`, `start`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
 //! | `proximal_newton`, `body_factor`, `line_search` | [`ProximalNewton`] |
 //! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
@@ -44,6 +44,7 @@ mod problem;
 mod proximal_newton;
 #[cfg(feature = "qp")]
 mod qp;
+mod raised;
 mod row;
 mod settings;
 mod skyline;

@@ -85,6 +85,11 @@ impl ProximalNewton {
         Ok(ProximalNewton { settings, ..Self::default() })
     }
 
+    /// Whether the last problem solved had the matrix of this one, so that its factor is of use.
+    pub(crate) fn is_loaded(&self, problem: &Problem) -> bool {
+        self.system.is_loaded(problem)
+    }
+
     fn run(
         &mut self,
         problem: &Problem,
@@ -118,7 +123,7 @@ impl ProximalNewton {
 
     fn load(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
         let n = problem.len();
-        self.system.load(problem);
+        let same = self.system.load(problem);
         let columns = self.system.columns();
         for values in [&mut self.acceleration, &mut self.change, &mut self.multiplier, &mut self.force] {
             values.clear();
@@ -128,12 +133,15 @@ impl ProximalNewton {
             values.clear();
             values.resize(columns, 0.0);
         }
-        self.inside.clear();
-        self.inside.resize(n, false);
-        self.factored = None;
+        // The factor stays if only b has changed; from an earlier answer its proximal term is as good as another.
+        if !same || warm.is_none() {
+            self.inside.clear();
+            self.inside.resize(n, false);
+            self.factored = None;
+        }
         self.steps = 0;
         self.factorizations = 0;
-        self.epsilon = if warm.is_some() { WARM_TERM } else { FIRST_TERM };
+        self.epsilon = if warm.is_some() { self.factored.unwrap_or(WARM_TERM) } else { FIRST_TERM };
         let limit = self.settings.start_closed * self.system.scale;
         let lookup = warm.map(|warm| warm.lookup(problem));
         self.guess.clear();
@@ -193,6 +201,7 @@ impl ProximalNewton {
             }
             if changed {
                 self.factorizations += 1;
+                self.factored = None;
                 if !self.factor.factor(&self.system, &self.inside, self.epsilon) {
                     return false;
                 }

@@ -25,6 +25,9 @@ pub struct Settings {
     /// The same for a second attempt, where rows taken for dependent contradict each other and may only be nearly
     /// dependent: a few roundings of 1.
     pub least_dependence: f64,
+    /// What the scaled diagonal of `A`, which is 1, is raised by where contacts contradict each other and are to be solved
+    /// as given: a few roundings, and the backward residual of the answer. Forces are about the contradiction over it.
+    pub raise: f64,
     /// Contradiction between dependent rows, in units of the scale, up to which they are solved in the least-squares
     /// sense; beyond it the problem is infeasible.
     pub inconsistency: f64,
@@ -65,7 +68,8 @@ pub struct Settings {
 /// one; within rounding they can be satisfied by forces of the size of the load.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Contradiction {
-    /// Solve the rows as given if the residual rules allow the forces that takes; otherwise by least squares.
+    /// Solve the rows as given, up to rounding of A, if the residual rules allow the forces that takes; otherwise by
+    /// least squares.
     #[default]
     SolveExactly,
     /// Solve by least squares and report the inconsistency; as given only if the contradiction is larger.
@@ -91,6 +95,7 @@ impl Default for Settings {
             backward_residual: 1e-14,
             dependence: 1e-11,
             least_dependence: 1e-15,
+            raise: 4e-15,
             inconsistency: 1e-8,
             open_tolerance: 1e-13,
             start_closed: 1e-2,
@@ -124,6 +129,7 @@ impl Settings {
             ("backward_residual", self.backward_residual),
             ("dependence", self.dependence),
             ("least_dependence", self.least_dependence),
+            ("raise", self.raise),
             ("inconsistency", self.inconsistency),
             ("open_tolerance", self.open_tolerance),
             ("start_closed", self.start_closed),

@@ -19,6 +19,12 @@ const SUBSTANTIAL: usize = 4;
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
 const MOVING: usize = 50;
 
+/// One in so many closed rows to be opened at once makes a new factor cheaper than taking them out of the old one.
+const MANY: usize = 8;
+
+/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
+const WIDENED: usize = 2;
+
 /// Where a solve begins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Start<'a> {
@@ -137,6 +143,17 @@ impl DualActiveSet {
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }
 
+    /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
+    pub(crate) fn narrow_factor(&mut self) {
+        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
+            && !self.closed.refactor()
+        {
+            self.closed.solve_closed();
+            self.closed.accelerate();
+            self.make_forces_admissible();
+        }
+    }
+
     /// Opens closed rows until no unilateral force is negative. The forces must be those with zero acceleration of the
     /// closed rows, and the accelerations up to date; they are so afterwards.
     pub(crate) fn make_forces_admissible(&mut self) {
@@ -151,9 +168,18 @@ impl DualActiveSet {
             if count == 0 {
                 break;
             }
-            for at in (0..closed.len()).rev() {
-                if pulls(closed, at) {
-                    closed.open_at(at);
+            if count > closed.len() / MANY && closed.proximal == 0.0 && closed.kept == 0 {
+                self.start.clear();
+                self.start.extend(
+                    (0..closed.force.len())
+                        .map(|row| closed.is_closed(row) && (closed.force[row] >= 0.0 || closed.free[row])),
+                );
+                closed.open_unflagged(&self.start);
+            } else {
+                for at in (0..closed.len()).rev() {
+                    if pulls(closed, at) {
+                        closed.open_at(at);
+                    }
                 }
             }
             self.pivots += count;

@@ -29,6 +29,8 @@ pub(crate) struct System {
     /// sqrt(M⁻¹) per column; then Ĵᵀ f̂ with the sum of the absolute terms.
     root: Vec<f64>,
     motion: Vec<[f64; 2]>,
+    /// Ĵᵀ f̂ alone.
+    speed: Vec<f64>,
     /// The matrix that is loaded, to know it again.
     source_rows: SparseMatrix,
     source_mass: Vec<f64>,
@@ -44,18 +46,21 @@ impl System {
         self.b.len()
     }
 
+    /// Whether the matrix of `problem` is the one that is loaded.
+    pub(crate) fn is_loaded(&self, problem: &Problem) -> bool {
+        let (rows, mass, bodies) = source(problem);
+        self.bodies == bodies && self.source_mass == mass && self.source_rows == *rows
+    }
+
     /// Scales `problem`, whose matrix must not be a general one. If only b differs from what is loaded, the rest stays,
     /// the lists of closed rows included, and the answer is true.
     pub(crate) fn load(&mut self, problem: &Problem) -> bool {
-        let (rows, mass, bodies): (_, &[f64], _) = match &problem.matrix {
-            Matrix::Bodies(bodies) => (&bodies.rows, &bodies.inverse_mass, true),
-            Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, &[], false),
-        };
-        let same = self.bodies == bodies && self.source_mass == mass && self.source_rows == *rows;
+        let same = self.is_loaded(problem);
         self.b.clear();
         if same {
             self.b.extend(problem.offset.iter().zip(&self.row_scale).map(|(b, s)| b * (1.0 / s)));
         } else {
+            let (rows, mass, _) = source(problem);
             self.source_rows.clone_from(rows);
             self.source_mass.clear();
             self.source_mass.extend_from_slice(mass);
@@ -106,6 +111,8 @@ impl System {
         self.previous.resize(self.value.len(), NONE);
         self.motion.clear();
         self.motion.resize(bodies.inverse_mass.len(), [0.0; 2]);
+        self.speed.clear();
+        self.speed.resize(bodies.inverse_mass.len(), 0.0);
     }
 
     fn load_matrix(&mut self, matrix: &SparseMatrix, offset: &[f64]) {
@@ -230,6 +237,18 @@ impl System {
         largest
     }
 
+    /// a := Â f + b̂, without its terms, for rows of bodies. Returns whether they are.
+    pub(crate) fn evaluate(&mut self, f: &[f64], a: &mut [f64]) -> bool {
+        if self.bodies {
+            let mut speed = std::mem::take(&mut self.speed);
+            self.push(f, &mut speed);
+            self.pull(&speed, a);
+            a.iter_mut().zip(&self.b).for_each(|(a, b)| *a += b);
+            self.speed = speed;
+        }
+        self.bodies
+    }
+
     fn accelerate_matrix(&self, f: &[f64], a: &mut [f64]) -> f64 {
         let mut largest: f64 = 0.0;
         for (i, out) in a.iter_mut().enumerate() {
@@ -243,6 +262,14 @@ impl System {
             largest = largest.max(terms);
         }
         largest
+    }
+}
+
+/// The matrix and masses of a problem, and whether its rows are those of bodies.
+fn source(problem: &Problem) -> (&SparseMatrix, &[f64], bool) {
+    match &problem.matrix {
+        Matrix::Bodies(bodies) => (&bodies.rows, &bodies.inverse_mass, true),
+        Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, &[], false),
     }
 }
 
