@@ -17,6 +17,9 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         scene.set_duration(duration, "--duration")?;
     }
     let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
+    for warning in world.warnings() {
+        eprintln!("warning: {}: {warning}", options.scene.display());
+    }
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }

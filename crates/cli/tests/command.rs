@@ -285,3 +285,16 @@ fn shapes_that_cannot_be_are_named_with_line_path_and_edge() {
          off by 0.010000000000000009 m"
     );
 }
+
+#[test]
+fn a_tolerance_that_coordinates_do_not_allow_warns_and_runs() {
+    let folder = Folder::new("warns");
+    let scene = folder.write("flight.toml", FLIGHT);
+    let output = halfgap(&["run", &scene, "--json", "--tolerance", "1e-15"]);
+    assert_eq!(output.status.code(), Some(0));
+    let message = folder.plain(&output.stderr);
+    assert!(
+        message.starts_with("warning: flight.toml: tolerance 0.000000000000001 asks for a target gap"),
+        "{message}"
+    );
+}
