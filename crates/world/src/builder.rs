@@ -9,6 +9,7 @@ use halfgap_advance::rigid::{FlightLaw, RigidSettings, RigidSystem};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::{Aabb, Shape};
+use std::collections::BTreeSet;
 
 /// Relative accuracy asked for unless said otherwise.
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;
@@ -240,8 +241,9 @@ impl WorldBuilder {
     }
 
     fn check(&self) -> Result<(), WorldError> {
-        for (index, body) in self.bodies.iter().enumerate() {
-            if self.bodies[..index].iter().any(|other| other.name == body.name) {
+        let mut names = BTreeSet::new();
+        for body in &self.bodies {
+            if !names.insert(body.name.as_str()) {
                 return Err(WorldError::DoubleName { name: body.name.clone() });
             }
             check_body(body)?;
