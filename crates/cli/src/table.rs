@@ -2,11 +2,14 @@
 
 use halfgap::RunResult;
 use std::fmt::Write;
+use std::ops::Range;
 
 /// More bodies than this are not listed one by one; `--json` and `--out` list all.
 const MOST_BODIES: usize = 60;
 /// Longest name that is not cut.
 const LONGEST_NAME: usize = 24;
+/// Sizes, in the unit of the column, that are written without an exponent.
+const PLAIN: Range<f64> = 1e-3..1e5;
 
 /// States, energies and counters.
 pub(crate) fn of_result(result: &RunResult) -> String {
@@ -67,5 +70,5 @@ fn push_summary(text: &mut String, result: &RunResult) {
 /// Ten digits: enough to read, few enough to compare by eye.
 fn number(value: f64) -> String {
     let size = value.abs();
-    if value == 0.0 || (1e-3..1e5).contains(&size) { format!("{value:.9}") } else { format!("{value:.8e}") }
+    if value == 0.0 || PLAIN.contains(&size) { format!("{value:.9}") } else { format!("{value:.8e}") }
 }

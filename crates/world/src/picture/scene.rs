@@ -17,6 +17,8 @@ const NEAR: f64 = 1.5;
 const SURROUNDINGS: f64 = 0.35;
 /// More points of a trail than this are thinned out.
 const LONGEST_TRAIL: usize = 4000;
+/// The time in the title is rounded to this [s].
+const TITLE_TIME_STEP: f64 = 1e-3;
 
 /// Draws the bodies of a world as they are in a frame of its recording; the trails are those of the whole recording.
 #[must_use]
@@ -67,7 +69,7 @@ fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
     let title = TextStyle { size: 18.0, anchor: "start", color: "#22272b" };
     svg.text((20.0, 28.0), title, &recording.title);
     let subtitle = TextStyle { size: 13.0, anchor: "start", color: "#6b7278" };
-    svg.text((20.0, 47.0), subtitle, &format!("t = {} s", label(frame.time, 1e-3)));
+    svg.text((20.0, 47.0), subtitle, &format!("t = {} s", label(frame.time, TITLE_TIME_STEP)));
 }
 
 fn draw_trails(svg: &mut Svg, recording: &Recording, view: &View) {

@@ -1,5 +1,10 @@
 //! Round numbers for axes and scale bars.
 
+use std::ops::Range;
+
+/// Sizes of numbers that a label writes without an exponent.
+const PLAIN: Range<f64> = 1e-4..1e6;
+
 /// A round step (1, 2 or 5 times a power of ten) of which about `count` fit into `range`.
 pub(super) fn round_step(range: f64, count: f64) -> f64 {
     let rough = range / count;
@@ -36,7 +41,7 @@ pub(super) fn label(value: f64, step: f64) -> String {
         return "0".to_owned();
     }
     let size = value.abs();
-    if (1e-4..1e6).contains(&size) {
+    if PLAIN.contains(&size) {
         let decimals = (-step.abs().log10().floor()).clamp(0.0, 12.0) as usize;
         format!("{value:.decimals$}")
     } else {
