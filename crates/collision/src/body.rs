@@ -7,6 +7,16 @@ use halfgap_geometry::Shape;
 pub struct BodyId(pub u32);
 
 impl BodyId {
+    /// The immovable background, to which connectors may tie a body: no body of the world, with the pose of the origin.
+    pub const WORLD: BodyId = BodyId(u32::MAX);
+
+    /// True for the background.
+    #[must_use]
+    #[inline]
+    pub fn is_world(self) -> bool {
+        self == Self::WORLD
+    }
+
     /// The index as a number to look up with.
     #[must_use]
     #[inline]

@@ -36,6 +36,10 @@ pub struct Moving {
 }
 
 impl Moving {
+    /// At rest at the origin: the immovable background.
+    pub const BACKGROUND: Moving =
+        Moving { pose: Pose::IDENTITY, velocity: DVec2::ZERO, angular_velocity: 0.0 };
+
     /// Velocity [m/s] of the material point with the given arm from the centre of mass [m].
     #[must_use]
     #[inline]
