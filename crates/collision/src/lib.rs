@@ -36,10 +36,11 @@ mod zone;
 
 pub use body::{Body, BodyId};
 pub use broad::BroadPhase;
-pub use detect::{Moment, detect_pair};
+pub use detect::{Moment, detect_features_of_pair, detect_pair};
 pub use estimate::{EstimatePoint, estimate_target_time};
 pub use first_contact::{
-    FirstContact, MovingShape, Search, SearchSettings, disc_contact, first_contact, search_step,
+    FeatureRule, FirstContact, MovingShape, PairSearch, Search, SearchSettings, disc_contact, first_contact,
+    search_step,
 };
 pub use flight::Flight;
 pub use kinematics::{Arms, GapKinematics, Spin};
