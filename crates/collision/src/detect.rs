@@ -122,26 +122,14 @@ pub(crate) fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances)
 /// True if the contact lies within both features, or outside by so little that it cannot be told.
 ///
 /// A vertex outside of its normal cone is not the nearest point of its body: its neighbour along an edge is. While the
-/// neighbour is nearer by less than the accuracy, both touch: so a block lands flat on two corners.
+/// neighbour is nearer by less than the accuracy, both touch: so a block lands flat on two corners. An angle outside of a
+/// range makes up the accuracy over the feature's lever.
 fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &Tolerances) -> bool {
     let excess = if sample.primary_is_a {
         [sample.excess_primary, sample.excess_normal]
     } else {
         [sample.excess_normal, sample.excess_primary]
     };
-    let leans = |side: usize| excess[side] <= lean_slack(sides[side].0, sides[side].1, tolerances);
+    let leans = |side: usize| excess[side] <= tolerances.accuracy / sides[side].0.lever(sides[side].1);
     sample.overrun <= tolerances.accuracy && leans(0) && leans(1)
-}
-
-/// Angle [rad] by which a contact may lie outside of a feature's range: over the shorter edge of a vertex, or over the
-/// radius of an arc, it makes up the accuracy.
-fn lean_slack(shape: &Shape, feature: FeatureId, tolerances: &Tolerances) -> f64 {
-    if let Some(radius) = shape.feature(feature).radius().filter(|&radius| radius != 0.0) {
-        return tolerances.accuracy / radius.abs();
-    }
-    let source = shape.source(feature);
-    let edges = shape.paths()[source.path as usize].edges();
-    let (after, count) = (source.edge as usize, edges.len());
-    let shorter = edges[after].length().min(edges[(after + count - 1) % count].length());
-    tolerances.accuracy / shorter
 }

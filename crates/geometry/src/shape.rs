@@ -131,6 +131,22 @@ impl Shape {
         &self.features[id.0 as usize]
     }
 
+    /// Length [m] over which an angle outside of a feature's range becomes a distance: an arc's radius, the shorter of the
+    /// two edges at a vertex, a line's length.
+    #[must_use]
+    pub fn lever(&self, feature: FeatureId) -> f64 {
+        match self.feature(feature) {
+            Feature::Line(line) => line.end - line.start,
+            Feature::Round(round) if round.radius != 0.0 => round.radius.abs(),
+            Feature::Round(_) => {
+                let source = self.source(feature);
+                let edges = self.paths()[source.path as usize].edges();
+                let (after, count) = (source.edge as usize, edges.len());
+                edges[after].length().min(edges[(after + count - 1) % count].length())
+            }
+        }
+    }
+
     /// Which part of the outline a feature is.
     #[must_use]
     pub fn source(&self, id: FeatureId) -> FeatureSource {

@@ -4,6 +4,7 @@
 //! many neighbours make it shrink, few make it grow, between bounds that depend on the body's size.
 
 use super::flyer::Flyer;
+use super::path::Path;
 use crate::time::Time;
 use halfgap_collision::{Motion, Polynomial, first_closing_time};
 use halfgap_geometry::Aabb;
@@ -34,7 +35,7 @@ impl Room {
 
     /// The box around the body at a time, with the room that it has.
     pub(crate) fn fat_box(&self, flyer: &Flyer, time: Time) -> Aabb {
-        if flyer.flight().is_at_rest() {
+        if flyer.is_at_rest() {
             return flyer.body().shape.bounds_at(&flyer.moving_at(time).pose).grown(self.skin);
         }
         Aabb::around_disc(flyer.state_at(time).position, self.reach + self.margin + self.skin)
@@ -51,7 +52,7 @@ impl Room {
 
     /// A time before which the body surely stays in the given box; `None` if it stays for ever.
     pub(crate) fn stays_until(&self, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
-        if flyer.flight().is_at_rest() {
+        if flyer.is_at_rest() {
             return None;
         }
         let core = fat_box.grown(-(self.reach + self.skin));
@@ -60,13 +61,18 @@ impl Room {
             return Some(time);
         }
         let offset = flyer.offset(time);
-        match flyer.flight().polynomial_from(offset) {
-            Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
-            None => {
-                let position = flyer.flight().state_at(offset).position;
-                let slack = (position - core.min).min(core.max - position).min_element().max(0.0);
-                Some(time.plus(slack / flyer.flight().top_speed(offset)))
-            }
+        let slack = || {
+            let position = flyer.path().state_at(offset).position;
+            (position - core.min).min(core.max - position).min_element().max(0.0)
+        };
+        match flyer.path() {
+            Path::Flight(flight) => match flight.polynomial_from(offset) {
+                Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
+                None => Some(time.plus(slack() / flight.top_speed(offset))),
+            },
+            // What comes after the segment is another question.
+            Path::Dense(dense) if core.contains(&dense.center_box()) => None,
+            Path::Dense(dense) => Some(time.plus(slack() / dense.top_speed())),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Why the advance of rigid bodies had to stop.
 
 use halfgap_collision::BodyId;
-use halfgap_contact::ImpactError;
+use halfgap_contact::{ImpactError, SolveError};
 
 /// Two bodies, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,26 +16,37 @@ pub struct Between {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdvanceError {
-    /// Two bodies would stay in contact.
-    #[error(
-        "at {time} s bodies {} and {} come to rest on each other: resting contacts are not supported yet",
-        between.primary.0, between.normal.0
-    )]
-    RestingContact {
-        /// When [s].
-        time: f64,
-        /// Which bodies.
-        between: Between,
-    },
     /// An impact cannot be resolved.
     #[error("at {time} s, between bodies {bodies:?}: {source}")]
     Impact {
         /// When [s].
         time: f64,
-        /// Indices of the bodies that take part.
-        bodies: Vec<u32>,
+        /// The bodies that take part.
+        bodies: Vec<BodyId>,
         /// Why not.
         source: ImpactError,
+    },
+    /// The forces of contacts and connectors cannot be found.
+    #[error("at {time} s, between bodies {bodies:?}: {source}")]
+    Contacts {
+        /// When [s].
+        time: f64,
+        /// The bodies that take part.
+        bodies: Vec<BodyId>,
+        /// Why not.
+        source: Box<SolveError>,
+    },
+    /// The step size of the integrator has fallen to nothing: forces grow beyond all bounds or are not numbers.
+    #[error("at {time} s the step of bodies {bodies:?} fell to {step:e} s; forces on them: {laws:?}")]
+    StepCollapsed {
+        /// When [s].
+        time: f64,
+        /// Length of the step [s].
+        step: f64,
+        /// The bodies that share the step.
+        bodies: Vec<BodyId>,
+        /// Names of the force laws that act on them.
+        laws: Vec<String>,
     },
     /// The same two bodies collide again and again without any time going by.
     #[error(

@@ -1,8 +1,10 @@
-//! One body with the segment that it flies.
+//! One body with the segment along which it moves.
 
+use super::path::{DensePath, Path};
+use crate::ode::SegmentPolynomial;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{Body, BodyState, Flight, Motion, Moving, Spin};
+use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
 use halfgap_geometry::{DirectionRange, Feature, Shape};
 use std::sync::Arc;
 
@@ -17,7 +19,15 @@ pub struct FlightLaw {
     pub angular_rate: f64,
 }
 
-/// A body and its segment: a flight and when it started.
+impl FlightLaw {
+    /// True if the body is damped.
+    #[must_use]
+    pub fn is_damped(&self) -> bool {
+        self.linear_rate != 0.0 || self.angular_rate != 0.0
+    }
+}
+
+/// A body and its segment: its motion and when that started.
 #[derive(Clone, Debug)]
 pub struct Flyer {
     start: Time,
@@ -28,6 +38,9 @@ pub struct Flyer {
     law: FlightLaw,
     /// Shared with clones, and away from what every prediction reads.
     body: Arc<Body>,
+    /// The motion, while it is integrated.
+    is_integrated: bool,
+    dense: Option<Box<DensePath>>,
 }
 
 impl Flyer {
@@ -40,7 +53,16 @@ impl Flyer {
             Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), disc_radius(&body.shape));
-        Self { start: time, flight, reach, disc, law, body: Arc::new(body) }
+        Self {
+            start: time,
+            flight,
+            reach,
+            disc,
+            law,
+            body: Arc::new(body),
+            is_integrated: false,
+            dense: None,
+        }
     }
 
     /// The body.
@@ -49,7 +71,7 @@ impl Flyer {
         &self.body
     }
 
-    /// What acts on it.
+    /// What acts on it in free flight.
     #[must_use]
     pub fn law(&self) -> &FlightLaw {
         &self.law
@@ -58,23 +80,30 @@ impl Flyer {
     /// State at a time of the present segment.
     #[must_use]
     pub fn state_at(&self, time: Time) -> BodyState {
-        self.flight.state_at(self.offset(time))
+        self.path().state_at(self.offset(time))
+    }
+
+    /// State at the start of the present segment, if it is a flight.
+    #[must_use]
+    pub fn flight_start(&self) -> Option<&BodyState> {
+        (!self.is_integrated).then(|| self.flight.start())
     }
 
     pub(crate) fn moving_at(&self, time: Time) -> Moving {
-        self.flight.moving_at(self.offset(time))
+        self.path().moving_at(self.offset(time))
     }
 
-    /// Accelerations at a time [m/s^2, rad/s^2].
-    pub(crate) fn accelerations_at(&self, time: Time) -> Spin {
-        let offset = self.offset(time);
-        Spin {
-            linear: self.flight.acceleration_at(offset),
-            angular: self.flight.angular_acceleration_at(offset),
+    /// The present motion.
+    #[inline]
+    pub(crate) fn path(&self) -> Path<'_> {
+        match &self.dense {
+            Some(dense) if self.is_integrated => Path::Dense(dense),
+            _ => Path::Flight(&self.flight),
         }
     }
 
     /// Offset [s] of a time in the present segment.
+    #[inline]
     pub(crate) fn offset(&self, time: Time) -> f64 {
         time.since(self.start)
     }
@@ -88,8 +117,15 @@ impl Flyer {
         self.disc
     }
 
-    pub(crate) fn flight(&self) -> &Flight {
-        &self.flight
+    /// The motion in closed form, if it has one.
+    #[inline]
+    pub(crate) fn flight(&self) -> Option<&Flight> {
+        (!self.is_integrated).then_some(&self.flight)
+    }
+
+    /// True if the body neither moves nor is about to.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        !self.is_integrated && self.flight.is_at_rest()
     }
 
     /// Cuts the segment at a time and starts another with changed velocities.
@@ -100,8 +136,21 @@ impl Flyer {
             angular_velocity: state.angular_velocity + spin_change,
             ..state
         };
+        self.fly_from(time, state);
+    }
+
+    /// Starts a flight from a state at a time.
+    pub(crate) fn fly_from(&mut self, time: Time, state: BodyState) {
         self.start = time;
+        self.is_integrated = false;
         self.flight = Flight::new(state, self.law.acceleration, self.law.linear_rate, self.law.angular_rate);
+    }
+
+    /// Starts a segment that was integrated: x, y, angle.
+    pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3]) {
+        self.start = start;
+        self.is_integrated = true;
+        self.dense.get_or_insert_default().set(polynomials);
     }
 }
 

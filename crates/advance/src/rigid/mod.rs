@@ -1,18 +1,43 @@
-//! Rigid bodies in free flight: segments in closed form, contacts predicted pair by pair, impacts located at their time.
+//! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by pair,
+//! events located at their time.
 //!
-//! `flyer` is one body with its segment, `boxes` its room to move in the broad phase, `pairs` the predictions of pairs
-//! that are near each other, `impacts` what happens when one comes true, `law` what a force law is, and `system` ties them to the event loop.
+//! What moves: `flyer` is one body with its segment, `path` its motion along it; `law` is what a force law is, `rows` are
+//! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
+//! motion, `segment` one step of them, `watch` (with `crossing`) what ends it early.
+//!
+//! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
+//! contact; `events` handles what comes true: `region` collects the bodies that touch, `groups` cuts and makes groups,
+//! `impacts` applies impulses, `settle` finds what is held, `storms` ends what does not end by itself. `ledger` keeps the
+//! energy's books, and `system` ties all to the event loop.
 
 mod boxes;
+mod connectors;
+mod crossing;
+mod dynamics;
 mod error;
+mod events;
 mod flyer;
+mod group;
+mod groups;
 mod impacts;
 mod law;
+mod ledger;
 mod pairs;
+mod path;
+mod predictions;
+mod region;
+mod rows;
+mod segment;
+mod settle;
+mod storms;
 mod system;
+mod watch;
 
+pub use dynamics::ExtraAcceleration;
 pub use error::{AdvanceError, Between};
 pub use flyer::{FlightLaw, Flyer};
 pub use impacts::{ImpactReport, RowReport};
 pub use law::{ForceLaw, Snapshot, Wrench, Wrenches};
-pub use system::{Counts, RigidSettings, RigidSystem};
+pub use ledger::Ledger;
+pub use segment::StepControl;
+pub use system::{Counts, RigidParts, RigidSettings, RigidSystem};

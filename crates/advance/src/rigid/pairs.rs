@@ -1,7 +1,8 @@
 //! Predictions of pairs of bodies whose boxes overlap: when their next contact is, or until when there is none.
 
 use crate::time::Time;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, FeatureRule};
+use halfgap_geometry::FeatureId;
 
 /// Index of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -10,8 +11,8 @@ pub(crate) struct PairId(pub(crate) u32);
 /// What is known of a pair's next contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Prediction {
-    /// A contact at this time.
-    Contact(Time),
+    /// A contact at this time, of these features.
+    Contact(Time, [FeatureId; 2]),
     /// No contact before this time, at which the search goes on.
     SearchOn(Time),
     /// No contact before one of the bodies leaves its box.
@@ -36,6 +37,8 @@ pub(crate) struct Pair {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
+    /// Feature pairs that are searched otherwise, of each pair.
+    rules: Vec<Vec<FeatureRule>>,
     free: Vec<PairId>,
     of_body: Vec<Vec<PairId>>,
     /// Fixed bodies keep no list: nothing ever changes their motion, and theirs would be the longest.
@@ -53,6 +56,15 @@ impl Pairs {
 
     pub(crate) fn get_mut(&mut self, id: PairId) -> &mut Pair {
         &mut self.pairs[id.0 as usize]
+    }
+
+    /// Rules for single pairs of features.
+    pub(crate) fn rules(&self, id: PairId) -> &[FeatureRule] {
+        &self.rules[id.0 as usize]
+    }
+
+    pub(crate) fn rules_mut(&mut self, id: PairId) -> &mut Vec<FeatureRule> {
+        &mut self.rules[id.0 as usize]
     }
 
     /// Pairs of a body that is not fixed, in an order that depends on the past alone.
@@ -79,10 +91,12 @@ impl Pairs {
         let id = match self.free.pop() {
             Some(id) => {
                 *self.get_mut(id) = pair;
+                self.rules_mut(id).clear();
                 id
             }
             None => {
                 self.pairs.push(pair);
+                self.rules.push(Vec::new());
                 PairId(
                     u32::try_from(self.pairs.len() - 1)
                         .expect("pairs of 32-bit bodies that are near each other"),

@@ -1,30 +1,32 @@
-//! Bodies in free flight as an event-driven system.
+//! Rigid bodies as an event-driven system.
 //!
-//! Three kinds of events: a body leaves its box, a pair's search goes on, two bodies come into contact. Between events
-//! nothing is computed; an event touches only its bodies and the pairs near them.
+//! Kinds of events: a body leaves its box, a pair's search goes on, two bodies come into contact, a group's segment ends.
+//! Between events nothing is computed; an event touches only its bodies and what is near them.
 
 use super::boxes::Room;
-use super::error::{AdvanceError, Between};
+use super::dynamics::{ExtraAcceleration, Stage};
+use super::error::AdvanceError;
+use super::events::EventWork;
 use super::flyer::{FlightLaw, Flyer};
-use super::impacts::{ImpactReport, ImpactWork};
-use super::pairs::{Pair, PairId, Pairs, Prediction};
+use super::groups::Groups;
+use super::impacts::ImpactReport;
+use super::law::{ForceLaw, Snapshot};
+use super::ledger::Ledger;
+use super::pairs::{PairId, Pairs, Prediction};
+use super::rows::Mechanism;
+use super::segment::StepControl;
+use super::storms::Recent;
+use crate::ode::{Method, Stepper};
 use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
 use halfgap_collision::{
-    Body, BodyId, BodyState, BroadPhase, Flight, MovingShape, Search, SearchSettings, Tolerances,
-    disc_contact, search_step,
+    Body, BodyId, BodyState, BroadPhase, Connector, ConnectorId, Moving, SearchSettings, Tolerances,
 };
 use halfgap_contact::{ImpactLaw, ImpactOrder};
+use std::sync::Arc;
 
-/// A pair may collide so many times without time going by before the advance is stuck.
-const MOST_REPEATS: u32 = 100;
-/// One search looks at most this far ahead [s], then goes on: bounds over the span stay finite.
-const LONGEST_SPAN: f64 = 1e6;
-/// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
-const SAME_TIME: f64 = 4.0;
-
-/// How contacts are judged and impacts resolved.
+/// How contacts are judged, impacts resolved, and motions integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidSettings {
     /// The thresholds of touching.
@@ -37,6 +39,18 @@ pub struct RigidSettings {
     pub collisions: bool,
     /// Limits of the search for contacts.
     pub search: SearchSettings,
+    /// The integrator of bodies that are not in free flight.
+    pub method: Method,
+    /// How its steps are chosen.
+    pub steps: StepControl,
+    /// The ends of steps are moved onto the held rows.
+    pub projection: bool,
+    /// Accelerations against the errors of held rows, if any.
+    pub extra: Option<ExtraAcceleration>,
+    /// Resting contacts carry forces; connectors always do.
+    pub contact_forces: bool,
+    /// Time [s] that forces take to make `velocity_tol`: more events than it can hold are ended.
+    pub resolution_time: f64,
 }
 
 /// What was done so far.
@@ -48,12 +62,18 @@ pub struct Counts {
     pub events: u64,
     /// Impacts resolved.
     pub impacts: u64,
-    /// Segments cut short by an impact.
+    /// Segments cut short by an event.
     pub backups: u64,
-    /// Complementarity problems solved.
+    /// Complementarity problems solved, and solves for the forces of held rows.
     pub contact_solves: u64,
-    /// Smallest gap [m] seen at an impact.
+    /// Evaluations of forces by the integrator.
+    pub evaluations: u64,
+    /// Storms of impacts that were ended without elasticity.
+    pub storms: u64,
+    /// Smallest gap [m] seen.
     pub smallest_gap: Option<f64>,
+    /// Largest error of a held gap [m] seen.
+    pub largest_row_error: Option<f64>,
 }
 
 impl Counts {
@@ -62,62 +82,102 @@ impl Counts {
     }
 }
 
-/// Rigid bodies in free flight with impacts.
+/// What a system is made of.
+#[derive(Clone, Debug, Default)]
+pub struct RigidParts {
+    /// Bodies with what acts on them in free flight, and their states at the start.
+    pub bodies: Vec<(Body, FlightLaw, BodyState)>,
+    /// What ties them.
+    pub connectors: Vec<Connector>,
+    /// Forces that free flight does not know.
+    pub laws: Vec<Arc<dyn ForceLaw>>,
+    /// Pairs that pass through each other.
+    pub excluded: Vec<(BodyId, BodyId)>,
+}
+
+/// Rigid bodies that fly, collide, rest on each other, and hang together.
 #[derive(Clone, Debug)]
 pub struct RigidSystem {
     pub(crate) settings: RigidSettings,
     pub(crate) counts: Counts,
     pub(crate) pairs: Pairs,
-    flyers: Vec<Flyer>,
-    rooms: Vec<Room>,
+    pub(crate) flyers: Vec<Flyer>,
+    pub(crate) connectors: Vec<Connector>,
+    pub(crate) connectors_of: Vec<Vec<ConnectorId>>,
+    pub(crate) laws: Vec<Arc<dyn ForceLaw>>,
+    laws_of: Vec<Vec<usize>>,
+    /// Whether each law has a potential.
+    pub(crate) has_potential: Vec<bool>,
+    pub(crate) rooms: Vec<Room>,
     /// Until when each body surely stays in its box; `None` for ever.
-    stays: Vec<Option<Time>>,
-    broad: BroadPhase,
+    pub(crate) stays: Vec<Option<Time>>,
+    pub(crate) broad: BroadPhase,
     /// Pairs that never collide, the lesser id first, sorted.
-    excluded: Vec<(BodyId, BodyId)>,
-    queue: EventQueue,
-    now: Time,
-    work: ImpactWork,
-    last_impact: ImpactReport,
-    touched: Vec<PairId>,
-    neighbours: Vec<BodyId>,
+    pub(crate) excluded: Vec<(BodyId, BodyId)>,
+    pub(crate) queue: EventQueue,
+    pub(crate) now: Time,
+    pub(crate) groups: Groups,
+    pub(crate) recent: Vec<Recent>,
+    pub(crate) ledger: Ledger,
+    pub(crate) work: EventWork,
+    pub(crate) stage: Stage,
+    pub(crate) stepper: Stepper,
+    pub(crate) scales: Vec<f64>,
+    pub(crate) last_impact: ImpactReport,
+    pub(crate) touched: Vec<PairId>,
+    pub(crate) neighbours: Vec<BodyId>,
 }
 
 impl RigidSystem {
-    /// The system of the given bodies, laws and states at a time; pairs in `excluded` pass through each other.
-    #[must_use]
-    pub fn new(
-        bodies: Vec<(Body, FlightLaw, BodyState)>,
-        excluded: &[(BodyId, BodyId)],
-        settings: RigidSettings,
-        start: Time,
-    ) -> Self {
+    /// The system of the given parts at a time.
+    ///
+    /// # Errors
+    /// The forces at the start cannot be found.
+    pub fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Result<Self, AdvanceError> {
+        let RigidParts { bodies, connectors, laws, excluded } = parts;
         let flyers: Vec<Flyer> =
             bodies.into_iter().map(|(body, law, state)| Flyer::new(body, law, state, start)).collect();
         let skin = settings.tolerances.distance_tol();
-        let rooms = flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect();
         let mut excluded: Vec<_> = excluded.iter().map(|&(a, b)| (a.min(b), a.max(b))).collect();
         excluded.sort_unstable();
+        let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
+        let snapshot = Snapshot::new(start.seconds(), &movings);
+        let count = flyers.len();
         let mut system = Self {
             settings,
-            counts: Counts { segments: flyers.len() as u64, ..Counts::default() },
+            counts: Counts { segments: count as u64, ..Counts::default() },
             pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
-            stays: vec![None; flyers.len()],
-            flyers,
-            rooms,
+            rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
+            stays: vec![None; count],
             broad: BroadPhase::new(),
             excluded,
             queue: EventQueue::new(),
             now: start,
-            work: ImpactWork::default(),
+            groups: Groups::new(count),
+            recent: vec![Recent::default(); count],
+            ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
+            has_potential: laws.iter().map(|law| law.potential(&snapshot).is_some()).collect(),
+            connectors_of: index_by_body(count, connectors.iter().map(|connector| connector.bodies().to_vec()))
+                .into_iter()
+                .map(|list| list.into_iter().map(|index| ConnectorId(u32::try_from(index).unwrap_or(u32::MAX))).collect())
+                .collect(),
+            laws_of: index_by_body(count, laws.iter().map(|law| law.bodies().to_vec())),
+            connectors,
+            laws,
+            flyers,
+            work: EventWork::default(),
+            stage: Stage::new(movings),
+            stepper: Stepper::new(settings.method),
+            scales: Vec::new(),
             last_impact: ImpactReport::default(),
             touched: Vec::new(),
             neighbours: Vec::new(),
         };
         if settings.collisions {
-            system.set_up();
+            system.set_up_boxes();
         }
-        system
+        system.establish()?;
+        Ok(system)
     }
 
     /// How many bodies there are.
@@ -137,8 +197,9 @@ impl RigidSystem {
 
     /// What was done so far.
     #[must_use]
-    pub fn counts(&self) -> &Counts {
-        &self.counts
+    pub fn counts(&self) -> Counts {
+        let (evaluations, solves) = (self.stage.evaluations, self.stage.solves);
+        Counts { evaluations, contact_solves: self.counts.contact_solves + solves, ..self.counts }
     }
 
     /// How contacts are judged.
@@ -159,193 +220,87 @@ impl RigidSystem {
         self.now
     }
 
+    /// The force laws.
+    #[must_use]
+    pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
+        &self.laws
+    }
+
     pub(crate) fn flyer_mut(&mut self, body: BodyId) -> &mut Flyer {
         self.counts.segments += 1;
         self.counts.backups += 1;
         &mut self.flyers[body.index()]
     }
 
-    fn bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
         (0..u32::try_from(self.flyers.len()).unwrap_or(u32::MAX)).map(BodyId)
     }
 
-    fn set_up(&mut self) {
-        for body in self.bodies() {
-            self.place_box(body);
-        }
-        let movable: Vec<BodyId> =
-            self.bodies().filter(|&body| !self.flyer(body).body().is_fixed()).collect();
-        for &body in &movable {
-            self.find_neighbours(body);
-        }
-        // Each pair once, when all are known: a prediction taken up again would go on from the contact that it found.
-        self.predict_all_of(&movable, true);
+    pub(crate) fn is_movable(&self, body: BodyId) -> bool {
+        !body.is_world() && !self.flyer(body).body().is_fixed()
     }
 
-    fn place_box(&mut self, body: BodyId) {
-        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
-        let fat_box = room.fat_box(flyer, self.now);
-        self.broad.set(body, fat_box);
-        self.renew_stay(body);
+    /// Laws that act on a body.
+    pub(crate) fn laws_of(&self, body: BodyId) -> &[usize] {
+        &self.laws_of[body.index()]
     }
 
-    /// Predicts anew when the body leaves its box.
-    fn renew_stay(&mut self, body: BodyId) {
-        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
-        let stay = self.broad.bounds(body).and_then(|fat_box| room.stays_until(flyer, fat_box, self.now));
-        self.stays[body.index()] = stay;
-        match stay {
-            Some(time) => self.queue.set(SourceId(body.0), time),
-            None => self.queue.clear(SourceId(body.0)),
+    pub(crate) fn mechanism(&self) -> Mechanism<'_> {
+        Mechanism {
+            flyers: &self.flyers,
+            connectors: &self.connectors,
+            tolerances: &self.settings.tolerances,
         }
     }
 
-    /// Pairs the body with all whose boxes overlap its own, and with no others.
-    fn find_neighbours(&mut self, body: BodyId) {
-        let Some(fat_box) = self.broad.bounds(body).copied() else { return };
-        let mut near = std::mem::take(&mut self.neighbours);
-        near.clear();
-        self.broad.visit_overlapping(&fat_box, &mut |other| near.push(other));
-        near.retain(|&other| other != body && self.may_collide(body, other));
-        near.sort_unstable();
-        self.touched.clear();
-        self.touched.extend_from_slice(self.pairs.of_body(body));
-        for index in 0..self.touched.len() {
-            let pair = self.touched[index];
-            let [a, b] = self.pairs.get(pair).bodies;
-            let other = if a == body { b } else { a };
-            if near.binary_search(&other).is_err() {
-                self.queue.clear(self.pair_source(pair));
-                self.pairs.remove(pair);
+    fn count_u32(&self) -> u32 {
+        u32::try_from(self.flyers.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Sources of events, in this order: bodies that leave their boxes, groups by leader, connectors, pairs.
+    pub(crate) fn group_source(&self, leader: BodyId) -> SourceId {
+        SourceId(self.count_u32().saturating_add(leader.0))
+    }
+
+    fn first_connector_source(&self) -> u32 {
+        self.count_u32().saturating_mul(2)
+    }
+
+    fn first_pair_source(&self) -> u32 {
+        self.first_connector_source() + u32::try_from(self.connectors.len()).unwrap_or(u32::MAX)
+    }
+
+    pub(crate) fn pair_source(&self, pair: PairId) -> SourceId {
+        SourceId(self.first_pair_source().saturating_add(pair.0))
+    }
+
+    fn handle(&mut self, source: SourceId) -> Result<bool, AdvanceError> {
+        if let Some(pair) = source.0.checked_sub(self.first_pair_source()).map(PairId) {
+            if let Prediction::Contact(_, features) = self.pairs.get(pair).prediction {
+                return self.handle_contact(pair, features);
             }
+            self.predict(pair);
+            return Ok(false);
         }
-        for &other in &near {
-            if self.pairs.between(body, other).is_none() {
-                self.pairs.add(body, other, self.now);
-            }
+        match source.0.checked_sub(self.count_u32()).map(BodyId) {
+            Some(leader) => self.handle_group(leader)?,
+            None => self.leave_box(BodyId(source.0)),
         }
-        self.rooms[body.index()].adapt(near.len());
-        self.neighbours = near;
-    }
-
-    fn may_collide(&self, a: BodyId, b: BodyId) -> bool {
-        let both_fixed = self.flyer(a).body().is_fixed() && self.flyer(b).body().is_fixed();
-        !both_fixed && self.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
-    }
-
-    fn pair_source(&self, pair: PairId) -> SourceId {
-        SourceId(u32::try_from(self.flyers.len()).unwrap_or(u32::MAX).saturating_add(pair.0))
-    }
-
-    /// Searches on for the pair's next contact, from where it is known to be clear, while both stay in their boxes.
-    fn predict(&mut self, pair: PairId) {
-        let Pair { bodies: [a, b], clear, .. } = *self.pairs.get(pair);
-        let until = match (self.stays[a.index()], self.stays[b.index()]) {
-            (Some(a), Some(b)) => a.min(b),
-            (Some(only), None) | (None, Some(only)) => only,
-            (None, None) => Time::NEVER,
-        };
-        let from = clear.max(self.now);
-        let prediction = if until <= from {
-            Prediction::Quiet
-        } else {
-            let span = until.since(from).min(LONGEST_SPAN);
-            match self.search([a, b], from, span) {
-                Search::Contact(contact) => Prediction::Contact(from.plus(contact.time)),
-                Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => Prediction::Quiet,
-                Search::NoneBefore(time) => Prediction::SearchOn(from.plus(time)),
-            }
-        };
-        let source = self.pair_source(pair);
-        let entry = self.pairs.get_mut(pair);
-        entry.prediction = prediction;
-        match prediction {
-            Prediction::Contact(time) | Prediction::SearchOn(time) => {
-                entry.clear = time;
-                self.queue.set(source, time);
-            }
-            Prediction::Quiet => {
-                entry.clear = until.max(from);
-                self.queue.clear(source);
-            }
-        }
-    }
-
-    /// Searches for a contact of two bodies in the given span [s] from a time on.
-    fn search(&self, [a, b]: [BodyId; 2], from: Time, span: f64) -> Search {
-        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
-        let tolerances = &self.settings.tolerances;
-        if let (Some(radius_a), Some(radius_b)) = (flyer_a.disc(), flyer_b.disc()) {
-            let side_a = (flyer_a.flight(), flyer_a.offset(from), radius_a);
-            let side_b = (flyer_b.flight(), flyer_b.offset(from), radius_b);
-            if let Some(found) = disc_contact(side_a, side_b, span, tolerances) {
-                return found;
-            }
-        }
-        let (side_a, side_b) = (moving_shape(flyer_a, from), moving_shape(flyer_b, from));
-        search_step(&side_a, &side_b, 0.0, span, tolerances, &self.settings.search)
-    }
-
-    fn leave_box(&mut self, body: BodyId) {
-        self.place_box(body);
-        self.find_neighbours(body);
-        self.predict_all_of(&[body], false);
-    }
-
-    /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
-    fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
-        let mut touched = std::mem::take(&mut self.touched);
-        touched.clear();
-        touched.extend(bodies.iter().flat_map(|&body| self.pairs.of_body(body)));
-        touched.sort_unstable();
-        touched.dedup();
-        for &pair in &touched {
-            if changed {
-                self.pairs.get_mut(pair).clear = self.now;
-                self.predict(pair);
-            } else if self.pairs.get(pair).prediction == Prediction::Quiet {
-                self.predict(pair);
-            }
-        }
-        self.touched = touched;
-    }
-
-    fn handle_contact(&mut self, pair: PairId) -> Result<Option<Time>, AdvanceError> {
-        let bodies = self.pairs.get(pair).bodies;
-        self.note_repeat(pair)?;
-        let mut work = std::mem::take(&mut self.work);
-        let mut report = std::mem::take(&mut self.last_impact);
-        let outcome = self.resolve_impact(&mut work, &mut report, bodies, self.now);
-        self.last_impact = report;
-        if outcome.is_ok() {
-            self.counts.impacts += 1;
-            for &body in work.group() {
-                self.renew_stay(body);
-            }
-            self.predict_all_of(work.group(), true);
-        }
-        self.work = work;
-        Ok(outcome?.then_some(self.now))
-    }
-
-    fn note_repeat(&mut self, pair: PairId) -> Result<(), AdvanceError> {
-        let now = self.now;
-        let entry = self.pairs.get_mut(pair);
-        let same_time = SAME_TIME * f64::EPSILON * now.seconds().abs();
-        let is_repeat = entry.last_contact.is_some_and(|last| now.since(last) <= same_time);
-        entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
-        entry.last_contact = Some(now);
-        let (events, [primary, normal]) = (entry.repeats, entry.bodies);
-        if events > MOST_REPEATS {
-            let between = Between { primary, normal };
-            return Err(AdvanceError::Stuck { time: now.seconds(), between, events });
-        }
-        Ok(())
+        Ok(false)
     }
 }
 
-fn moving_shape(flyer: &Flyer, from: Time) -> MovingShape<'_, Flight> {
-    MovingShape { shape: &flyer.body().shape, motion: flyer.flight(), offset: flyer.offset(from) }
+/// For each body the places of the lists that name it.
+fn index_by_body(bodies: usize, lists: impl Iterator<Item = Vec<BodyId>>) -> Vec<Vec<usize>> {
+    let mut of_body = vec![Vec::new(); bodies];
+    for (index, list) in lists.enumerate() {
+        for body in list.into_iter().filter(|body| !body.is_world()) {
+            if of_body[body.index()].last() != Some(&index) {
+                of_body[body.index()].push(index);
+            }
+        }
+    }
+    of_body
 }
 
 impl EventDriven for RigidSystem {
@@ -361,15 +316,7 @@ impl EventDriven for RigidSystem {
         let Some(event) = self.queue.first() else { return Ok(None) };
         self.counts.events += 1;
         self.now = event.time;
-        let bodies = u32::try_from(self.flyers.len()).unwrap_or(u32::MAX);
-        let Some(pair) = event.source.0.checked_sub(bodies).map(PairId) else {
-            self.leave_box(BodyId(event.source.0));
-            return Ok(None);
-        };
-        if matches!(self.pairs.get(pair).prediction, Prediction::Contact(_)) {
-            return self.handle_contact(pair);
-        }
-        self.predict(pair);
-        Ok(None)
+        let is_impact = self.handle(event.source)?;
+        Ok(is_impact.then_some(self.now))
     }
 }

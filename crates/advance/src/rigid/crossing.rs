@@ -1,0 +1,125 @@
+//! When does a function that is sampled along a segment first fall below zero?
+//!
+//! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them shows
+//! whether the function may dip below zero in between, and a sample there tells. The bracket is closed by the Illinois
+//! variant of false position, which keeps it (M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11, 1971).
+
+/// Samples along a segment: both ends and three places between, equally far apart.
+pub(crate) const NODES: usize = 5;
+/// Places between two nodes at which the quartic is looked at.
+const LOOKS: usize = 4;
+/// Cap on the steps that close a bracket.
+const MOST_STEPS: usize = 60;
+/// A bracket is closed when it is this part of the segment.
+const CLOSED: f64 = 1e-14;
+
+/// Offset [s] of a node of a segment of the given span.
+pub(crate) fn node(index: usize, span: f64) -> f64 {
+    if index + 1 == NODES { span } else { span * (index as f64 / (NODES - 1) as f64) }
+}
+
+/// The first offset in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
+///
+/// A function that starts below zero must rise first. The answer lies behind the fall: there `f` is negative.
+pub(crate) fn first_fall(values: &[f64; NODES], span: f64, mut f: impl FnMut(f64) -> f64) -> Option<f64> {
+    for index in 0..NODES - 1 {
+        let (from, to) = (node(index, span), node(index + 1, span));
+        if values[index] < 0.0 {
+            continue;
+        }
+        if values[index + 1] < 0.0 {
+            return Some(close((from, values[index]), (to, values[index + 1]), span, f));
+        }
+        let Some(dip) = dip_between(values, index) else { continue };
+        let place = span * (dip / (NODES - 1) as f64);
+        let value = f(place);
+        if value < 0.0 {
+            return Some(close((from, values[index]), (place, value), span, f));
+        }
+    }
+    None
+}
+
+/// Where between two nodes the quartic through the samples lies below zero, lowest of a few places; in nodes.
+fn dip_between(values: &[f64; NODES], index: usize) -> Option<f64> {
+    let lowest = (1..LOOKS)
+        .map(|look| index as f64 + look as f64 / LOOKS as f64)
+        .map(|place| (place, quartic(values, place)))
+        .min_by(|p, q| p.1.total_cmp(&q.1))?;
+    (lowest.1 < 0.0).then_some(lowest.0)
+}
+
+/// The quartic through the samples at nodes 0 to 4, by Neville's scheme.
+fn quartic(values: &[f64; NODES], place: f64) -> f64 {
+    let mut column = *values;
+    for level in 1..NODES {
+        for index in 0..NODES - level {
+            let (left, right) = (index as f64, (index + level) as f64);
+            column[index] =
+                ((place - left) * column[index + 1] + (right - place) * column[index]) / (right - left);
+        }
+    }
+    column[0]
+}
+
+/// Closes a bracket from `above` (not negative) to `below` (negative).
+fn close(above: (f64, f64), below: (f64, f64), span: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let ((mut a, mut fa), (mut b, mut fb)) = (above, below);
+    // The value at b, halved whenever b has stayed: the Illinois rule.
+    let mut last_side = 0;
+    for _ in 0..MOST_STEPS {
+        if (b - a).abs() <= CLOSED * span {
+            break;
+        }
+        let guess = b - fb * (b - a) / (fb - fa);
+        let inside = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
+        if inside <= a || inside >= b {
+            break;
+        }
+        let value = f(inside);
+        if value < 0.0 {
+            (b, fb) = (inside, value);
+            if last_side == -1 {
+                fa *= 0.5;
+            }
+            last_side = -1;
+        } else {
+            (a, fa) = (inside, value);
+            if last_side == 1 {
+                fb *= 0.5;
+            }
+            last_side = 1;
+        }
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampled(span: f64, f: impl Fn(f64) -> f64 + Copy) -> Option<f64> {
+        let values = std::array::from_fn(|index| f(node(index, span)));
+        first_fall(&values, span, f)
+    }
+
+    #[test]
+    fn a_fall_is_found_from_behind() {
+        let fall = sampled(2.0, |t| 1.0 - t * t).expect("it falls at 1");
+        assert!((fall - 1.0).abs() < 1e-12 && fall >= 1.0);
+    }
+
+    #[test]
+    fn a_dip_between_two_samples_is_found() {
+        let fall = sampled(1.0, |t| (t - 0.6) * (t - 0.6) - 1e-3).expect("it dips");
+        assert!((fall - (0.6 - 1e-3f64.sqrt())).abs() < 1e-12);
+        assert_eq!(sampled(1.0, |t| (t - 0.6) * (t - 0.6) + 1e-3), None);
+    }
+
+    #[test]
+    fn what_starts_below_zero_must_rise_first() {
+        assert_eq!(sampled(1.0, |t| t - 2.0), None);
+        let fall = sampled(4.0, |t| (t - 0.5) * (3.0 - t)).expect("it falls at 3");
+        assert!((fall - 3.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,257 @@
+//! The equations of motion of a group: force laws, damping, and the forces of held rows.
+//!
+//! With the rows J of the basis and their gap accelerations J v' + gamma, the forces f satisfy
+//! (J M^-1 J^T) f = -(J v'_0 + gamma), v'_0 being the acceleration without them; then v' = v'_0 + M^-1 J^T f.
+
+use super::crossing::NODES;
+use super::group::{Group, Work};
+use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
+use super::rows::Mechanism;
+use crate::ode::{Ode, SegmentPolynomial};
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState, Moving, Spin};
+use std::convert::Infallible;
+use std::sync::Arc;
+
+/// Velocities are corrected through accelerations: an older remedy against drift, kept for scenes recorded with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtraAcceleration {
+    /// Time in which an error is to vanish [s].
+    pub time: f64,
+    /// Distances are corrected too.
+    pub distance: bool,
+    /// Of bilateral rows only.
+    pub joints_only: bool,
+}
+
+/// What the motion of groups is computed from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Physics<'a> {
+    pub(crate) mechanism: Mechanism<'a>,
+    pub(crate) laws: &'a [Arc<dyn ForceLaw>],
+    pub(crate) extra: Option<ExtraAcceleration>,
+}
+
+/// Buffers for one moment, for the whole system: kept by its owner.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stage {
+    /// All bodies; fixed ones are always right, others while their group is looked at.
+    pub(crate) movings: Vec<Moving>,
+    /// Force laws' sums for all bodies.
+    wrenches: Vec<Wrench>,
+    /// The wrenches of one law.
+    single: Vec<Wrench>,
+    /// Accelerations of the group's bodies (x, y, angle).
+    pub(crate) accelerations: Vec<[f64; 3]>,
+    pub(crate) jacobians: Vec<[f64; 6]>,
+    pub(crate) offsets: Vec<f64>,
+    /// Forces of the rows [N].
+    pub(crate) forces: Vec<f64>,
+    pub(crate) changes: Vec<[f64; 3]>,
+    /// Rates of rows during a projection [m/s].
+    pub(crate) rates: Vec<f64>,
+    /// Dense output of velocities and works.
+    pub(crate) velocity_paths: Vec<SegmentPolynomial>,
+    /// A state along the segment, and its rates.
+    pub(crate) trial: Vec<f64>,
+    pub(crate) trial_rates: Vec<f64>,
+    /// Values of watched functions at the nodes.
+    pub(crate) samples: Vec<[f64; NODES]>,
+    /// Evaluations so far.
+    pub(crate) evaluations: u64,
+    /// Solves of held rows so far.
+    pub(crate) solves: u64,
+}
+
+impl Stage {
+    pub(crate) fn new(movings: Vec<Moving>) -> Self {
+        let count = movings.len();
+        Self {
+            movings,
+            wrenches: vec![Wrench::default(); count],
+            single: vec![Wrench::default(); count],
+            ..Self::default()
+        }
+    }
+
+    /// Places the bodies of a group as its state says.
+    pub(crate) fn load(&mut self, bodies: &[BodyId], state: &[f64]) {
+        for (place, body) in bodies.iter().enumerate() {
+            self.movings[body.index()] = Moving::from(&body_state(state, bodies.len(), place));
+        }
+    }
+
+    /// Accelerations without the forces of rows, of bodies that are in place; powers of the works, if asked for.
+    pub(crate) fn accelerate(
+        &mut self,
+        physics: &Physics<'_>,
+        (bodies, laws): (&[BodyId], &[usize]),
+        time: f64,
+        works: &[Work],
+        powers: &mut [f64],
+    ) {
+        for body in bodies {
+            self.wrenches[body.index()] = Wrench::default();
+        }
+        for &law in laws {
+            let power = works.iter().position(|&work| work == Work::Law(law));
+            self.add_law(&*physics.laws[law], bodies, time, power.map(|place| &mut powers[place]));
+        }
+        let damping = works.iter().position(|&work| work == Work::Damping);
+        let mut damped = 0.0;
+        self.accelerations.clear();
+        for &body in bodies {
+            let flyer = &physics.mechanism.flyers[body.index()];
+            let (law, inertia) = (flyer.law(), flyer.body());
+            let (moving, wrench) = (&self.movings[body.index()], &self.wrenches[body.index()]);
+            let (v, w) = (moving.velocity, moving.angular_velocity);
+            let linear = law.acceleration - v * law.linear_rate + wrench.force * inertia.inverse_mass;
+            let angular = wrench.torque * inertia.inverse_moment - law.angular_rate * w;
+            self.accelerations.push([linear.x, linear.y, angular]);
+            if damping.is_some() && law.is_damped() {
+                damped -= law.linear_rate * v.length_squared() / inertia.inverse_mass
+                    + law.angular_rate * w * w / inertia.inverse_moment;
+            }
+        }
+        if let Some(place) = damping {
+            powers[place] = damped;
+        }
+    }
+
+    fn add_law(&mut self, law: &dyn ForceLaw, bodies: &[BodyId], time: f64, power: Option<&mut f64>) {
+        let now = Snapshot::new(time, &self.movings);
+        let Some(power) = power else {
+            law.apply(&now, &mut Wrenches::new(&mut self.wrenches));
+            return;
+        };
+        for body in bodies {
+            self.single[body.index()] = Wrench::default();
+        }
+        law.apply(&now, &mut Wrenches::new(&mut self.single));
+        *power = 0.0;
+        for body in bodies {
+            let (moving, wrench) = (&self.movings[body.index()], self.single[body.index()]);
+            *power += wrench.force.dot(moving.velocity) + wrench.torque * moving.angular_velocity;
+            let sum = &mut self.wrenches[body.index()];
+            sum.force += wrench.force;
+            sum.torque += wrench.torque;
+        }
+    }
+}
+
+/// State of a body in a group's state.
+pub(crate) fn body_state(state: &[f64], bodies: usize, place: usize) -> BodyState {
+    let (q, v) = (&state[3 * place..3 * place + 3], &state[3 * (bodies + place)..3 * (bodies + place) + 3]);
+    BodyState {
+        position: DVec2::new(q[0], q[1]),
+        angle: q[2],
+        velocity: DVec2::new(v[0], v[1]),
+        angular_velocity: v[2],
+    }
+}
+
+/// Writes the state of a body into a group's state.
+pub(crate) fn set_body_state(state: &mut [f64], bodies: usize, place: usize, body: &BodyState) {
+    state[3 * place..3 * place + 3].copy_from_slice(&[body.position.x, body.position.y, body.angle]);
+    let velocity = [body.velocity.x, body.velocity.y, body.angular_velocity];
+    state[3 * (bodies + place)..3 * (bodies + place) + 3].copy_from_slice(&velocity);
+}
+
+/// A group with what its motion is computed from.
+#[derive(Debug)]
+pub(crate) struct Dynamics<'a> {
+    pub(crate) physics: Physics<'a>,
+    pub(crate) group: &'a mut Group,
+    pub(crate) stage: &'a mut Stage,
+    /// Offset 0 [s] of the segment.
+    pub(crate) start: Time,
+}
+
+impl Dynamics<'_> {
+    /// Measures the rows with the bodies in place and factorises; calls `visit` with the gap of each less the one at which
+    /// it formed, and its rate.
+    pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) {
+        self.stage.jacobians.clear();
+        for row in &self.group.rows {
+            let moment = self.physics.mechanism.measure(row, &self.stage.movings);
+            self.stage.jacobians.push(moment.kinematics.jacobian);
+            visit(moment.gap - row.gap, moment.kinematics.rate);
+        }
+        self.group.held.factorize(&self.stage.jacobians);
+    }
+
+    /// Solves A x = -`offsets`, leaves x in `forces`, and M^-1 J^T x in `changes`.
+    pub(crate) fn respond(&mut self) {
+        let Stage { offsets, forces, changes, solves, .. } = &mut *self.stage;
+        forces.clear();
+        forces.resize(offsets.len(), 0.0);
+        self.group.held.solve(offsets, forces);
+        changes.clear();
+        changes.resize(self.group.bodies.len(), [0.0; 3]);
+        self.group.held.respond(forces, changes);
+        *solves += 1;
+    }
+
+    fn solve_rows(&mut self) {
+        self.stage.jacobians.clear();
+        self.stage.offsets.clear();
+        for row in &self.group.rows {
+            let moment = self.physics.mechanism.measure(row, &self.stage.movings);
+            let spins = row.bodies.map(|body| self.spin_of(body));
+            let mut offset = moment.kinematics.acceleration(&spins[0], &spins[1]);
+            if let Some(extra) = self.physics.extra.filter(|extra| row.bilateral || !extra.joints_only) {
+                offset += extra.acceleration(moment.gap - row.gap, moment.kinematics.rate);
+            }
+            self.stage.offsets.push(offset);
+            self.stage.jacobians.push(moment.kinematics.jacobian);
+        }
+        self.group.held.factorize(&self.stage.jacobians);
+        self.respond();
+        let changes = self.stage.changes.iter();
+        for (acceleration, change) in self.stage.accelerations.iter_mut().zip(changes) {
+            for k in 0..3 {
+                acceleration[k] += change[k];
+            }
+        }
+    }
+
+    fn spin_of(&self, body: BodyId) -> Spin {
+        match self.group.bodies.binary_search(&body) {
+            Ok(place) => {
+                let [x, y, angular] = self.stage.accelerations[place];
+                Spin { linear: DVec2::new(x, y), angular }
+            }
+            Err(_) => Spin::default(),
+        }
+    }
+}
+
+impl ExtraAcceleration {
+    /// Acceleration [m/s^2] that is added to a gap's own, for a gap too large by `gap` [m] that grows at `rate` [m/s].
+    fn acceleration(&self, gap: f64, rate: f64) -> f64 {
+        if self.distance { (2.0 * rate * self.time + gap) / (self.time * self.time) } else { rate / self.time }
+    }
+}
+
+impl Ode for Dynamics<'_> {
+    type Error = Infallible;
+
+    fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        let bodies = self.group.bodies.len();
+        self.stage.evaluations += 1;
+        self.stage.load(&self.group.bodies, state);
+        rates[..3 * bodies].copy_from_slice(&state[3 * bodies..6 * bodies]);
+        let (velocity_rates, powers) = rates[3 * bodies..].split_at_mut(3 * bodies);
+        let time = self.start.seconds() + offset;
+        let of_group = (self.group.bodies.as_slice(), self.group.laws.as_slice());
+        self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
+        if !self.group.rows.is_empty() {
+            self.solve_rows();
+        }
+        for (place, acceleration) in self.stage.accelerations.iter().enumerate() {
+            velocity_rates[3 * place..3 * place + 3].copy_from_slice(acceleration);
+        }
+        Ok(())
+    }
+}

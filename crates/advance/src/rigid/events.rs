@@ -1,0 +1,212 @@
+//! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
+
+use super::error::{AdvanceError, Between};
+use super::group::SegmentEnd;
+use super::impacts::ImpactReport;
+use super::pairs::PairId;
+use super::region::Region;
+use super::rows::RowSource;
+use super::settle::Settling;
+use super::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{BodyId, FeatureRule};
+use halfgap_contact::Impact;
+use halfgap_geometry::{FeatureId, GapSample};
+
+/// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates that are only
+/// rounding pass.
+const SINK_SHARE: f64 = 1.0 / 8.0;
+/// An event's time is corrected while the gap is off by more than this part of the accuracy.
+const TIME_SHARE: f64 = 1e-2;
+
+/// What fired: a pair of features, or nothing that has a gap.
+type Fired = Option<([BodyId; 2], [FeatureId; 2])>;
+
+/// Buffers of the handling of events, kept from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EventWork {
+    region: Region,
+    impact: Impact,
+    settling: Settling,
+    seeds: Vec<BodyId>,
+}
+
+impl RigidSystem {
+    /// Finds what is held at the start, where nothing has happened yet.
+    pub(crate) fn establish(&mut self) -> Result<(), AdvanceError> {
+        let mut work = std::mem::take(&mut self.work);
+        work.seeds.clear();
+        work.seeds.extend(self.bodies());
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        let outcome = self.go_on(&mut work);
+        self.work = work;
+        outcome
+    }
+
+    /// Two bodies come into contact; true if there was an impact.
+    pub(crate) fn handle_contact(&mut self, pair: PairId, features: [FeatureId; 2]) -> Result<bool, AdvanceError> {
+        let bodies = self.pairs.get(pair).bodies;
+        self.note_repeat(pair)?;
+        let mut work = std::mem::take(&mut self.work);
+        work.seeds.clear();
+        work.seeds.extend(bodies);
+        let outcome = self.handle_impact(&mut work, Some((bodies, features)));
+        self.work = work;
+        outcome
+    }
+
+    /// A group's segment ends, or something ends it early.
+    pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+        let Some(group) = self.group_of(leader) else { return Ok(()) };
+        let mut work = std::mem::take(&mut self.work);
+        let outcome = match group.event {
+            None => {
+                work.seeds.clear();
+                work.seeds.extend(&group.bodies);
+                self.extend_naturally(leader, &work.seeds)
+            }
+            Some((_, SegmentEnd::Release(_) | SegmentEnd::Change(_) | SegmentEnd::Stop | SegmentEnd::Switch)) => {
+                work.seeds.clear();
+                work.seeds.extend(&group.bodies);
+                self.handle_change(&mut work)
+            }
+        };
+        self.work = work;
+        outcome
+    }
+
+    fn extend_naturally(&mut self, leader: BodyId, bodies: &[BodyId]) -> Result<(), AdvanceError> {
+        self.continue_group(leader)?;
+        for &body in bodies {
+            self.renew_stay(body);
+        }
+        self.predict_all_of(bodies, false);
+        Ok(())
+    }
+
+    /// What is held changes, but nothing closes.
+    fn handle_change(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        self.cut_groups(&work.region, self.now, |_, _| None);
+        self.remeasure(&mut work.region, self.now);
+        self.go_on(work)
+    }
+
+    fn handle_impact(&mut self, work: &mut EventWork, fired: Fired) -> Result<bool, AdvanceError> {
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        if !work.region.groups.is_empty() {
+            self.now = self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, time));
+            self.remeasure(&mut work.region, self.now);
+        }
+        let is_storm = self.note_events(&work.region);
+        let mut report = std::mem::take(&mut self.last_impact);
+        let now = self.now;
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, is_storm);
+        self.book_impact(&report, is_storm);
+        self.last_impact = report;
+        let happened = outcome?;
+        self.counts.impacts += 1;
+        self.remeasure(&mut work.region, self.now);
+        self.go_on(work)?;
+        Ok(happened)
+    }
+
+    /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
+    fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let mut stage = std::mem::take(&mut self.stage);
+        let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now);
+        self.stage = stage;
+        outcome?;
+        self.set_rules(&work.region, &work.settling);
+        self.regroup(&work.region, &work.settling)?;
+        for &body in &work.region.bodies {
+            self.renew_stay(body);
+        }
+        self.predict_all_of(&work.region.bodies, true);
+        Ok(())
+    }
+
+    /// By how much [s] the time is off at which a pair is at its target gap, if that can be told.
+    fn time_error(&self, fired: Fired, time: Time) -> Option<f64> {
+        let (bodies, features) = fired?;
+        let moving = bodies.map(|body| self.flyer(body).moving_at(time));
+        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
+        let sample = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose)?;
+        let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
+        let rate = halfgap_collision::GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
+        let pair = self.pairs.between(bodies[0], bodies[1])?;
+        let rule = self.pairs.rules(pair).iter().find(|rule| rule.features == features);
+        let target = rule.and_then(|rule| rule.target).unwrap_or(self.settings.tolerances.target_gap);
+        let error = sample.gap - target;
+        let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
+        (counts && rate < 0.0).then(|| -error / rate)
+    }
+
+    /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
+    /// that touch without force.
+    fn set_rules(&mut self, region: &Region, settling: &Settling) {
+        for &body in &region.bodies {
+            for index in 0..self.pairs.of_body(body).len() {
+                let pair = self.pairs.of_body(body)[index];
+                self.pairs.rules_mut(pair).clear();
+            }
+        }
+        let sink = SINK_SHARE * self.settings.tolerances.accuracy;
+        let rest = self.rest_speed();
+        for touch in &region.touches {
+            let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
+            let is_held = settling.held.iter().any(|(_, row)| match row.source {
+                RowSource::Contact([p, n]) => {
+                    (row.bodies == touch.bodies && [p, n] == touch.features)
+                        || (row.bodies == [touch.bodies[1], touch.bodies[0]] && [n, p] == touch.features)
+                }
+                RowSource::Connector(..) => false,
+            });
+            let rule: Option<FeatureRule> = if is_held {
+                Some(touch.skipped())
+            } else {
+                let (gap, rate) = self.gap_now(touch.bodies, touch.features);
+                (rate <= rest).then(|| touch.lowered_to(gap.min(self.settings.tolerances.target_gap) - sink))
+            };
+            self.pairs.rules_mut(pair).extend(rule);
+        }
+    }
+
+    /// Gap [m] and rate [m/s] of two features at the present time.
+    fn gap_now(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> (f64, f64) {
+        let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
+        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
+        let Some(sample) = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose) else {
+            return (f64::INFINITY, 0.0);
+        };
+        let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
+        (sample.gap, halfgap_collision::GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
+    }
+
+    fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {
+        let fastest = report.rows.iter().fold(0.0f64, |most, row| most.max(-row.rate_before));
+        let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
+        let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
+        *booked += report.energy_change;
+    }
+
+    fn note_repeat(&mut self, pair: PairId) -> Result<(), AdvanceError> {
+        let now = self.now;
+        let entry = self.pairs.get_mut(pair);
+        let same_time = SAME_TIME * f64::EPSILON * now.seconds().abs();
+        let is_repeat = entry.last_contact.is_some_and(|last| now.since(last) <= same_time);
+        entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
+        entry.last_contact = Some(now);
+        let (events, [primary, normal]) = (entry.repeats, entry.bodies);
+        if events > MOST_REPEATS {
+            let between = Between { primary, normal };
+            return Err(AdvanceError::Stuck { time: now.seconds(), between, events });
+        }
+        Ok(())
+    }
+}
+
+/// A pair may collide so many times without time going by before the advance is stuck.
+const MOST_REPEATS: u32 = 100;
+/// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
+const SAME_TIME: f64 = 4.0;

@@ -1,0 +1,109 @@
+//! A group: bodies that share their steps because rows or force laws couple them.
+
+use super::rows::HeldRow;
+use crate::ode::SegmentPolynomial;
+use crate::time::Time;
+use halfgap_collision::BodyId;
+use halfgap_contact::HeldRows;
+
+/// Work that has no potential and is integrated with the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Work {
+    /// Of a force law.
+    Law(usize),
+    /// Of the damping of free flight.
+    Damping,
+}
+
+/// What ends a group's segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SegmentEnd {
+    /// The step was as long as accuracy allows.
+    Natural,
+    /// The force of a row falls to zero.
+    Release(usize),
+    /// A contact runs off its features, or a rail's piece ends.
+    Change(usize),
+    /// A unilateral connector within the group closes.
+    Stop,
+    /// A force law changes branch.
+    Switch,
+}
+
+/// Bodies with a common segment.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Group {
+    /// Its bodies, ascending.
+    pub(crate) bodies: Vec<BodyId>,
+    /// The rows that are held: independent ones, and every row of its connectors.
+    pub(crate) rows: Vec<HeldRow>,
+    /// Force laws that act on its bodies, ascending.
+    pub(crate) laws: Vec<usize>,
+    pub(crate) works: Vec<Work>,
+    pub(crate) held: HeldRows,
+    /// When its segment started.
+    pub(crate) start: Time,
+    /// Length of the segment [s].
+    pub(crate) span: f64,
+    /// Position (x, y, angle) of each body, then velocities likewise, then works.
+    pub(crate) state: Vec<f64>,
+    pub(crate) rates: Vec<f64>,
+    /// The same at the end of the segment.
+    pub(crate) end_state: Vec<f64>,
+    pub(crate) end_rates: Vec<f64>,
+    /// Force [N] of each row at the start of the segment.
+    pub(crate) forces: Vec<f64>,
+    /// Force [N] of each row at the end of the segment.
+    pub(crate) end_forces: Vec<f64>,
+    /// x, y and angle of each body along the segment.
+    pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
+    /// Works along the segment [J].
+    pub(crate) work_paths: Vec<SegmentPolynomial>,
+    /// Length of the next step to try [s]; `None` if nothing is known.
+    pub(crate) next_step: Option<f64>,
+    /// Energy [J] that projections changed in this segment.
+    pub(crate) projected: f64,
+    /// Largest error of a held gap met [m].
+    pub(crate) largest_error: f64,
+    /// What ends the segment early, if something does, and its offset [s].
+    pub(crate) event: Option<(f64, SegmentEnd)>,
+}
+
+impl Group {
+    /// Forgets everything but the room of its buffers.
+    pub(crate) fn clear(&mut self) {
+        self.bodies.clear();
+        self.rows.clear();
+        self.laws.clear();
+        self.works.clear();
+        self.state.clear();
+        self.rates.clear();
+        self.next_step = None;
+        self.event = None;
+    }
+
+    /// The body by which the group is found.
+    pub(crate) fn leader(&self) -> BodyId {
+        self.bodies[0]
+    }
+
+    /// Numbers in its state: positions, velocities, works.
+    pub(crate) fn dimension(&self) -> usize {
+        6 * self.bodies.len() + self.works.len()
+    }
+
+    /// Where the velocities start in its state.
+    pub(crate) fn velocities(&self) -> usize {
+        3 * self.bodies.len()
+    }
+
+    /// When the segment ends or is interrupted by an event of the group itself.
+    pub(crate) fn due(&self) -> Time {
+        self.start.plus(self.event.map_or(self.span, |(offset, _)| offset))
+    }
+
+    /// When the segment ends.
+    pub(crate) fn end(&self) -> Time {
+        self.start.plus(self.span)
+    }
+}

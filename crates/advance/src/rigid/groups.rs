@@ -1,0 +1,357 @@
+//! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
+
+use super::dynamics::{Dynamics, body_state, set_body_state};
+use super::error::AdvanceError;
+use super::group::{Group, Work};
+use super::region::Region;
+use super::rows::HeldRow;
+use super::segment::StepFailure;
+use super::settle::Settling;
+use super::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::BodyId;
+
+/// All groups, found by their bodies, and what their stepping needs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Groups {
+    /// By leader.
+    pub(crate) by_leader: Vec<Option<Box<Group>>>,
+    /// The leader of each body's group.
+    pub(crate) leader_of: Vec<Option<BodyId>>,
+    /// Groups to be used again.
+    pool: Vec<Box<Group>>,
+    /// Step [s] that was right for each body last.
+    step_of: Vec<Option<f64>>,
+    /// Union-find forest over the places of a region.
+    parents: Vec<usize>,
+    /// True for places of a region that need an integrator.
+    integrated: Vec<bool>,
+    /// Leaders of the groups that were made last.
+    pub(crate) made: Vec<BodyId>,
+}
+
+impl Groups {
+    pub(crate) fn new(body_count: usize) -> Self {
+        Self {
+            by_leader: (0..body_count).map(|_| None).collect(),
+            leader_of: vec![None; body_count],
+            step_of: vec![None; body_count],
+            ..Self::default()
+        }
+    }
+
+    /// Takes a group out to work on it.
+    fn take(&mut self, leader: BodyId) -> Option<Box<Group>> {
+        self.by_leader[leader.index()].take()
+    }
+
+    fn put(&mut self, group: Box<Group>) {
+        let leader = group.leader();
+        self.by_leader[leader.index()] = Some(group);
+    }
+
+    fn root(&mut self, place: usize) -> usize {
+        let mut root = place;
+        while self.parents[root] != root {
+            self.parents[root] = self.parents[self.parents[root]];
+            root = self.parents[root];
+        }
+        root
+    }
+
+    /// Joins two places; the lesser becomes the root.
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b)] = a.min(b);
+    }
+}
+
+impl RigidSystem {
+    /// The group of a body, if it is in one.
+    pub(crate) fn group_of(&self, body: BodyId) -> Option<&Group> {
+        let leader = self.groups.leader_of[body.index()]?;
+        self.groups.by_leader[leader.index()].as_deref()
+    }
+
+    /// A group with its dynamics.
+    fn with_group<T>(&mut self, group: &mut Group, act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T) -> T {
+        let start = group.start;
+        let mut stage = std::mem::take(&mut self.stage);
+        let mut stepper = std::mem::replace(&mut self.stepper, crate::ode::Stepper::new(self.settings.method));
+        let mut scales = std::mem::take(&mut self.scales);
+        let answer = {
+            let physics = self.physics();
+            let mut dynamics = Dynamics { physics, group, stage: &mut stage, start };
+            act(&mut dynamics, &mut Tools { stepper: &mut stepper, scales: &mut scales, settings: &self.settings })
+        };
+        (self.stage, self.stepper, self.scales) = (stage, stepper, scales);
+        answer
+    }
+
+    /// Cuts the groups of a region at a time: their bodies fly on from the states that the integrator finds there.
+    ///
+    /// A step is repeated up to the event, since dense output is less exact than the ends of steps. `refine` tells by how
+    /// much the time is off once the bodies are in place.
+    pub(crate) fn cut_groups(&mut self, region: &Region, time: Time, refine: impl Fn(&Self, Time) -> Option<f64>) -> Time {
+        let mut time = time;
+        for round in 0..=MOST_CORRECTIONS {
+            for &leader in &region.groups {
+                self.cut_group(leader, time);
+            }
+            if round == MOST_CORRECTIONS {
+                break;
+            }
+            let Some(correction) = refine(self, time) else { break };
+            let corrected = time.plus(correction);
+            let starts = region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
+            let latest = starts.map(|group| group.start).max().unwrap_or(time);
+            if corrected <= latest {
+                break;
+            }
+            time = corrected;
+        }
+        for &leader in &region.groups {
+            self.dissolve(leader);
+        }
+        time
+    }
+
+    /// Places the bodies of a group where they are at a time; the group stays as it was, so that it can be cut again.
+    fn cut_group(&mut self, leader: BodyId, time: Time) {
+        let Some(mut group) = self.groups.take(leader) else { return };
+        let offset = time.since(group.start).max(0.0);
+        if offset != group.span {
+            self.with_group(&mut group, |dynamics, tools| {
+                dynamics.repeat_to(tools.stepper, offset);
+                dynamics.end_on_rows(tools);
+            });
+        }
+        for (place, &body) in group.bodies.iter().enumerate() {
+            let state = body_state(&group.end_state, group.bodies.len(), place);
+            self.flyers[body.index()].fly_from(time, state);
+        }
+        self.groups.put(group);
+    }
+
+    /// Ends a group, whose bodies fly on; its works are booked.
+    fn dissolve(&mut self, leader: BodyId) {
+        let Some(mut group) = self.groups.take(leader) else { return };
+        self.book_works(&group);
+        for &body in &group.bodies {
+            self.groups.leader_of[body.index()] = None;
+            self.groups.step_of[body.index()] = group.next_step;
+            self.counts.backups += 1;
+        }
+        self.queue.clear(self.group_source(leader));
+        group.clear();
+        self.groups.pool.push(group);
+    }
+
+    fn book_works(&mut self, group: &Group) {
+        self.ledger.projections += group.projected;
+        let first = 2 * group.velocities();
+        for (&work, &value) in group.works.iter().zip(&group.end_state[first..]) {
+            match work {
+                Work::Law(law) => self.ledger.laws[law] += value,
+                Work::Damping => self.ledger.damping += value,
+            }
+        }
+    }
+
+    /// Makes groups of the bodies of a region that held rows or force laws couple; the others stay in flight.
+    pub(crate) fn regroup(&mut self, region: &Region, settling: &Settling) -> Result<(), AdvanceError> {
+        self.couple(region, settling);
+        self.groups.made.clear();
+        for place in 0..region.bodies.len() {
+            let root = self.groups.root(place);
+            if self.groups.integrated[root] && root == place {
+                let group = self.make_group(region, settling, root);
+                let leader = group.leader();
+                for &body in &group.bodies {
+                    self.groups.leader_of[body.index()] = Some(leader);
+                }
+                self.groups.made.push(leader);
+                self.groups.put(group);
+            }
+        }
+        for index in 0..self.groups.made.len() {
+            let leader = self.groups.made[index];
+            self.start_group(leader)?;
+        }
+        Ok(())
+    }
+
+    /// Joins the places of a region that share their steps.
+    fn couple(&mut self, region: &Region, settling: &Settling) {
+        let count = region.bodies.len();
+        self.groups.parents.clear();
+        self.groups.parents.extend(0..count);
+        self.groups.integrated.clear();
+        self.groups.integrated.resize(count, false);
+        for (_, row) in &settling.held {
+            self.couple_bodies(region, row.bodies.iter().copied());
+        }
+        for place in 0..count {
+            for index in 0..self.laws_of(region.bodies[place]).len() {
+                let law = self.laws[self.laws_of(region.bodies[place])[index]].clone();
+                self.couple_bodies(region, law.bodies().iter().copied());
+            }
+        }
+        // What is integrated is a matter of the whole class.
+        for place in 0..count {
+            if self.groups.integrated[place] {
+                let root = self.groups.root(place);
+                self.groups.integrated[root] = true;
+            }
+        }
+    }
+
+    fn couple_bodies(&mut self, region: &Region, bodies: impl Iterator<Item = BodyId>) {
+        let mut first = None;
+        for place in bodies.filter_map(|body| region.place(body)) {
+            self.groups.integrated[place] = true;
+            match first {
+                None => first = Some(place),
+                Some(first) => self.groups.join(first, place),
+            }
+        }
+    }
+
+    fn make_group(&mut self, region: &Region, settling: &Settling, root: usize) -> Box<Group> {
+        let mut group = self.groups.pool.pop().unwrap_or_default();
+        group.clear();
+        for place in 0..region.bodies.len() {
+            if self.groups.root(place) == root {
+                group.bodies.push(region.bodies[place]);
+            }
+        }
+        group.bodies.sort_unstable();
+        let in_group = |row: &HeldRow| row.bodies.iter().any(|body| group.bodies.binary_search(body).is_ok());
+        // Bilateral rows first: a contact that depends on them gives way.
+        let rows = settling.held.iter().map(|&(_, row)| row).filter(in_group);
+        group.rows.extend(rows.clone().filter(|row| row.bilateral));
+        group.rows.extend(rows.filter(|row| !row.bilateral));
+        group.laws.extend(group.bodies.iter().flat_map(|&body| self.laws_of(body)));
+        group.laws.sort_unstable();
+        group.laws.dedup();
+        self.list_works(&mut group);
+        let steps = group.bodies.iter().filter_map(|body| self.groups.step_of[body.index()]);
+        group.next_step = steps.min_by(f64::total_cmp);
+        group
+    }
+
+    fn list_works(&self, group: &mut Group) {
+        group.works.clear();
+        let works = group.laws.iter().copied().filter(|&law| !self.has_potential[law]).map(Work::Law);
+        group.works.extend(works);
+        if group.bodies.iter().any(|&body| self.flyer(body).law().is_damped()) {
+            group.works.push(Work::Damping);
+        }
+    }
+
+    /// Starts a group's first segment from the states of its bodies.
+    fn start_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+        let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
+        group.start = self.now;
+        let count = group.bodies.len();
+        let dimension = group.dimension();
+        let inertia: Vec<_> = group.bodies.iter().map(|&body| self.inertia(body)).collect();
+        let place = |body: BodyId, bodies: &[BodyId]| {
+            bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok())
+        };
+        let sides: Vec<_> =
+            group.rows.iter().map(|row| row.bodies.map(|body| place(body, &group.bodies))).collect();
+        group.held.set_structure(&inertia, &sides);
+        // The projection works on the end of a segment: one of no length ends here.
+        group.end_state.clear();
+        group.end_state.resize(dimension, 0.0);
+        for place in 0..count {
+            let state = self.flyer(group.bodies[place]).state_at(self.now);
+            set_body_state(&mut group.end_state, count, place, &state);
+        }
+        group.span = 0.0;
+        group.projected = 0.0;
+        self.with_group(&mut group, |dynamics, tools| dynamics.end_on_rows(tools));
+        self.ledger.projections += std::mem::take(&mut group.projected);
+        std::mem::swap(&mut group.state, &mut group.end_state);
+        self.with_group(&mut group, |dynamics, _| dynamics.set_out());
+        self.extend_group(group)
+    }
+
+    /// Goes on with a group whose segment has come to its natural end.
+    pub(crate) fn continue_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+        let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
+        self.book_works(&group);
+        group.start = group.end();
+        let first_work = 2 * group.velocities();
+        let group_mut = &mut *group;
+        std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);
+        std::mem::swap(&mut group_mut.rates, &mut group_mut.end_rates);
+        std::mem::swap(&mut group_mut.forces, &mut group_mut.end_forces);
+        group_mut.state[first_work..].fill(0.0);
+        self.extend_group(group)
+    }
+
+    /// Extends a group by a segment and puts it back.
+    fn extend_group(&mut self, mut group: Box<Group>) -> Result<(), AdvanceError> {
+        let outcome = self.with_group(&mut group, |dynamics, tools| {
+            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
+            dynamics.end_on_rows(tools);
+            dynamics.evaluate_end();
+            dynamics.make_dense(tools.stepper);
+            dynamics.group.event = dynamics.find_event();
+            Ok(())
+        });
+        self.counts.segments += 1;
+        let (leader, due) = (group.leader(), group.due());
+        for (&body, paths) in group.bodies.iter().zip(&group.paths) {
+            self.flyers[body.index()].follow(group.start, paths);
+        }
+        if outcome.is_ok() {
+            self.queue.set(self.group_source(leader), due);
+        }
+        let failed = outcome.err().map(|failure| self.step_error(&group, failure));
+        self.groups.put(group);
+        failed.map_or(Ok(()), Err)
+    }
+
+    fn step_error(&self, group: &Group, failure: StepFailure) -> AdvanceError {
+        let StepFailure::Collapsed(step) = failure;
+        AdvanceError::StepCollapsed {
+            time: group.start.seconds(),
+            step,
+            bodies: group.bodies.clone(),
+            laws: group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect(),
+        }
+    }
+}
+
+/// Cap on the corrections of an event's time.
+const MOST_CORRECTIONS: usize = 2;
+
+/// What a group's stepping uses beside its dynamics.
+pub(crate) struct Tools<'a> {
+    pub(crate) stepper: &'a mut crate::ode::Stepper,
+    pub(crate) scales: &'a mut Vec<f64>,
+    pub(crate) settings: &'a super::system::RigidSettings,
+}
+
+impl Dynamics<'_> {
+    /// Projects the end onto the held rows and books what energy that took.
+    fn end_on_rows(&mut self, tools: &Tools<'_>) {
+        if !tools.settings.projection || self.group.rows.is_empty() {
+            return;
+        }
+        let before = self.end_energy();
+        let error = self.project_end(tools.settings.steps.length);
+        self.group.projected += self.end_energy() - before;
+        self.group.largest_error = self.group.largest_error.max(error);
+    }
+
+    fn end_energy(&mut self) -> f64 {
+        let end = std::mem::take(&mut self.group.end_state);
+        let energy = self.energy(&end);
+        self.group.end_state = end;
+        energy
+    }
+}

@@ -1,0 +1,200 @@
+//! What may happen next: which bodies are near each other, and when pairs of them come into contact.
+
+use super::pairs::{Pair, PairId, Prediction};
+use super::path::Path;
+use super::system::RigidSystem;
+use crate::queue::SourceId;
+use crate::time::Time;
+use halfgap_collision::{
+    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, disc_contact,
+};
+use halfgap_geometry::GapSample;
+
+/// One search looks at most this far ahead [s], then goes on: bounds over the span stay finite.
+const LONGEST_SPAN: f64 = 1e6;
+
+impl RigidSystem {
+    pub(crate) fn set_up_boxes(&mut self) {
+        for body in self.bodies() {
+            self.place_box(body);
+        }
+        for body in self.bodies().filter(|&body| self.is_movable(body)) {
+            self.find_neighbours(body);
+        }
+    }
+
+    fn place_box(&mut self, body: BodyId) {
+        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
+        let fat_box = room.fat_box(flyer, self.now);
+        self.broad.set(body, fat_box);
+        self.renew_stay(body);
+    }
+
+    /// Predicts anew when the body leaves its box.
+    pub(crate) fn renew_stay(&mut self, body: BodyId) {
+        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
+        let stay = self.broad.bounds(body).and_then(|fat_box| room.stays_until(flyer, fat_box, self.now));
+        self.stays[body.index()] = stay;
+        match stay {
+            Some(time) => self.queue.set(SourceId(body.0), time),
+            None => self.queue.clear(SourceId(body.0)),
+        }
+    }
+
+    /// Pairs the body with all whose boxes overlap its own, and with no others.
+    fn find_neighbours(&mut self, body: BodyId) {
+        let Some(fat_box) = self.broad.bounds(body).copied() else { return };
+        let mut near = std::mem::take(&mut self.neighbours);
+        near.clear();
+        self.broad.visit_overlapping(&fat_box, &mut |other| near.push(other));
+        near.retain(|&other| other != body && self.may_collide(body, other));
+        near.sort_unstable();
+        self.touched.clear();
+        self.touched.extend_from_slice(self.pairs.of_body(body));
+        for index in 0..self.touched.len() {
+            let pair = self.touched[index];
+            let [a, b] = self.pairs.get(pair).bodies;
+            let other = if a == body { b } else { a };
+            if near.binary_search(&other).is_err() {
+                self.queue.clear(self.pair_source(pair));
+                self.pairs.remove(pair);
+            }
+        }
+        for &other in &near {
+            if self.pairs.between(body, other).is_none() {
+                self.pairs.add(body, other, self.now);
+            }
+        }
+        self.rooms[body.index()].adapt(near.len());
+        self.neighbours = near;
+    }
+
+    fn may_collide(&self, a: BodyId, b: BodyId) -> bool {
+        let any_movable = self.is_movable(a) || self.is_movable(b);
+        any_movable && self.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
+    }
+
+    /// Until when the present motion of a body is known and near; `None` for ever.
+    fn known_until(&self, body: BodyId) -> Option<Time> {
+        let end = self.group_of(body).map(|group| group.end());
+        match (self.stays[body.index()], end) {
+            (Some(stay), Some(end)) => Some(stay.min(end)),
+            (only, None) | (None, only) => only,
+        }
+    }
+
+    /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
+    pub(crate) fn predict(&mut self, pair: PairId) {
+        let Pair { bodies: [a, b], clear, .. } = *self.pairs.get(pair);
+        let until = match (self.known_until(a), self.known_until(b)) {
+            (Some(a), Some(b)) => a.min(b),
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => Time::NEVER,
+        };
+        let from = clear.max(self.now);
+        self.drop_rules(pair, from);
+        let prediction = if until <= from {
+            Prediction::Quiet
+        } else {
+            let span = until.since(from).min(LONGEST_SPAN);
+            match self.search(pair, from, span) {
+                Search::Contact(contact) => {
+                    let features = [contact.feature_a, contact.feature_b];
+                    Prediction::Contact(from.plus(contact.time), features)
+                }
+                Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => Prediction::Quiet,
+                Search::NoneBefore(time) => Prediction::SearchOn(from.plus(time)),
+            }
+        };
+        let source = self.pair_source(pair);
+        let entry = self.pairs.get_mut(pair);
+        entry.prediction = prediction;
+        match prediction {
+            Prediction::Contact(time, _) | Prediction::SearchOn(time) => {
+                entry.clear = time;
+                self.queue.set(source, time);
+            }
+            Prediction::Quiet => {
+                entry.clear = until.max(from);
+                self.queue.clear(source);
+            }
+        }
+    }
+
+    /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
+    fn drop_rules(&mut self, pair: PairId, time: Time) {
+        if self.pairs.rules(pair).is_empty() {
+            return;
+        }
+        let [a, b] = self.pairs.get(pair).bodies;
+        let (pose_a, pose_b) = (self.flyer(a).moving_at(time).pose, self.flyer(b).moving_at(time).pose);
+        let (shape_a, shape_b) = (&self.flyers[a.index()].body().shape, &self.flyers[b.index()].body().shape);
+        let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
+        self.pairs.rules_mut(pair).retain(|rule: &FeatureRule| {
+            let [feature_a, feature_b] = rule.features;
+            let sample =
+                GapSample::measure(shape_a.feature(feature_a), &pose_a, shape_b.feature(feature_b), &pose_b);
+            rule.target.is_none() || sample.is_some_and(|sample| sample.gap < opened)
+        });
+    }
+
+    /// Searches for a contact of two bodies in the given span [s] from a time on.
+    fn search(&self, pair: PairId, from: Time, span: f64) -> Search {
+        let [a, b] = self.pairs.get(pair).bodies;
+        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
+        let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
+        let rules = self.pairs.rules(pair);
+        let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
+        let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
+            let path_a: Path<'_> = flyer_a.path();
+            let path_b: Path<'_> = flyer_b.path();
+            let side_a = MovingShape { shape: shapes[0], motion: &path_a, offset: offset_a };
+            let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
+            return self.search_shapes(&side_a, &side_b, rules, span);
+        };
+        if let (Some(radius_a), Some(radius_b), true) = (flyer_a.disc(), flyer_b.disc(), rules.is_empty()) {
+            let (side_a, side_b) = ((flight_a, offset_a, radius_a), (flight_b, offset_b, radius_b));
+            if let Some(found) = disc_contact(side_a, side_b, span, &self.settings.tolerances) {
+                return found;
+            }
+        }
+        let side_a = MovingShape { shape: shapes[0], motion: flight_a, offset: offset_a };
+        let side_b = MovingShape { shape: shapes[1], motion: flight_b, offset: offset_b };
+        self.search_shapes(&side_a, &side_b, rules, span)
+    }
+
+    fn search_shapes<A: Motion, B: Motion>(
+        &self,
+        a: &MovingShape<'_, A>,
+        b: &MovingShape<'_, B>,
+        rules: &[FeatureRule],
+        span: f64,
+    ) -> Search {
+        let (tolerances, settings) = (&self.settings.tolerances, &self.settings.search);
+        PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
+    }
+
+    pub(crate) fn leave_box(&mut self, body: BodyId) {
+        self.place_box(body);
+        self.find_neighbours(body);
+        self.predict_all_of(&[body], false);
+    }
+
+    /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
+    pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
+        let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        touched.extend(bodies.iter().flat_map(|&body| self.pairs.of_body(body)));
+        touched.sort_unstable();
+        touched.dedup();
+        for &pair in &touched {
+            if changed {
+                self.pairs.get_mut(pair).clear = self.now;
+                self.predict(pair);
+            } else if self.pairs.get(pair).prediction == Prediction::Quiet {
+                self.predict(pair);
+            }
+        }
+        self.touched = touched;
+    }
+}

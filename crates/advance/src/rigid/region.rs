@@ -1,0 +1,170 @@
+//! The region of an event: the bodies that touch each other around some seeds, with the groups that they belong to, and
+//! the records of all places where they touch.
+
+use super::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{
+    BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions,
+};
+use halfgap_geometry::FeatureId;
+
+/// A pair of features that touches, the lesser body first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    pub(crate) bodies: [BodyId; 2],
+    pub(crate) features: [FeatureId; 2],
+    /// Gap [m].
+    pub(crate) gap: f64,
+    /// Rate [m/s] before the event.
+    pub(crate) rate: f64,
+}
+
+/// Bodies and records of an event. Buffers are kept from one event to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Region {
+    /// The movable bodies, in the order in which they were found.
+    pub(crate) bodies: Vec<BodyId>,
+    /// Every place where they touch, once.
+    pub(crate) records: Vec<Collision>,
+    /// Every pair of features that touches.
+    pub(crate) touches: Vec<Touch>,
+    /// Leaders of the groups that they belong to.
+    pub(crate) groups: Vec<BodyId>,
+    fresh: Vec<Collision>,
+    /// Place of each body in `bodies`, valid where the stamp is the present one.
+    places: Vec<(u32, u32)>,
+    stamp: u32,
+}
+
+impl Region {
+    pub(crate) fn clear(&mut self, body_count: usize) {
+        self.bodies.clear();
+        self.records.clear();
+        self.touches.clear();
+        self.groups.clear();
+        self.places.resize(body_count, (0, 0));
+        self.stamp = self.stamp.wrapping_add(1);
+        if self.stamp == 0 {
+            self.places.fill((0, 0));
+            self.stamp = 1;
+        }
+    }
+
+    /// Place of a body in the region; `None` for others and for those that cannot move.
+    pub(crate) fn place(&self, body: BodyId) -> Option<usize> {
+        let &(stamp, place) = self.places.get(body.index())?;
+        (stamp == self.stamp).then_some(place as usize)
+    }
+
+    fn add(&mut self, body: BodyId) {
+        if self.place(body).is_none() {
+            let place = u32::try_from(self.bodies.len()).unwrap_or(u32::MAX);
+            self.places[body.index()] = (self.stamp, place);
+            self.bodies.push(body);
+        }
+    }
+}
+
+impl RigidSystem {
+    /// Fills the region around some bodies at a time, along their present segments.
+    pub(crate) fn collect_region(&self, region: &mut Region, seeds: &[BodyId], time: Time) {
+        region.clear(self.body_count());
+        for &seed in seeds.iter().filter(|seed| self.is_movable(**seed)) {
+            region.add(seed);
+        }
+        let mut next = 0;
+        while next < region.bodies.len() {
+            let body = region.bodies[next];
+            if let Some(group) = self.group_of(body) {
+                if !region.groups.contains(&group.leader()) {
+                    region.groups.push(group.leader());
+                    for &mate in &group.bodies {
+                        region.add(mate);
+                    }
+                }
+            }
+            self.collect_connectors(region, next, time);
+            self.collect_touches(region, next, time);
+            next += 1;
+        }
+    }
+
+    /// Adds the records of a body of the region with all that it touches.
+    fn collect_touches(&self, region: &mut Region, place: usize, time: Time) {
+        let body = region.bodies[place];
+        let moving = self.flyer(body).moving_at(time);
+        for &pair in self.pairs.of_body(body) {
+            let [a, b] = self.pairs.get(pair).bodies;
+            let other = if a == body { b } else { a };
+            // A pair within the region was looked at with its first body.
+            if region.place(other).is_some_and(|earlier| earlier < place) {
+                continue;
+            }
+            let (flyer, other_flyer) = (self.flyer(body), self.flyer(other));
+            let reach = flyer.reach() + other_flyer.reach() + self.settings.tolerances.distance_tol();
+            let other_moving = other_flyer.moving_at(time);
+            if (moving.pose.position - other_moving.pose.position).length_squared() > reach * reach {
+                continue;
+            }
+            // The lesser body first: records do not depend on which of the two was found first.
+            let mut moments = [
+                Moment { id: body, body: flyer.body(), moving },
+                Moment { id: other, body: other_flyer.body(), moving: other_moving },
+            ];
+            if other < body {
+                moments.swap(0, 1);
+            }
+            if self.touch(region, &moments, time) && self.is_movable(other) {
+                region.add(other);
+            }
+        }
+    }
+
+    /// Adds the records of two bodies in the target zone or nearer; true if there are any.
+    fn touch(&self, region: &mut Region, [first, second]: &[Moment<'_>; 2], time: Time) -> bool {
+        let tolerances = &self.settings.tolerances;
+        let mut fresh = std::mem::take(&mut region.fresh);
+        fresh.clear();
+        let depth = self.deepest();
+        detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
+        // Farther than the target zone a row fires in its own time.
+        fresh.retain(|record| record.zone() >= Zone::Target);
+        region.touches.extend(fresh.iter().map(|record| touch_of(record, [first.id, second.id])));
+        if fresh.len() > 1 {
+            merge_collisions(&mut fresh);
+        }
+        region.records.append(&mut fresh);
+        region.fresh = fresh;
+        let last = region.records.last();
+        last.is_some_and(|record| record.involves_body(first.id) && record.involves_body(second.id))
+    }
+
+    /// Brings the records to the bodies' present motion at a time.
+    pub(crate) fn remeasure(&self, region: &mut Region, time: Time) {
+        for record in &mut region.records {
+            self.remeasure_record(record, time);
+        }
+    }
+}
+
+fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Touch {
+    let (primary, normal) = (&record.parties.primary, &record.parties.normal);
+    let features = if primary.body == bodies[0] {
+        [primary.feature, normal.feature]
+    } else {
+        [normal.feature, primary.feature]
+    };
+    Touch { bodies, features, gap: record.geometry.distance, rate: record.motion.normal_velocity }
+}
+
+impl Touch {
+    /// A rule by which the search leaves the pair alone.
+    pub(crate) fn skipped(&self) -> FeatureRule {
+        FeatureRule { features: self.features, target: None }
+    }
+
+    /// A rule by which the pair fires only at a gap [m].
+    pub(crate) fn lowered_to(&self, gap: f64) -> FeatureRule {
+        FeatureRule { features: self.features, target: Some(gap) }
+    }
+}

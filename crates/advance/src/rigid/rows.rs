@@ -1,0 +1,89 @@
+//! The rows that hold bodies together or apart during a segment: contacts and connectors, measured at any moment.
+
+use super::flyer::Flyer;
+use halfgap_collision::{BodyId, Connector, ConnectorId, GapKinematics, Moving, Tolerances};
+use halfgap_geometry::{FeatureId, GapSample, Shape};
+
+/// Part of the accuracy by which a contact may run off its features before it is said to have changed: far more than
+/// rounding, far less than what forces can feel.
+const CHANGE_SHARE: f64 = 1e-3;
+
+/// What makes a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowSource {
+    /// A feature of the primary and one of the normal body.
+    Contact([FeatureId; 2]),
+    /// A row of a connector.
+    Connector(ConnectorId, usize),
+}
+
+/// A row that is held: its gap is to stay as it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeldRow {
+    pub(crate) source: RowSource,
+    /// The primary and the normal body.
+    pub(crate) bodies: [BodyId; 2],
+    pub(crate) bilateral: bool,
+    /// Gap [m] at which it formed.
+    pub(crate) gap: f64,
+}
+
+/// A row at one moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowMoment {
+    /// Gap [m].
+    pub(crate) gap: f64,
+    pub(crate) kinematics: GapKinematics,
+}
+
+/// What rows are measured on: bodies and connectors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mechanism<'a> {
+    pub(crate) flyers: &'a [Flyer],
+    pub(crate) connectors: &'a [Connector],
+    pub(crate) tolerances: &'a Tolerances,
+}
+
+/// A body among those that move, or the background.
+#[inline]
+pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> Moving {
+    if body.is_world() { Moving::BACKGROUND } else { movings[body.index()] }
+}
+
+impl Mechanism<'_> {
+    fn shape(&self, body: BodyId) -> &Shape {
+        &self.flyers[body.index()].body().shape
+    }
+
+    /// Gap and kinematics of a row.
+    pub(crate) fn measure(&self, row: &HeldRow, movings: &[Moving]) -> RowMoment {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, index) => {
+                let sample = self.connectors[id.0 as usize].measure(index, &a, &b);
+                RowMoment { gap: sample.gap, kinematics: sample.kinematics }
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [&a, &b]);
+                RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, &a, &b) }
+            }
+        }
+    }
+
+    fn sample(&self, bodies: [BodyId; 2], features: [FeatureId; 2], movings: [&Moving; 2]) -> GapSample {
+        let [a, b] = [0, 1].map(|side: usize| self.shape(bodies[side]).feature(features[side]));
+        GapSample::measure(a, &movings[0].pose, b, &movings[1].pose)
+            .expect("a contact was made from features that touch")
+    }
+
+    /// How far [m] a held contact is from running off its features; negative once it has. `None` for connectors.
+    pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
+        let RowSource::Contact(features) = row.source else { return None };
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        let sample = self.sample(row.bodies, features, [&a, &b]);
+        let beyond = |side: usize, excess: f64| excess * self.shape(row.bodies[side]).lever(features[side]);
+        let outside =
+            sample.overrun.max(beyond(0, sample.excess_primary)).max(beyond(1, sample.excess_normal));
+        Some(CHANGE_SHARE * self.tolerances.accuracy - outside)
+    }
+}

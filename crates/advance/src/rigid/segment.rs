@@ -1,0 +1,240 @@
+//! A group's segment: an accepted step, its projection, its dense output, and its repetition up to an event.
+
+use super::dynamics::{Dynamics, body_state};
+use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
+use glam::DVec2;
+use halfgap_collision::BodyId;
+
+/// How groups are stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepControl {
+    /// Relative error that a step may make.
+    pub local_error: f64,
+    /// Length [m] to which errors of position are relative.
+    pub length: f64,
+    /// Speed [m/s] to which errors of velocity are relative in a group that is at rest.
+    pub speed: f64,
+    /// No step is longer [s]; the step of a method without error estimate.
+    pub largest_step: Option<f64>,
+}
+
+/// Steps shorter than this many machine epsilons of the clock mean that the step size has collapsed.
+const COLLAPSED: f64 = 64.0;
+/// Exponent of the error in the first step: one over the order of the default method.
+const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
+/// Newton steps of one projection.
+const PROJECTIONS: usize = 5;
+/// A step is divided by this where the state is not a number.
+const RETREAT: f64 = 0.1;
+
+/// Why a group could not be stepped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum StepFailure {
+    /// The step size has collapsed to this [s].
+    Collapsed(f64),
+}
+
+impl Dynamics<'_> {
+    /// Evaluates the rates at the group's start.
+    pub(crate) fn set_out(&mut self) {
+        let state = std::mem::take(&mut self.group.state);
+        let mut rates = std::mem::take(&mut self.group.rates);
+        rates.clear();
+        rates.resize(state.len(), 0.0);
+        let Ok(()) = self.derivative(0.0, &state, &mut rates);
+        self.group.forces.clear();
+        self.group.forces.extend_from_slice(&self.stage.forces);
+        self.group.state = state;
+        self.group.rates = rates;
+    }
+
+    /// Extends the group by one accepted step from its state and rates; its end is projected.
+    pub(crate) fn extend(
+        &mut self,
+        stepper: &mut Stepper,
+        control: &StepControl,
+        scales: &mut Vec<f64>,
+    ) -> Result<(), StepFailure> {
+        self.set_scales(control, scales);
+        let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
+        let mut end = std::mem::take(&mut self.group.end_state);
+        end.clear();
+        end.resize(state.len(), 0.0);
+        let limit = control.largest_step.unwrap_or(f64::INFINITY);
+        let mut step = match self.group.next_step {
+            Some(step) => step,
+            None => self.first_step(control),
+        }
+        .min(limit);
+        let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
+        let mut rejected = false;
+        let outcome = loop {
+            if step.is_nan() || step <= shortest {
+                break Err(StepFailure::Collapsed(step));
+            }
+            let Ok(()) = stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, step, &mut end);
+            let error = stepper.error_norm(scales);
+            if !error.is_finite() {
+                (step, rejected) = (step * RETREAT, true);
+                continue;
+            }
+            let method = stepper.method();
+            if error <= 1.0 {
+                let factor =
+                    if rejected { method.step_factor_after_rejection(error) } else { method.step_factor(error) };
+                self.group.next_step = Some(step * factor);
+                break Ok(());
+            }
+            (step, rejected) = (step * method.step_factor(error), true);
+        };
+        (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
+        self.group.span = step;
+        outcome
+    }
+
+    /// Repeats the segment up to an offset [s] within it, into the end state.
+    pub(crate) fn repeat_to(&mut self, stepper: &mut Stepper, offset: f64) {
+        let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
+        let mut end = std::mem::take(&mut self.group.end_state);
+        end.clear();
+        end.extend_from_slice(&state);
+        if offset > 0.0 {
+            let Ok(()) = stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, offset, &mut end);
+        }
+        (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
+        self.group.span = offset;
+    }
+
+    fn reach(&self, body: BodyId) -> f64 {
+        self.physics.mechanism.flyers[body.index()].reach()
+    }
+
+    /// A speed [m/s] of the group: of its fastest point now, or what its acceleration makes of it over the length.
+    fn speed(&self, control: &StepControl) -> f64 {
+        let count = self.group.bodies.len();
+        let (mut speed, mut acceleration) = (0.0f64, 0.0f64);
+        for (place, &body) in self.group.bodies.iter().enumerate() {
+            let at = 3 * (count + place);
+            let of = |values: &[f64]| {
+                DVec2::new(values[at], values[at + 1]).length() + values[at + 2].abs() * self.reach(body)
+            };
+            speed = speed.max(of(&self.group.state));
+            acceleration = acceleration.max(of(&self.group.rates));
+        }
+        let speed = speed.max((acceleration * control.length).sqrt());
+        if speed > 0.0 { speed } else { control.speed }
+    }
+
+    /// A first step [s] where nothing is known: what takes the group its length, shorter for small errors.
+    fn first_step(&self, control: &StepControl) -> f64 {
+        let speed = self.speed(control);
+        let time = if speed > 0.0 { control.length / speed } else { 1.0 };
+        time * control.local_error.powf(FIRST_STEP_POWER)
+    }
+
+    /// Errors that are just acceptable, of positions and velocities; works follow them.
+    fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
+        let speed = self.speed(control);
+        // Where nothing moves there is nothing to be wrong about.
+        let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
+        scales.clear();
+        for size in [control.length, speed] {
+            let linear = or_infinite(control.local_error * size);
+            for &body in &self.group.bodies {
+                scales.extend([linear, linear, linear / self.reach(body)]);
+            }
+        }
+    }
+
+    /// Moves the end state onto the held rows, by the least displacement and the least change of velocities in the metric
+    /// of the masses; each row to the gap at which it formed. Returns the largest gap error met [m].
+    pub(crate) fn project_end(&mut self, length: f64) -> f64 {
+        if self.group.rows.is_empty() {
+            return 0.0;
+        }
+        let mut end = std::mem::take(&mut self.group.end_state);
+        let velocities = self.group.velocities();
+        let mut largest = 0.0f64;
+        let mut rates = std::mem::take(&mut self.stage.rates);
+        for round in 0..PROJECTIONS {
+            self.stage.load(&self.group.bodies, &end);
+            let mut offsets = std::mem::take(&mut self.stage.offsets);
+            offsets.clear();
+            rates.clear();
+            self.factorize(|gap, rate| {
+                offsets.push(gap);
+                rates.push(rate);
+            });
+            let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
+            self.stage.offsets = offsets;
+            largest = largest.max(error);
+            self.respond();
+            add_changes(&mut end[..velocities], &self.stage.changes);
+            // Newton's method squares the relative error.
+            if error <= f64::EPSILON.sqrt() * length || round + 1 == PROJECTIONS {
+                break;
+            }
+        }
+        self.stage.offsets.clear();
+        self.stage.offsets.extend_from_slice(&rates);
+        self.respond();
+        add_changes(&mut end[velocities..2 * velocities], &self.stage.changes);
+        self.stage.rates = rates;
+        self.group.end_state = end;
+        largest
+    }
+
+    /// Evaluates the rates and the forces of the rows at the end.
+    pub(crate) fn evaluate_end(&mut self) {
+        let end = std::mem::take(&mut self.group.end_state);
+        let mut rates = std::mem::take(&mut self.group.end_rates);
+        rates.clear();
+        rates.resize(end.len(), 0.0);
+        let Ok(()) = self.derivative(self.group.span, &end, &mut rates);
+        self.group.end_forces.clear();
+        self.group.end_forces.extend_from_slice(&self.stage.forces);
+        (self.group.end_state, self.group.end_rates) = (end, rates);
+    }
+
+    /// Energy [J] of the group's bodies in a state, as far as it has a potential.
+    pub(crate) fn energy(&mut self, state: &[f64]) -> f64 {
+        let count = self.group.bodies.len();
+        let mut energy = 0.0;
+        for (place, &body) in self.group.bodies.iter().enumerate() {
+            let flyer = &self.physics.mechanism.flyers[body.index()];
+            let (inertia, state) = (flyer.body(), body_state(state, count, place));
+            energy += 0.5 * state.velocity.length_squared() / inertia.inverse_mass;
+            energy += 0.5 * state.angular_velocity * state.angular_velocity / inertia.inverse_moment;
+            energy -= flyer.law().acceleration.dot(state.position) / inertia.inverse_mass;
+        }
+        self.stage.load(&self.group.bodies, state);
+        let now = super::law::Snapshot::new(self.start.seconds(), &self.stage.movings);
+        let laws = self.group.laws.iter().map(|&law| &self.physics.laws[law]);
+        energy + laws.filter_map(|law| law.potential(&now)).sum::<f64>()
+    }
+
+    /// Dense output of the last step, into the group's paths.
+    pub(crate) fn make_dense(&mut self, stepper: &mut Stepper) {
+        let (state, end) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.end_state));
+        let end_rates = std::mem::take(&mut self.group.end_rates);
+        let mut velocities = std::mem::take(&mut self.stage.velocity_paths);
+        let first = self.group.velocities();
+        velocities.resize(state.len() - first, SegmentPolynomial::default());
+        let end_point = Point { offset: self.group.span, state: &end, rates: &end_rates };
+        let Ok(()) = stepper.dense(self, end_point, first..state.len(), &mut velocities);
+        let path = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &velocities[at]);
+        self.group.paths.clear();
+        let places = 0..self.group.bodies.len();
+        self.group.paths.extend(places.map(|place| [0, 1, 2].map(|k| path(3 * place + k))));
+        self.group.work_paths.clear();
+        self.group.work_paths.extend_from_slice(&velocities[first..]);
+        self.stage.velocity_paths = velocities;
+        (self.group.state, self.group.end_state, self.group.end_rates) = (state, end, end_rates);
+    }
+}
+
+fn add_changes(values: &mut [f64], changes: &[[f64; 3]]) {
+    for (value, change) in values.iter_mut().zip(changes.iter().flatten()) {
+        *value += change;
+    }
+}

@@ -1,0 +1,185 @@
+//! Which rows are held after an event: those that carry a force.
+//!
+//! All touching rows that neither close nor open enter one problem a = A f + b. A row that carries a force is held as an
+//! equation from then on; one that does not is left to the search for contacts, which watches its gap. Forces of redundant
+//! rows are not unique: those that the solution leaves without force follow from the others.
+
+use super::dynamics::{Physics, Stage};
+use super::error::AdvanceError;
+use super::region::Region;
+use super::rows::{HeldRow, RowSource};
+use super::system::RigidSystem;
+use super::watch::FORCE_SHARE;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, Collision, Spin};
+use halfgap_contact::{Auto, Problem, Row, Settings, Solution, SolveError, Solver};
+
+/// Solves for contact forces, with its buffers.
+#[derive(Debug)]
+pub(crate) struct Settling {
+    problem: Problem,
+    solution: Solution,
+    solver: Auto,
+    /// Records that enter the problem.
+    candidates: Vec<usize>,
+    /// The rows to be held, with the record of each.
+    pub(crate) held: Vec<(usize, HeldRow)>,
+    laws: Vec<usize>,
+    /// Bodies as the problem numbers them.
+    bodies: Vec<halfgap_contact::BodyId>,
+}
+
+impl Default for Settling {
+    fn default() -> Self {
+        // Nearly redundant contacts that contradict each other get modest forces.
+        let mut settings = Settings::default();
+        settings.contradiction = halfgap_contact::Contradiction::LeastSquares;
+        Self {
+            problem: Problem::new(),
+            solution: Solution::new(),
+            solver: Auto::new(settings).expect("the default settings are valid"),
+            candidates: Vec::new(),
+            held: Vec::new(),
+            laws: Vec::new(),
+            bodies: Vec::new(),
+        }
+    }
+}
+
+impl Clone for Settling {
+    /// Buffers hold nothing worth copying.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl RigidSystem {
+    /// Finds the rows of a region to hold. Records must be up to date; their forces are written into them.
+    pub(crate) fn settle(
+        &self,
+        region: &mut Region,
+        settling: &mut Settling,
+        stage: &mut Stage,
+        time: Time,
+    ) -> Result<(), AdvanceError> {
+        settling.held.clear();
+        settling.candidates.clear();
+        let rest = self.rest_speed();
+        let is_candidate = |record: &Collision| {
+            let at_rest = record.motion.normal_velocity.abs() <= rest;
+            record.parties.bilateral || (at_rest && self.holds(record))
+        };
+        let records = region.records.iter().enumerate();
+        settling.candidates.extend(records.filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
+        if settling.candidates.is_empty() {
+            return Ok(());
+        }
+        self.accelerate_region(region, settling, stage, time);
+        self.pose_problem(region, settling, stage);
+        let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        let any_bilateral = settling.problem.bilateral().contains(&true);
+        if scale == 0.0 && !any_bilateral {
+            return Ok(());
+        }
+        settling
+            .solver
+            .solve(&settling.problem, &mut settling.solution)
+            .map_err(|source| self.settle_error(region, settling, time, source))?;
+        self.choose_rows(region, settling, stage);
+        Ok(())
+    }
+
+    /// True if a row without bilateral character may carry a force.
+    fn holds(&self, record: &Collision) -> bool {
+        let _ = record;
+        self.settings.contact_forces
+    }
+
+    fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {
+        for &body in &region.bodies {
+            stage.movings[body.index()] = self.flyer(body).moving_at(time);
+        }
+        settling.laws.clear();
+        settling.laws.extend(region.bodies.iter().flat_map(|&body| self.laws_of(body)));
+        settling.laws.sort_unstable();
+        settling.laws.dedup();
+        let physics = self.physics();
+        let of_region = (region.bodies.as_slice(), settling.laws.as_slice());
+        stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
+    }
+
+    fn pose_problem(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let (problem, bodies) = (&mut settling.problem, &mut settling.bodies);
+        problem.clear();
+        bodies.clear();
+        bodies.extend(region.bodies.iter().map(|&body| {
+            problem.add_body(self.inertia(body)).expect("inertias were checked when the body was made")
+        }));
+        for &index in &settling.candidates {
+            let record = &region.records[index];
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            let places = sides.map(|body| region.place(body));
+            let spins = places.map(|place| place.map_or(Spin::default(), |place| spin(stage.accelerations[place])));
+            let offset = record.motion.kinematics.acceleration(&spins[0], &spins[1]);
+            let j = &record.motion.kinematics.jacobian;
+            let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
+            let row = match places {
+                [Some(a), Some(b)] => Row::new(bodies[a], coefficients[0], offset).against(bodies[b], coefficients[1]),
+                [Some(a), None] => Row::new(bodies[a], coefficients[0], offset),
+                [None, Some(b)] => Row::new(bodies[b], coefficients[1], offset),
+                [None, None] => continue,
+            };
+            let row = if record.parties.bilateral { row.bilateral() } else { row };
+            problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+        }
+    }
+
+    /// Holds the bilateral rows and those that carry a force.
+    fn choose_rows(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
+        let forces = &settling.solution.force;
+        let largest = forces.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+        let of_bodies = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| {
+            let flyer = self.flyer(body);
+            (DVec2::new(a[0], a[1]).length() + a[2].abs() * flyer.reach()) / flyer.body().inverse_mass
+        });
+        let least = FORCE_SHARE * (largest + of_bodies.fold(0.0, f64::max));
+        for (place, &index) in settling.candidates.iter().enumerate() {
+            let record = &mut region.records[index];
+            record.response.force = Some(forces[place]);
+            if record.parties.bilateral || forces[place] > least {
+                settling.held.push((index, self.held_row(record)));
+            }
+        }
+    }
+
+    fn held_row(&self, record: &Collision) -> HeldRow {
+        let source = self.source_of(record);
+        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let bilateral = record.parties.bilateral;
+        // A connector is kept at its target, a contact where it formed.
+        let gap = match source {
+            RowSource::Connector(..) => 0.0,
+            RowSource::Contact(_) => record.geometry.distance,
+        };
+        HeldRow { source, bodies, bilateral, gap }
+    }
+
+    fn settle_error(&self, region: &Region, settling: &Settling, time: Time, source: SolveError) -> AdvanceError {
+        let sides = |record: &Collision| [record.parties.primary.body, record.parties.normal.body];
+        let mut bodies: Vec<BodyId> =
+            settling.candidates.iter().flat_map(|&index| sides(&region.records[index])).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        AdvanceError::Contacts { time: time.seconds(), bodies, source: Box::new(source) }
+    }
+
+    /// What the motion of groups is computed from.
+    pub(crate) fn physics(&self) -> Physics<'_> {
+        Physics { mechanism: self.mechanism(), laws: &self.laws, extra: self.settings.extra }
+    }
+}
+
+fn spin([x, y, angular]: [f64; 3]) -> Spin {
+    Spin { linear: DVec2::new(x, y), angular }
+}

@@ -1,0 +1,152 @@
+//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features, a stop
+//! that closes, a force law that changes branch.
+//!
+//! Each is a function along the dense output whose first fall below zero is an event.
+
+use super::crossing::{NODES, first_fall, node};
+use super::dynamics::Dynamics;
+use super::group::SegmentEnd;
+use super::law::Snapshot;
+use crate::ode::Ode;
+use glam::DVec2;
+
+/// A force below this part of the group's largest is none: more than the rounding of nearly redundant contacts.
+pub(crate) const FORCE_SHARE: f64 = 1e-9;
+
+impl Dynamics<'_> {
+    /// The earliest event of the group itself on the segment, whose dense output and end forces are known.
+    pub(crate) fn find_event(&mut self) -> Option<(f64, SegmentEnd)> {
+        let mut earliest: Option<(f64, SegmentEnd)> = None;
+        let mut offer = |found: Option<f64>, end: SegmentEnd| {
+            if let Some(offset) = found.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
+                earliest = Some((offset, end));
+            }
+        };
+        if self.group.rows.iter().any(|row| !row.bilateral) {
+            let least = FORCE_SHARE * self.largest_force();
+            let samples = self.sample_forces(least);
+            for row in 0..self.group.rows.len() {
+                if self.group.rows[row].bilateral {
+                    continue;
+                }
+                let fall = first_fall(&samples[row], self.group.span, |offset| self.force_at(offset, row) + least);
+                offer(fall, SegmentEnd::Release(row));
+            }
+            self.stage.samples = samples;
+        }
+        for row in 0..self.group.rows.len() {
+            let Some(values) = self.sample(|this| this.room(row)) else { continue };
+            let fall = first_fall(&values, self.group.span, |offset| {
+                self.place_at(offset);
+                self.room(row).unwrap_or(f64::INFINITY)
+            });
+            offer(fall, SegmentEnd::Change(row));
+        }
+        for place in 0..self.group.laws.len() {
+            let law = self.group.laws[place];
+            for index in 0..self.physics.laws[law].switches() {
+                offer(self.find_switch(law, index), SegmentEnd::Switch);
+            }
+        }
+        earliest
+    }
+
+    /// The largest force [N] that acts on a body of the group or would give it its acceleration.
+    pub(crate) fn largest_force(&self) -> f64 {
+        let count = self.group.bodies.len();
+        let rows = self.group.forces.iter().chain(&self.group.end_forces);
+        let of_rows = rows.fold(0.0f64, |most, force| most.max(force.abs()));
+        let of_bodies = self.group.bodies.iter().enumerate().map(|(place, &body)| {
+            let flyer = &self.physics.mechanism.flyers[body.index()];
+            let at = 3 * (count + place);
+            let linear = DVec2::new(self.group.rates[at], self.group.rates[at + 1]).length();
+            (linear + self.group.rates[at + 2].abs() * flyer.reach()) / flyer.body().inverse_mass
+        });
+        of_rows + of_bodies.fold(0.0, f64::max)
+    }
+
+    /// Places the group's bodies where they are at an offset [s] of the segment.
+    fn place_at(&mut self, offset: f64) {
+        let mut trial = std::mem::take(&mut self.stage.trial);
+        trial.clear();
+        let paths = self.group.paths.iter().flatten();
+        trial.extend(paths.clone().map(|path| path.value_at(offset)));
+        trial.extend(paths.map(|path| path.derivative_at(offset)));
+        trial.resize(self.group.dimension(), 0.0);
+        self.stage.load(&self.group.bodies, &trial);
+        self.stage.trial = trial;
+    }
+
+    /// Forces of the rows at an offset [s] of the segment, left in the stage.
+    pub(crate) fn evaluate_at(&mut self, offset: f64) {
+        self.place_at(offset);
+        let trial = std::mem::take(&mut self.stage.trial);
+        let mut rates = std::mem::take(&mut self.stage.trial_rates);
+        rates.resize(trial.len(), 0.0);
+        let Ok(()) = self.derivative(offset, &trial, &mut rates);
+        (self.stage.trial, self.stage.trial_rates) = (trial, rates);
+    }
+
+    fn force_at(&mut self, offset: f64, row: usize) -> f64 {
+        self.evaluate_at(offset);
+        self.stage.forces[row]
+    }
+
+    /// The forces of all rows at the nodes, raised by `least`.
+    fn sample_forces(&mut self, least: f64) -> Vec<[f64; NODES]> {
+        let mut samples = std::mem::take(&mut self.stage.samples);
+        samples.clear();
+        samples.resize(self.group.rows.len(), [0.0; NODES]);
+        for index in 0..NODES {
+            if index > 0 && index + 1 < NODES {
+                self.evaluate_at(node(index, self.group.span));
+            }
+            let forces = match index {
+                0 => &self.group.forces,
+                _ if index + 1 == NODES => &self.group.end_forces,
+                _ => &self.stage.forces,
+            };
+            for (sample, force) in samples.iter_mut().zip(forces) {
+                sample[index] = force + least;
+            }
+        }
+        samples
+    }
+
+    /// A function of the bodies' places at the nodes, if it has a value.
+    fn sample(&mut self, f: impl Fn(&Self) -> Option<f64>) -> Option<[f64; NODES]> {
+        let mut values = [0.0; NODES];
+        for (index, value) in values.iter_mut().enumerate() {
+            self.place_at(node(index, self.group.span));
+            *value = f(self)?;
+        }
+        Some(values)
+    }
+
+    fn room(&self, row: usize) -> Option<f64> {
+        self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings)
+    }
+
+    fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {
+        self.place_at(offset);
+        let now = Snapshot::new(self.start.seconds() + offset, &self.stage.movings);
+        self.physics.laws[law].switch(index, &now)
+    }
+
+    /// The first change of sign of a switching function. Just after one it is zero: a little later tells its sign.
+    fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
+        let span = self.group.span;
+        let sign = self.switch_at(law, index, span * SIGN_AT).signum();
+        let values = std::array::from_fn(|node_index| {
+            let value = sign * self.switch_at(law, index, node(node_index, span));
+            if node_index == 0 { value.max(0.0) } else { value }
+        });
+        first_fall(&values, span, |offset| {
+            let value = sign * self.switch_at(law, index, offset);
+            if offset <= span * SIGN_AT { value.max(0.0) } else { value }
+        })
+    }
+}
+
+/// Part of the segment after which the sign of a switching function is taken.
+const SIGN_AT: f64 = 1.0 / 1024.0;
