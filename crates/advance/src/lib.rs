@@ -14,6 +14,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod ode;
 mod queue;
 #[cfg(feature = "rigid")]
 pub mod rigid;

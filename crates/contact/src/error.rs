@@ -89,7 +89,7 @@ pub enum ProblemError {
 }
 
 /// Why there is no answer.
-#[derive(Clone, Debug, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
     /// No forces whatever satisfy the rows; the certificate proves it.

@@ -1,18 +1,219 @@
-//! Connectors in the region of an event.
+//! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
 
+use super::path::Path;
 use super::region::Region;
 use super::rows::RowSource;
+use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::Collision;
+use halfgap_collision::{
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, Detector, Flight, RailHint, Rope, RopeSearch,
+    rope_contact,
+};
+
+/// What is known of a connector beside its parts.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ConnectorState {
+    /// Where on a rail the point is.
+    pub(crate) hint: Option<RailHint>,
+    /// A rope does not go taut before this time, other than predicted.
+    clear: Time,
+    /// When it goes taut; `None` if it does not while the motions are known, or the search goes on then.
+    taut: Option<Time>,
+    /// By how much longer [m] a rope is taken that has just gone slack.
+    slack: f64,
+    /// The rope is taut and held.
+    held: bool,
+}
+
+/// One search looks at most this far ahead [s].
+const LONGEST_SPAN: f64 = 1e6;
 
 impl RigidSystem {
-    /// Adds the records of the connectors of a body of the region.
-    pub(crate) fn collect_connectors(&self, region: &mut Region, place: usize, time: Time) {
-        let _ = (region, place, time);
+    pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
+        &self.connectors[id.index()]
     }
 
-    pub(crate) fn source_of(&self, record: &Collision) -> RowSource {
-        RowSource::Contact([record.parties.primary.feature, record.parties.normal.feature])
+    /// Adds the records of the connectors of a body of the region.
+    pub(crate) fn collect_connectors(&self, region: &mut Region, place: usize, time: Time) {
+        let body = region.bodies[place];
+        for &id in &self.connectors_of[body.index()] {
+            let connector = self.connector(id);
+            let [a, b] = connector.bodies();
+            let other = if a == body { b } else { a };
+            if region.place(other).is_some_and(|earlier| earlier < place) {
+                continue;
+            }
+            let moving = [a, b].map(|body| self.moving_at(body, time));
+            let hint = self.connector_states[id.index()].hint;
+            let tolerances = &self.settings.tolerances;
+            for row in 0..connector.row_count() {
+                let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
+                if !connector.is_bilateral() && sample.gap > tolerances.accuracy {
+                    continue;
+                }
+                let row = u32::try_from(row).unwrap_or(u32::MAX);
+                let bodies = [&moving[0], &moving[1]];
+                region.records.push(Collision::of_connector(
+                    id,
+                    row,
+                    connector,
+                    &sample,
+                    bodies,
+                    tolerances,
+                    time.seconds(),
+                ));
+                if self.is_movable(other) {
+                    region.add(other);
+                }
+            }
+        }
+    }
+
+    /// The record of a connector's row anew, with the response that it has.
+    pub(crate) fn remeasure_connector(&self, record: &mut Collision, id: ConnectorId, row: u32, time: Time) {
+        let connector = self.connector(id);
+        let moving = connector.bodies().map(|body| self.moving_at(body, time));
+        let hint = self.connector_states[id.index()].hint;
+        let sample = connector.measure_near(row as usize, &moving[0], &moving[1], hint.as_ref());
+        let response = record.response;
+        let (bodies, tolerances) = ([&moving[0], &moving[1]], &self.settings.tolerances);
+        *record = Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
+        record.response = response;
+    }
+
+    /// What makes the row of a record.
+    pub(crate) fn source_of(&self, record: &Collision) -> Option<RowSource> {
+        if let Detector::Connector { id, row } = record.parties.detector {
+            return Some(RowSource::Connector(id, row as usize));
+        }
+        Some(RowSource::Contact([record.parties.primary.feature()?, record.parties.normal.feature()?]))
+    }
+
+    /// Notes where on their rails the points of a region's connectors are.
+    pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
+        for &body in &region.bodies {
+            for index in 0..self.connectors_of[body.index()].len() {
+                let id = self.connectors_of[body.index()][index];
+                let Some(path) = self.connector(id).path() else { continue };
+                let (anchor, _) = self.connector(id).anchors();
+                let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
+                let state = &self.connector_states[id.index()];
+                let hint = path.nearest(point, state.hint.as_ref()).hint();
+                self.connector_states[id.index()].hint = Some(hint.staying());
+            }
+        }
+    }
+
+    /// The point of a rail passes a joint of the path: it goes on along the next piece.
+    pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) {
+        let connector = self.connector(id);
+        let (Some(path), (anchor, _)) = (connector.path(), connector.anchors()) else { return };
+        let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
+        let place = path.nearest(point, self.connector_states[id.index()].hint.as_ref());
+        let nearest = path
+            .knots()
+            .iter()
+            .filter(|knot| knot.before == place.piece() || knot.after == place.piece())
+            .min_by(|p, q| {
+                let off = |arc: f64| (arc - place.arc_length).abs();
+                off(p.arc_length).total_cmp(&off(q.arc_length))
+            });
+        let Some(knot) = nearest else { return };
+        let hint = path.hint_past(knot, knot.before == place.piece()).staying();
+        self.connector_states[id.index()].hint = Some(hint);
+    }
+
+    /// Predicts when the ropes of a region go taut.
+    pub(crate) fn predict_ropes(&mut self, region: &Region, settling: &Settling) {
+        let sink = self.sink();
+        for &body in &region.bodies {
+            for index in 0..self.connectors_of[body.index()].len() {
+                let id = self.connectors_of[body.index()][index];
+                let Some(rope) = rope_of(self.connector(id)) else { continue };
+                let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, self.now));
+                let sample = self.connector(id).measure(0, &a, &b);
+                let at_rest = sample.kinematics.rate <= self.rest_speed();
+                let touches = sample.gap <= self.settings.tolerances.accuracy;
+                let state = &mut self.connector_states[id.index()];
+                state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                state.slack = if at_rest && touches { sink + (-sample.gap).max(0.0) } else { 0.0 };
+                state.clear = self.now;
+                self.predict_rope(id, &rope);
+            }
+        }
+    }
+
+    /// Searches on for the ropes of some bodies, whose motions are known for longer now.
+    pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
+        for &body in bodies {
+            for index in 0..self.connectors_of[body.index()].len() {
+                let id = self.connectors_of[body.index()][index];
+                let is_known = self.connector_states[id.index()].taut.is_some();
+                if let (Some(rope), false) = (rope_of(self.connector(id)), is_known) {
+                    self.predict_rope(id, &rope);
+                }
+            }
+        }
+    }
+
+    fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
+        let source = self.connector_source(id);
+        self.connector_states[id.index()].taut = None;
+        if self.connector_states[id.index()].held {
+            self.queue.clear(source);
+            return;
+        }
+        let [a, b] = self.connector(id).bodies();
+        let known = [a, b].map(|body| self.segment_end(body));
+        let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
+        let state = &self.connector_states[id.index()];
+        let from = state.clear.max(self.now);
+        if until <= from {
+            self.queue.clear(source);
+            return;
+        }
+        let span = until.since(from).min(LONGEST_SPAN);
+        let rope = Rope { length: rope.length + state.slack, ..*rope };
+        let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
+        let path = |body: BodyId| {
+            if body.is_world() {
+                (Path::Flight(&still), 0.0)
+            } else {
+                (self.flyer(body).path(), self.flyer(body).offset(from))
+            }
+        };
+        let ((path_a, offset_a), (path_b, offset_b)) = (path(a), path(b));
+        let found =
+            rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search);
+        let (clear, taut) = match found {
+            RopeSearch::Taut(wait) => (from.plus(wait), Some(from.plus(wait))),
+            RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
+        };
+        let searches_on = taut.is_none() && clear < until;
+        let state = &mut self.connector_states[id.index()];
+        (state.clear, state.taut) = (clear, taut);
+        if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
+    }
+
+    /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
+    pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
+        if self.connector_states[id.index()].taut.is_some() {
+            return true;
+        }
+        if let Some(rope) = rope_of(self.connector(id)) {
+            self.predict_rope(id, &rope);
+        }
+        false
+    }
+}
+
+/// The rope of a connector, if it is one.
+fn rope_of(connector: &Connector) -> Option<Rope> {
+    match &connector.kind {
+        ConnectorKind::Rope { a, b, length } => {
+            Some(Rope { point_a: a.point, point_b: b.point, length: *length })
+        }
+        _ => None,
     }
 }

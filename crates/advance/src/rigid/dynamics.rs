@@ -230,7 +230,11 @@ impl Dynamics<'_> {
 impl ExtraAcceleration {
     /// Acceleration [m/s^2] that is added to a gap's own, for a gap too large by `gap` [m] that grows at `rate` [m/s].
     fn acceleration(&self, gap: f64, rate: f64) -> f64 {
-        if self.distance { (2.0 * rate * self.time + gap) / (self.time * self.time) } else { rate / self.time }
+        if self.distance {
+            (2.0 * rate * self.time + gap) / (self.time * self.time)
+        } else {
+            rate / self.time
+        }
     }
 }
 

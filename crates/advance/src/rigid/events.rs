@@ -9,7 +9,7 @@ use super::rows::RowSource;
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, FeatureRule};
+use halfgap_collision::{BodyId, ConnectorId, FeatureRule, GapKinematics};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -44,7 +44,11 @@ impl RigidSystem {
     }
 
     /// Two bodies come into contact; true if there was an impact.
-    pub(crate) fn handle_contact(&mut self, pair: PairId, features: [FeatureId; 2]) -> Result<bool, AdvanceError> {
+    pub(crate) fn handle_contact(
+        &mut self,
+        pair: PairId,
+        features: [FeatureId; 2],
+    ) -> Result<bool, AdvanceError> {
         let bodies = self.pairs.get(pair).bodies;
         self.note_repeat(pair)?;
         let mut work = std::mem::take(&mut self.work);
@@ -57,22 +61,30 @@ impl RigidSystem {
 
     /// A group's segment ends, or something ends it early.
     pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
-        let Some(group) = self.group_of(leader) else { return Ok(()) };
         let mut work = std::mem::take(&mut self.work);
-        let outcome = match group.event {
-            None => {
-                work.seeds.clear();
-                work.seeds.extend(&group.bodies);
-                self.extend_naturally(leader, &work.seeds)
-            }
-            Some((_, SegmentEnd::Release(_) | SegmentEnd::Change(_) | SegmentEnd::Stop | SegmentEnd::Switch)) => {
-                work.seeds.clear();
-                work.seeds.extend(&group.bodies);
-                self.handle_change(&mut work)
-            }
-        };
+        let outcome = self.handle_group_with(leader, &mut work);
         self.work = work;
         outcome
+    }
+
+    fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let Some(group) = self.group_of(leader) else { return Ok(()) };
+        work.seeds.clear();
+        work.seeds.extend(&group.bodies);
+        let Some((_, end)) = group.event else { return self.extend_naturally(leader, &work.seeds) };
+        let changed = match end {
+            SegmentEnd::Change(row) => Some(group.rows[row].source),
+            SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
+        };
+        if let Some(RowSource::Connector(id, _)) = changed {
+            // Where a rail has a corner, the velocity across the next piece is stopped.
+            self.pass_knot(id, self.now);
+            return self.handle_impact(work, None).map(|_| ());
+        }
+        if end == SegmentEnd::Stop {
+            return self.handle_impact(work, None).map(|_| ());
+        }
+        self.handle_change(work)
     }
 
     fn extend_naturally(&mut self, leader: BodyId, bodies: &[BodyId]) -> Result<(), AdvanceError> {
@@ -81,7 +93,18 @@ impl RigidSystem {
             self.renew_stay(body);
         }
         self.predict_all_of(bodies, false);
+        self.search_ropes_on(bodies);
         Ok(())
+    }
+
+    /// A rope goes taut; true if there was an impact.
+    pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
+        let mut work = std::mem::take(&mut self.work);
+        work.seeds.clear();
+        work.seeds.extend(self.connector(id).bodies());
+        let outcome = self.handle_impact(&mut work, None);
+        self.work = work;
+        outcome
     }
 
     /// What is held changes, but nothing closes.
@@ -113,6 +136,7 @@ impl RigidSystem {
 
     /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        self.note_rails(&work.region, self.now);
         let mut stage = std::mem::take(&mut self.stage);
         let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now);
         self.stage = stage;
@@ -123,7 +147,13 @@ impl RigidSystem {
             self.renew_stay(body);
         }
         self.predict_all_of(&work.region.bodies, true);
+        self.predict_ropes(&work.region, &work.settling);
         Ok(())
+    }
+
+    /// Distance [m] by which a contact without force may sink before it fires again.
+    pub(crate) fn sink(&self) -> f64 {
+        SINK_SHARE * self.settings.tolerances.accuracy
     }
 
     /// By how much [s] the time is off at which a pair is at its target gap, if that can be told.
@@ -133,7 +163,7 @@ impl RigidSystem {
         let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
         let sample = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose)?;
         let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
-        let rate = halfgap_collision::GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
+        let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
         let pair = self.pairs.between(bodies[0], bodies[1])?;
         let rule = self.pairs.rules(pair).iter().find(|rule| rule.features == features);
         let target = rule.and_then(|rule| rule.target).unwrap_or(self.settings.tolerances.target_gap);
@@ -151,7 +181,7 @@ impl RigidSystem {
                 self.pairs.rules_mut(pair).clear();
             }
         }
-        let sink = SINK_SHARE * self.settings.tolerances.accuracy;
+        let sink = self.sink();
         let rest = self.rest_speed();
         for touch in &region.touches {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
@@ -180,7 +210,7 @@ impl RigidSystem {
             return (f64::INFINITY, 0.0);
         };
         let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
-        (sample.gap, halfgap_collision::GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
+        (sample.gap, GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
     }
 
     fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {

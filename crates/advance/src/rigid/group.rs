@@ -18,8 +18,6 @@ pub(crate) enum Work {
 /// What ends a group's segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SegmentEnd {
-    /// The step was as long as accuracy allows.
-    Natural,
     /// The force of a row falls to zero.
     Release(usize),
     /// A contact runs off its features, or a rail's piece ends.

@@ -74,15 +74,23 @@ impl RigidSystem {
     }
 
     /// A group with its dynamics.
-    fn with_group<T>(&mut self, group: &mut Group, act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T) -> T {
+    fn with_group<T>(
+        &mut self,
+        group: &mut Group,
+        act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
+    ) -> T {
         let start = group.start;
         let mut stage = std::mem::take(&mut self.stage);
-        let mut stepper = std::mem::replace(&mut self.stepper, crate::ode::Stepper::new(self.settings.method));
+        let mut stepper =
+            std::mem::replace(&mut self.stepper, crate::ode::Stepper::new(self.settings.method));
         let mut scales = std::mem::take(&mut self.scales);
         let answer = {
             let physics = self.physics();
             let mut dynamics = Dynamics { physics, group, stage: &mut stage, start };
-            act(&mut dynamics, &mut Tools { stepper: &mut stepper, scales: &mut scales, settings: &self.settings })
+            act(
+                &mut dynamics,
+                &mut Tools { stepper: &mut stepper, scales: &mut scales, settings: &self.settings },
+            )
         };
         (self.stage, self.stepper, self.scales) = (stage, stepper, scales);
         answer
@@ -92,7 +100,12 @@ impl RigidSystem {
     ///
     /// A step is repeated up to the event, since dense output is less exact than the ends of steps. `refine` tells by how
     /// much the time is off once the bodies are in place.
-    pub(crate) fn cut_groups(&mut self, region: &Region, time: Time, refine: impl Fn(&Self, Time) -> Option<f64>) -> Time {
+    pub(crate) fn cut_groups(
+        &mut self,
+        region: &Region,
+        time: Time,
+        refine: impl Fn(&Self, Time) -> Option<f64>,
+    ) -> Time {
         let mut time = time;
         for round in 0..=MOST_CORRECTIONS {
             for &leader in &region.groups {
@@ -103,7 +116,8 @@ impl RigidSystem {
             }
             let Some(correction) = refine(self, time) else { break };
             let corrected = time.plus(correction);
-            let starts = region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
+            let starts =
+                region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
             let latest = starts.map(|group| group.start).max().unwrap_or(time);
             if corrected <= latest {
                 break;

@@ -2,12 +2,12 @@
 
 use super::error::AdvanceError;
 use super::region::Region;
-use super::rows::moving_of;
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, Collision, Moving};
+use halfgap_collision::{BodyId, BodyState, Collision, Detector, Moving};
 use halfgap_contact::{CollisionRow, Impact, ImpactError, Inertia};
+use halfgap_geometry::GapSample;
 
 /// Rates below this part of `velocity_tol` are at rest: far more than rounding leaves of a solve, far less than any
 /// approach that counts.
@@ -122,24 +122,18 @@ impl RigidSystem {
 
     /// Brings a record to the bodies' present motion at a time.
     pub(crate) fn remeasure_record(&self, record: &mut Collision, time: Time) {
-        let sides = [record.parties.primary.body, record.parties.normal.body];
-        let moving = sides.map(|body| self.moving_at(body, time));
-        self.remeasure_with(record, [&moving[0], &moving[1]], time);
-    }
-
-    /// Brings a record to the places in a list of all bodies.
-    pub(crate) fn remeasure_in(&self, record: &mut Collision, movings: &[Moving], time: Time) {
-        let sides = [record.parties.primary.body, record.parties.normal.body];
-        let moving = sides.map(|body| moving_of(movings, body));
-        self.remeasure_with(record, [&moving[0], &moving[1]], time);
-    }
-
-    fn remeasure_with(&self, record: &mut Collision, moving: [&Moving; 2], time: Time) {
-        let [primary, normal] = [&record.parties.primary, &record.parties.normal]
-            .map(|side| self.flyer(side.body).body().shape.feature(side.feature));
-        let sample = halfgap_geometry::GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
+        if let Detector::Connector { id, row } = record.parties.detector {
+            return self.remeasure_connector(record, id, row, time);
+        }
+        let sides = [record.parties.primary, record.parties.normal];
+        let (Some(primary), Some(normal)) = (sides[0].feature(), sides[1].feature()) else { return };
+        let moving = sides.map(|side| self.moving_at(side.body, time));
+        let shape = |side: usize| &self.flyer(sides[side].body).body().shape;
+        let (primary, normal) = (shape(0).feature(primary), shape(1).feature(normal));
+        let sample = GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
         if let Some(sample) = sample.filter(|sample| sample.primary_is_a) {
-            record.update((&sample, [primary.radius(), normal.radius()]), moving, time.seconds());
+            let measured = (&sample, [primary.radius(), normal.radius()]);
+            record.update(measured, [&moving[0], &moving[1]], time.seconds());
         }
     }
 

@@ -23,7 +23,10 @@ impl DensePath {
     pub(crate) fn set(&mut self, polynomials: &[SegmentPolynomial; 3]) {
         let [x, y, angle] = *polynomials;
         *self = Self {
-            acceleration: x.second_derivative_spread().largest().hypot(y.second_derivative_spread().largest()),
+            acceleration: x
+                .second_derivative_spread()
+                .largest()
+                .hypot(y.second_derivative_spread().largest()),
             jerk: x.third_derivative_spread().largest().hypot(y.third_derivative_spread().largest()),
             angular_acceleration: angle.second_derivative_spread().largest(),
             angular_jerk: angle.third_derivative_spread().largest(),

@@ -5,9 +5,7 @@ use super::path::Path;
 use super::system::RigidSystem;
 use crate::queue::SourceId;
 use crate::time::Time;
-use halfgap_collision::{
-    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, disc_contact,
-};
+use halfgap_collision::{BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, disc_contact};
 use halfgap_geometry::GapSample;
 
 /// One search looks at most this far ahead [s], then goes on: bounds over the span stay finite.
@@ -18,8 +16,10 @@ impl RigidSystem {
         for body in self.bodies() {
             self.place_box(body);
         }
-        for body in self.bodies().filter(|&body| self.is_movable(body)) {
-            self.find_neighbours(body);
+        for body in self.bodies() {
+            if self.is_movable(body) {
+                self.find_neighbours(body);
+            }
         }
     }
 
@@ -74,10 +74,14 @@ impl RigidSystem {
         any_movable && self.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
     }
 
+    /// When the present segment of a body ends; `None` for a flight.
+    pub(crate) fn segment_end(&self, body: BodyId) -> Option<Time> {
+        if body.is_world() { None } else { self.group_of(body).map(|group| group.end()) }
+    }
+
     /// Until when the present motion of a body is known and near; `None` for ever.
     fn known_until(&self, body: BodyId) -> Option<Time> {
-        let end = self.group_of(body).map(|group| group.end());
-        match (self.stays[body.index()], end) {
+        match (self.stays[body.index()], self.segment_end(body)) {
             (Some(stay), Some(end)) => Some(stay.min(end)),
             (only, None) | (None, only) => only,
         }

@@ -13,10 +13,6 @@ use halfgap_geometry::FeatureId;
 pub(crate) struct Touch {
     pub(crate) bodies: [BodyId; 2],
     pub(crate) features: [FeatureId; 2],
-    /// Gap [m].
-    pub(crate) gap: f64,
-    /// Rate [m/s] before the event.
-    pub(crate) rate: f64,
 }
 
 /// Bodies and records of an event. Buffers are kept from one event to the next.
@@ -56,7 +52,7 @@ impl Region {
         (stamp == self.stamp).then_some(place as usize)
     }
 
-    fn add(&mut self, body: BodyId) {
+    pub(crate) fn add(&mut self, body: BodyId) {
         if self.place(body).is_none() {
             let place = u32::try_from(self.bodies.len()).unwrap_or(u32::MAX);
             self.places[body.index()] = (self.stamp, place);
@@ -125,11 +121,11 @@ impl RigidSystem {
         let tolerances = &self.settings.tolerances;
         let mut fresh = std::mem::take(&mut region.fresh);
         fresh.clear();
-        let depth = self.deepest();
+        let depth = tolerances.distance_tol();
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
         // Farther than the target zone a row fires in its own time.
         fresh.retain(|record| record.zone() >= Zone::Target);
-        region.touches.extend(fresh.iter().map(|record| touch_of(record, [first.id, second.id])));
+        region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
         if fresh.len() > 1 {
             merge_collisions(&mut fresh);
         }
@@ -147,14 +143,11 @@ impl RigidSystem {
     }
 }
 
-fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Touch {
+fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Option<Touch> {
     let (primary, normal) = (&record.parties.primary, &record.parties.normal);
-    let features = if primary.body == bodies[0] {
-        [primary.feature, normal.feature]
-    } else {
-        [normal.feature, primary.feature]
-    };
-    Touch { bodies, features, gap: record.geometry.distance, rate: record.motion.normal_velocity }
+    let features = [primary.feature()?, normal.feature()?];
+    let features = if primary.body == bodies[0] { features } else { [features[1], features[0]] };
+    Some(Touch { bodies, features })
 }
 
 impl Touch {

@@ -1,7 +1,10 @@
 //! The rows that hold bodies together or apart during a segment: contacts and connectors, measured at any moment.
 
 use super::flyer::Flyer;
-use halfgap_collision::{BodyId, Connector, ConnectorId, GapKinematics, Moving, Tolerances};
+use glam::DVec2;
+use halfgap_collision::{
+    BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailPath, Tolerances,
+};
 use halfgap_geometry::{FeatureId, GapSample, Shape};
 
 /// Part of the accuracy by which a contact may run off its features before it is said to have changed: far more than
@@ -26,6 +29,8 @@ pub(crate) struct HeldRow {
     pub(crate) bilateral: bool,
     /// Gap [m] at which it formed.
     pub(crate) gap: f64,
+    /// Piece of the rail, of a connector that has one.
+    pub(crate) hint: Option<RailHint>,
 }
 
 /// A row at one moment.
@@ -60,7 +65,7 @@ impl Mechanism<'_> {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, index) => {
-                let sample = self.connectors[id.0 as usize].measure(index, &a, &b);
+                let sample = self.connectors[id.index()].measure_near(index, &a, &b, row.hint.as_ref());
                 RowMoment { gap: sample.gap, kinematics: sample.kinematics }
             }
             RowSource::Contact(features) => {
@@ -76,14 +81,42 @@ impl Mechanism<'_> {
             .expect("a contact was made from features that touch")
     }
 
-    /// How far [m] a held contact is from running off its features; negative once it has. `None` for connectors.
+    /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
+    /// rows that cannot.
     pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
-        let RowSource::Contact(features) = row.source else { return None };
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
-        let sample = self.sample(row.bodies, features, [&a, &b]);
-        let beyond = |side: usize, excess: f64| excess * self.shape(row.bodies[side]).lever(features[side]);
-        let outside =
-            sample.overrun.max(beyond(0, sample.excess_primary)).max(beyond(1, sample.excess_normal));
-        Some(CHANGE_SHARE * self.tolerances.accuracy - outside)
+        match row.source {
+            RowSource::Connector(id, _) => {
+                let connector = &self.connectors[id.index()];
+                let path = connector.path().filter(|path| !path.knots().is_empty())?;
+                rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [&a, &b]);
+                let beyond =
+                    |side: usize, excess: f64| excess * self.shape(row.bodies[side]).lever(features[side]);
+                let outside =
+                    sample.overrun.max(beyond(0, sample.excess_primary)).max(beyond(1, sample.excess_normal));
+                Some(CHANGE_SHARE * self.tolerances.accuracy - outside)
+            }
+        }
     }
+}
+
+/// Distance [m] along a rail to the nearer end of the piece on which a point is.
+fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
+    let place = path.nearest(point, hint);
+    let ends = path.knots().iter().flat_map(|knot| {
+        let before = (knot.before == place.piece()).then_some(knot.arc_length - place.arc_length);
+        let after = (knot.after == place.piece()).then_some(place.arc_length - knot.arc_length);
+        [before, after]
+    });
+    // On a closed path the joint at its start is at both of its ends.
+    let wrapped = |room: f64| if path.is_closed() { wrap(room, path.length()) } else { room };
+    ends.flatten().map(wrapped).min_by(f64::total_cmp)
+}
+
+/// A difference of arc lengths on a closed path, between minus a half and a half of its length.
+fn wrap(difference: f64, length: f64) -> f64 {
+    difference - length * (difference / length).round()
 }

@@ -72,7 +72,8 @@ impl Dynamics<'_> {
             if step.is_nan() || step <= shortest {
                 break Err(StepFailure::Collapsed(step));
             }
-            let Ok(()) = stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, step, &mut end);
+            let Ok(()) =
+                stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, step, &mut end);
             let error = stepper.error_norm(scales);
             if !error.is_finite() {
                 (step, rejected) = (step * RETREAT, true);
@@ -80,8 +81,11 @@ impl Dynamics<'_> {
             }
             let method = stepper.method();
             if error <= 1.0 {
-                let factor =
-                    if rejected { method.step_factor_after_rejection(error) } else { method.step_factor(error) };
+                let factor = if rejected {
+                    method.step_factor_after_rejection(error)
+                } else {
+                    method.step_factor(error)
+                };
                 self.group.next_step = Some(step * factor);
                 break Ok(());
             }
@@ -99,7 +103,8 @@ impl Dynamics<'_> {
         end.clear();
         end.extend_from_slice(&state);
         if offset > 0.0 {
-            let Ok(()) = stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, offset, &mut end);
+            let Ok(()) =
+                stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, offset, &mut end);
         }
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
         self.group.span = offset;

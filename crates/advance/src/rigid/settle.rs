@@ -71,7 +71,9 @@ impl RigidSystem {
             record.parties.bilateral || (at_rest && self.holds(record))
         };
         let records = region.records.iter().enumerate();
-        settling.candidates.extend(records.filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
+        settling
+            .candidates
+            .extend(records.filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
         if settling.candidates.is_empty() {
             return Ok(());
         }
@@ -90,10 +92,9 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// True if a row without bilateral character may carry a force.
+    /// True if a unilateral row may carry a force: connectors always do.
     fn holds(&self, record: &Collision) -> bool {
-        let _ = record;
-        self.settings.contact_forces
+        self.settings.contact_forces || record.parties.primary.site.is_none()
     }
 
     fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {
@@ -120,12 +121,15 @@ impl RigidSystem {
             let record = &region.records[index];
             let sides = [record.parties.primary.body, record.parties.normal.body];
             let places = sides.map(|body| region.place(body));
-            let spins = places.map(|place| place.map_or(Spin::default(), |place| spin(stage.accelerations[place])));
+            let spins =
+                places.map(|place| place.map_or(Spin::default(), |place| spin(stage.accelerations[place])));
             let offset = record.motion.kinematics.acceleration(&spins[0], &spins[1]);
             let j = &record.motion.kinematics.jacobian;
             let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
             let row = match places {
-                [Some(a), Some(b)] => Row::new(bodies[a], coefficients[0], offset).against(bodies[b], coefficients[1]),
+                [Some(a), Some(b)] => {
+                    Row::new(bodies[a], coefficients[0], offset).against(bodies[b], coefficients[1])
+                }
                 [Some(a), None] => Row::new(bodies[a], coefficients[0], offset),
                 [None, Some(b)] => Row::new(bodies[b], coefficients[1], offset),
                 [None, None] => continue,
@@ -148,24 +152,29 @@ impl RigidSystem {
             let record = &mut region.records[index];
             record.response.force = Some(forces[place]);
             if record.parties.bilateral || forces[place] > least {
-                settling.held.push((index, self.held_row(record)));
+                settling.held.extend(self.held_row(record).map(|row| (index, row)));
             }
         }
     }
 
-    fn held_row(&self, record: &Collision) -> HeldRow {
-        let source = self.source_of(record);
+    fn held_row(&self, record: &Collision) -> Option<HeldRow> {
+        let source = self.source_of(record)?;
         let bodies = [record.parties.primary.body, record.parties.normal.body];
-        let bilateral = record.parties.bilateral;
         // A connector is kept at its target, a contact where it formed.
-        let gap = match source {
-            RowSource::Connector(..) => 0.0,
-            RowSource::Contact(_) => record.geometry.distance,
+        let (gap, hint) = match source {
+            RowSource::Connector(id, _) => (0.0, self.connector_states[id.index()].hint),
+            RowSource::Contact(_) => (record.geometry.distance, None),
         };
-        HeldRow { source, bodies, bilateral, gap }
+        Some(HeldRow { source, bodies, bilateral: record.parties.bilateral, gap, hint })
     }
 
-    fn settle_error(&self, region: &Region, settling: &Settling, time: Time, source: SolveError) -> AdvanceError {
+    fn settle_error(
+        &self,
+        region: &Region,
+        settling: &Settling,
+        time: Time,
+        source: SolveError,
+    ) -> AdvanceError {
         let sides = |record: &Collision| [record.parties.primary.body, record.parties.normal.body];
         let mut bodies: Vec<BodyId> =
             settling.candidates.iter().flat_map(|&index| sides(&region.records[index])).collect();

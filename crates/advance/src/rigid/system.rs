@@ -4,6 +4,7 @@
 //! Between events nothing is computed; an event touches only its bodies and what is near them.
 
 use super::boxes::Room;
+use super::connectors::ConnectorState;
 use super::dynamics::{ExtraAcceleration, Stage};
 use super::error::AdvanceError;
 use super::events::EventWork;
@@ -104,6 +105,7 @@ pub struct RigidSystem {
     pub(crate) flyers: Vec<Flyer>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) connectors_of: Vec<Vec<ConnectorId>>,
+    pub(crate) connector_states: Vec<ConnectorState>,
     pub(crate) laws: Vec<Arc<dyn ForceLaw>>,
     laws_of: Vec<Vec<usize>>,
     /// Whether each law has a potential.
@@ -157,11 +159,17 @@ impl RigidSystem {
             recent: vec![Recent::default(); count],
             ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
             has_potential: laws.iter().map(|law| law.potential(&snapshot).is_some()).collect(),
-            connectors_of: index_by_body(count, connectors.iter().map(|connector| connector.bodies().to_vec()))
-                .into_iter()
-                .map(|list| list.into_iter().map(|index| ConnectorId(u32::try_from(index).unwrap_or(u32::MAX))).collect())
-                .collect(),
+            connectors_of: index_by_body(
+                count,
+                connectors.iter().map(|connector| connector.bodies().to_vec()),
+            )
+            .into_iter()
+            .map(|list| {
+                list.into_iter().map(|index| ConnectorId(u32::try_from(index).unwrap_or(u32::MAX))).collect()
+            })
+            .collect(),
             laws_of: index_by_body(count, laws.iter().map(|law| law.bodies().to_vec())),
+            connector_states: vec![ConnectorState::default(); connectors.len()],
             connectors,
             laws,
             flyers,
@@ -266,6 +274,10 @@ impl RigidSystem {
         self.count_u32().saturating_mul(2)
     }
 
+    pub(crate) fn connector_source(&self, id: ConnectorId) -> SourceId {
+        SourceId(self.first_connector_source().saturating_add(id.0))
+    }
+
     fn first_pair_source(&self) -> u32 {
         self.first_connector_source() + u32::try_from(self.connectors.len()).unwrap_or(u32::MAX)
     }
@@ -281,6 +293,9 @@ impl RigidSystem {
             }
             self.predict(pair);
             return Ok(false);
+        }
+        if let Some(id) = source.0.checked_sub(self.first_connector_source()).map(ConnectorId) {
+            return if self.rope_fires(id) { self.handle_rope(id) } else { Ok(false) };
         }
         match source.0.checked_sub(self.count_u32()).map(BodyId) {
             Some(leader) => self.handle_group(leader)?,

@@ -29,7 +29,8 @@ impl Dynamics<'_> {
                 if self.group.rows[row].bilateral {
                     continue;
                 }
-                let fall = first_fall(&samples[row], self.group.span, |offset| self.force_at(offset, row) + least);
+                let fall =
+                    first_fall(&samples[row], self.group.span, |offset| self.force_at(offset, row) + least);
                 offer(fall, SegmentEnd::Release(row));
             }
             self.stage.samples = samples;
