@@ -1,0 +1,33 @@
+//! How long the next step may be.
+
+use super::method::Method;
+
+/// The next step aims at this part of the length at which the error would be just acceptable.
+const SAFETY: f64 = 0.9;
+/// A step shrinks to this part at most, since the estimate says little about much shorter steps.
+const SMALLEST_FACTOR: f64 = 0.2;
+/// A step grows by this factor at most, since the estimate says little about much longer steps.
+const LARGEST_FACTOR: f64 = 6.0;
+
+impl Method {
+    /// Factor from an accepted step to the next, after an error norm.
+    ///
+    /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short. Methods with
+    /// fixed steps answer 1; a norm that is not finite asks for the smallest factor.
+    #[must_use]
+    pub fn step_factor(self, error_norm: f64) -> f64 {
+        let Some(order) = self.error_order() else { return 1.0 };
+        if !error_norm.is_finite() {
+            return SMALLEST_FACTOR;
+        }
+        let factor = SAFETY * error_norm.powf(-1.0 / f64::from(order + 1));
+        factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)
+    }
+
+    /// Factor for the step after one that was not accepted, or after one that was accepted only on another try: it does
+    /// not grow.
+    #[must_use]
+    pub fn step_factor_after_rejection(self, error_norm: f64) -> f64 {
+        self.step_factor(error_norm).min(1.0)
+    }
+}

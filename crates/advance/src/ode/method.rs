@@ -1,0 +1,63 @@
+//! The methods there are.
+
+use super::dop853::DOP853;
+use super::dormand_prince5::DORMAND_PRINCE5;
+use super::tableau::{EULER, MODIFIED_EULER, RK4, Tableau};
+
+/// A way to go a step ahead.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Dormand and Prince, order 8 with error estimates, dense output of order 7; 12 derivatives a step, 3 more for the
+    /// dense output.
+    #[default]
+    Dop853,
+    /// Dormand and Prince, order 5 with an error estimate, dense output of order 4; 7 derivatives a step.
+    DormandPrince5,
+    /// The classical method of Runge and Kutta, order 4, 4 derivatives a step; the dense output is a cubic, as with the
+    /// methods below.
+    Rk4,
+    /// Heun's method, order 2: along the mean of the rates at the start and at the end of a step of Euler.
+    ModifiedEuler,
+    /// Euler's method, order 1: along the rates at the start.
+    Euler,
+}
+
+impl Method {
+    /// True if the method estimates its error, so that its steps can follow a tolerance.
+    #[must_use]
+    pub fn is_adaptive(self) -> bool {
+        self.error_order().is_some()
+    }
+
+    /// Order: the error over a fixed time falls with this power of the step.
+    #[must_use]
+    pub fn order(self) -> u32 {
+        match self {
+            Method::Dop853 => 8,
+            Method::DormandPrince5 => 5,
+            Method::Rk4 => 4,
+            Method::ModifiedEuler => 2,
+            Method::Euler => 1,
+        }
+    }
+
+    /// Order of the error estimate: the estimate for one step falls with this power of the step plus one.
+    #[must_use]
+    pub fn error_order(self) -> Option<u32> {
+        match self {
+            Method::Dop853 => Some(7),
+            Method::DormandPrince5 => Some(4),
+            Method::Rk4 | Method::ModifiedEuler | Method::Euler => None,
+        }
+    }
+
+    pub(super) fn tableau(self) -> &'static Tableau {
+        match self {
+            Method::Dop853 => &DOP853,
+            Method::DormandPrince5 => &DORMAND_PRINCE5,
+            Method::Rk4 => &RK4,
+            Method::ModifiedEuler => &MODIFIED_EULER,
+            Method::Euler => &EULER,
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! A component of the motion along a step, as a polynomial.
+
+/// Largest degree: an integrated velocity of degree 7.
+const DEGREE: usize = 8;
+
+/// A function of time over a step, a polynomial of degree 8 at most.
+///
+/// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and absolute sums
+/// of the coefficients are good bounds. The large constant is kept apart from the motion, with the rest that it cannot
+/// hold, so that the values at both ends are those given up to half an ulp and the rounding of the motion alone.
+/// Offsets [s] count from the start of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SegmentPolynomial {
+    /// Monomial coefficients in `s`; the first is the value at the middle.
+    coefficients: [f64; DEGREE + 1],
+    /// What the first coefficient cannot hold.
+    rest: f64,
+    /// Length of the step [s].
+    step: f64,
+    /// Rate of `s` [1/s].
+    rate: f64,
+}
+
+/// Value, first and second derivative with respect to time at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jet {
+    /// Value.
+    pub value: f64,
+    /// First derivative [1/s].
+    pub derivative: f64,
+    /// Second derivative [1/s^2].
+    pub second_derivative: f64,
+}
+
+/// All values within some distance of a centre: bounds along the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Centre: what is there at the middle of the step.
+    pub center: f64,
+    /// Largest distance from the centre.
+    pub radius: f64,
+}
+
+impl Spread {
+    /// Largest size of a value.
+    #[must_use]
+    #[inline]
+    pub fn largest(&self) -> f64 {
+        self.center.abs() + self.radius
+    }
+}
+
+impl SegmentPolynomial {
+    /// The position that starts and ends at given values and has a given velocity, but for a bump.
+    ///
+    /// The integral of the velocity misses the end by about the error of the step. What is missing is put in smoothly,
+    /// as `3 x^2 - 2 x^3` of it after the part `x` of the step; so the derivatives at the ends are still the velocity's.
+    #[must_use]
+    pub fn integrated(start: f64, end: f64, velocity: &SegmentPolynomial) -> Self {
+        let half_step = 0.5 * velocity.step;
+        let mut motion = [0.0; DEGREE + 1];
+        let mut end_motion = 0.0;
+        // The highest power of the velocity is zero, whose integral would not fit; highest powers are the smallest.
+        for power in (0..DEGREE).rev() {
+            let term = half_step * velocity.coefficients[power] / POWERS[power + 1];
+            motion[power + 1] = term;
+            if power % 2 == 0 {
+                motion[0] += term;
+                end_motion += 2.0 * term;
+            } else {
+                motion[0] -= term;
+            }
+        }
+        let missing = (end - start) - end_motion;
+        motion[0] += 0.5 * missing;
+        motion[1] += 0.75 * missing;
+        motion[3] -= 0.25 * missing;
+        Self::from_start(start, motion, velocity.step)
+    }
+
+    /// The value `start + x (c2 + z (c3 + x (c4 + z (c5 + ...))))`, where `x` is the part of the step that has passed,
+    /// and `z = 1 - x`.
+    pub(super) fn from_nested(start: f64, nested: &[f64], step: f64) -> Self {
+        let mut motion = [0.0; DEGREE + 1];
+        for (index, coefficient) in nested.iter().enumerate().rev() {
+            motion[0] += coefficient;
+            // times (1 + s) / 2 or (1 - s) / 2
+            let sign = if index % 2 == 0 { 0.5 } else { -0.5 };
+            for power in (1..=nested.len() - index).rev() {
+                motion[power] = 0.5 * motion[power] + sign * motion[power - 1];
+            }
+            motion[0] *= 0.5;
+        }
+        Self::from_start(start, motion, step)
+    }
+
+    /// The start value plus a motion, which is zero at the start.
+    fn from_start(start: f64, motion: [f64; DEGREE + 1], step: f64) -> Self {
+        let mut coefficients = motion;
+        let center = start + motion[0];
+        coefficients[0] = center;
+        // The exact error of the sum (Knuth).
+        let part = center - start;
+        let rest = (start - (center - part)) + (motion[0] - part);
+        Self { coefficients, rest, step, rate: 2.0 / step }
+    }
+
+    /// Monomial coefficients in `s = 2 offset / step - 1`, the constant first.
+    #[must_use]
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+
+    /// Length of the step [s].
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Value at an offset [s].
+    #[must_use]
+    #[inline]
+    pub fn value_at(&self, offset: f64) -> f64 {
+        let s = self.centered(offset);
+        let c = &self.coefficients;
+        let slope =
+            c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * (c[5] + s * (c[6] + s * (c[7] + s * c[8]))))));
+        c[0] + (self.rest + s * slope)
+    }
+
+    /// First derivative with respect to time at an offset [s].
+    #[must_use]
+    #[inline]
+    pub fn derivative_at(&self, offset: f64) -> f64 {
+        let s = self.centered(offset);
+        let mut sum = 0.0;
+        for power in (1..=DEGREE).rev() {
+            sum = sum * s + POWERS[power] * self.coefficients[power];
+        }
+        self.rate * sum
+    }
+
+    /// Second derivative with respect to time at an offset [s].
+    #[must_use]
+    #[inline]
+    pub fn second_derivative_at(&self, offset: f64) -> f64 {
+        let s = self.centered(offset);
+        let mut sum = 0.0;
+        for power in (2..=DEGREE).rev() {
+            sum = sum * s + POWERS[power] * POWERS[power - 1] * self.coefficients[power];
+        }
+        self.rate * self.rate * sum
+    }
+
+    /// Value and first derivatives at an offset [s], for less than one by one.
+    #[must_use]
+    #[inline]
+    pub fn jet_at(&self, offset: f64) -> Jet {
+        let s = self.centered(offset);
+        // Horner's scheme thrice: the sums of one line are the coefficients of the next.
+        let (mut motion, mut slope, mut half_curvature) = (self.coefficients[DEGREE], 0.0, 0.0);
+        for power in (1..DEGREE).rev() {
+            half_curvature = half_curvature * s + slope;
+            slope = slope * s + motion;
+            motion = motion * s + self.coefficients[power];
+        }
+        // The constant is not in yet: the value is `motion` times s more.
+        half_curvature = half_curvature * s + slope;
+        slope = slope * s + motion;
+        Jet {
+            value: self.coefficients[0] + (self.rest + s * motion),
+            derivative: self.rate * slope,
+            second_derivative: self.rate * self.rate * (2.0 * half_curvature),
+        }
+    }
+
+    /// Bounds of the value along the step, by the sizes of the coefficients.
+    #[must_use]
+    pub fn value_spread(&self) -> Spread {
+        self.spread(0, |_| 1.0, 1.0)
+    }
+
+    /// Bounds of the first derivative with respect to time along the step.
+    #[must_use]
+    pub fn derivative_spread(&self) -> Spread {
+        self.spread(1, |power| POWERS[power], self.rate)
+    }
+
+    /// Bounds of the second derivative with respect to time along the step.
+    #[must_use]
+    pub fn second_derivative_spread(&self) -> Spread {
+        self.spread(2, |power| POWERS[power] * POWERS[power - 1], self.rate * self.rate)
+    }
+
+    /// Bounds of the third derivative with respect to time along the step.
+    #[must_use]
+    pub fn third_derivative_spread(&self) -> Spread {
+        let factor = |power: usize| POWERS[power] * POWERS[power - 1] * POWERS[power - 2];
+        self.spread(3, factor, self.rate * self.rate * self.rate)
+    }
+
+    /// Bounds of a derivative whose constant comes from the power `order`.
+    #[inline]
+    fn spread(&self, order: usize, factor: impl Fn(usize) -> f64, unit: f64) -> Spread {
+        let above = (order + 1..=DEGREE).map(|power| factor(power) * self.coefficients[power].abs());
+        Spread {
+            center: unit * factor(order) * self.coefficients[order],
+            radius: unit.abs() * above.sum::<f64>(),
+        }
+    }
+
+    #[inline]
+    fn centered(&self, offset: f64) -> f64 {
+        offset * self.rate - 1.0
+    }
+}
+
+/// The powers as numbers.
+const POWERS: [f64; DEGREE + 1] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];

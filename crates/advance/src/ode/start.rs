@@ -1,0 +1,69 @@
+//! Proposes the first step.
+
+use super::stepper::{Stepper, mean_square};
+use super::tableau::Term;
+use super::{Ode, Point};
+
+/// Part of the state's size by which the guess may move it, and size of the error the proposed step aims at.
+const SMALL_CHANGE: f64 = 0.01;
+/// Sizes of state and rates below which they tell nothing about the step.
+const TOO_SMALL_TO_TELL: f64 = 1e-5;
+/// The guess [s] when state and rates tell nothing.
+const BLIND_GUESS: f64 = 1e-6;
+/// Size of the derivatives [1/s] below which the solution is taken for a straight line at rest.
+const NO_CHANGE: f64 = 1e-15;
+/// The proposed step is at most so many times the guess.
+const LARGEST_GROWTH: f64 = 100.0;
+/// Part of the guess that is proposed when nothing seems to change.
+const AT_REST: f64 = 1e-3;
+/// From the start along its rates.
+const ALONG_START: [Term; 1] = [(0, 1.0)];
+
+impl Stepper {
+    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two derivatives.
+    ///
+    /// Source: HNW II.4, "Starting step size", with `scales` as in [`error_norm`](Stepper::error_norm). Costs one
+    /// derivative; methods with fixed steps ask for none and answer `limit`.
+    ///
+    /// # Errors
+    /// The error of the system.
+    pub fn starting_step<S: Ode + ?Sized>(
+        &mut self,
+        system: &mut S,
+        from: Point<'_>,
+        scales: &[f64],
+        limit: f64,
+    ) -> Result<f64, S::Error> {
+        let Some(order) = self.method().error_order() else { return Ok(limit) };
+        let size = mean_square(from.state, scales).sqrt();
+        let rate = mean_square(from.rates, scales).sqrt();
+        let blind = size < TOO_SMALL_TO_TELL || rate < TOO_SMALL_TO_TELL;
+        let guess = if blind { BLIND_GUESS } else { SMALL_CHANGE * size / rate }.min(limit);
+        let second = self.second_derivative(system, from, scales, guess)?;
+        let largest = rate.max(second);
+        let proposed = if largest <= NO_CHANGE {
+            BLIND_GUESS.max(AT_REST * guess)
+        } else {
+            (SMALL_CHANGE / largest).powf(1.0 / f64::from(order + 1))
+        };
+        Ok(proposed.min(LARGEST_GROWTH * guess).min(limit))
+    }
+
+    /// Estimates the size of the second derivative [1/s^2] by the change of the rates along a step of Euler.
+    fn second_derivative<S: Ode + ?Sized>(
+        &mut self,
+        system: &mut S,
+        from: Point<'_>,
+        scales: &[f64],
+        step: f64,
+    ) -> Result<f64, S::Error> {
+        self.open(from, step);
+        self.move_along(&ALONG_START);
+        self.ask(system, 1, 1.0)?;
+        let changes = self.place_mut(1);
+        for (rate, start) in changes.iter_mut().zip(from.rates) {
+            *rate -= start;
+        }
+        Ok(mean_square(changes, scales).sqrt() / step)
+    }
+}
