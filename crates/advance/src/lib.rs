@@ -9,8 +9,8 @@
 //!
 //! # Code map
 //!
-//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; `rigid` implements
-//! the trait for bodies in free flight with impacts.
+//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; [`ode`] integrates
+//! motions that have no closed form; `rigid` implements the trait for bodies in free flight with impacts.
 
 #![forbid(unsafe_code)]
 

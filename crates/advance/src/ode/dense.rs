@@ -4,12 +4,19 @@
 //! an end state that was changed after the step; what the change `d` adds is `d (3 x^2 - 2 x^3)`.
 
 use super::polynomial::SegmentPolynomial;
-use super::stepper::{Stepper, weighted_sum};
+use super::stepper::{Lane, Stepper, WIDTH, weighted_sum};
 use super::{Ode, Point};
 use std::ops::Range;
 
-/// Coefficients `c2` to `c8` of the form.
-const NESTED: usize = 7;
+/// Coefficients `c2`, `c3`, `c4` of the form.
+const HERMITE: usize = 3;
+
+/// The sums for `c5` to `c8` of the components of one lane.
+#[derive(Default)]
+struct DenseRows {
+    lane: Option<usize>,
+    rows: [Lane; 4],
+}
 
 impl Stepper {
     /// Writes some components of the motion along the last step as polynomials, one of `out` for each.
@@ -20,6 +27,9 @@ impl Stepper {
     ///
     /// # Errors
     /// The first error of the system; then `out` is unchanged.
+    ///
+    /// # Panics
+    /// If `end` or the components do not fit the state of the last step.
     pub fn dense<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
@@ -33,25 +43,35 @@ impl Stepper {
         for (index, stage) in tableau.dense_stages.iter().enumerate() {
             self.evaluate(system, end_place + 1 + index, stage)?;
         }
+        let mut rows = DenseRows::default();
         for (component, out) in components.zip(out) {
-            *out = self.polynomial(component, end);
+            if rows.lane != Some(component / WIDTH) {
+                rows = self.dense_rows(component / WIDTH);
+            }
+            *out = self.polynomial(component, end, &rows);
         }
         Ok(())
     }
 
-    fn polynomial(&self, component: usize, end: Point<'_>) -> SegmentPolynomial {
-        let tableau = self.method().tableau();
-        let (lane, place) = (component / 4, component % 4);
+    fn dense_rows(&self, lane: usize) -> DenseRows {
+        let mut rows = DenseRows { lane: Some(lane), ..DenseRows::default() };
+        for (row, terms) in rows.rows.iter_mut().zip(self.method().tableau().dense_rows) {
+            *row = weighted_sum(&self.rates, self.lanes, lane, terms);
+        }
+        rows
+    }
+
+    fn polynomial(&self, component: usize, end: Point<'_>, rows: &DenseRows) -> SegmentPolynomial {
+        let (lane, place) = (component / WIDTH, component % WIDTH);
         let start = self.start[lane][place];
         let change = end.state[component] - start;
         let bend = self.length * self.rates[lane][place] - change;
-        let mut nested = [0.0; NESTED];
-        nested[0] = change;
-        nested[1] = bend;
-        nested[2] = change - self.length * end.rates[component] - bend;
-        for (nested, terms) in nested[3..].iter_mut().zip(tableau.dense_rows) {
-            *nested = self.length * weighted_sum(&self.rates, self.lanes, lane, terms)[place];
+        let mut nested =
+            [change, bend, change - self.length * end.rates[component] - bend, 0.0, 0.0, 0.0, 0.0];
+        for (nested, row) in nested[HERMITE..].iter_mut().zip(&rows.rows) {
+            *nested = self.length * row[place];
         }
-        SegmentPolynomial::from_nested(start, &nested[..3 + tableau.dense_rows.len()], self.length)
+        let count = HERMITE + self.method().tableau().dense_rows.len();
+        SegmentPolynomial::from_nested(start, &nested[..count], self.length)
     }
 }

@@ -5,7 +5,10 @@ use super::tableau::{Stage, Tableau, Term};
 use super::{Ode, Point};
 
 /// Components that are handled together. The last lane is padded with numbers that nobody reads.
-pub(super) type Lane = [f64; 4];
+pub(super) type Lane = [f64; WIDTH];
+
+/// Components in a lane.
+pub(super) const WIDTH: usize = 4;
 
 /// HNW II.10: how much of the estimate of order 3 stands beside that of order 5 in the error of DOP853.
 const THIRD_ORDER_SHARE: f64 = 0.01;
@@ -58,10 +61,11 @@ impl Stepper {
 
     /// Goes a step [s] and writes the state there to `end`; a negative step goes back.
     ///
-    /// All states and rates have the same length.
-    ///
     /// # Errors
     /// The first error of the system; then nothing is known about the step.
+    ///
+    /// # Panics
+    /// If the states and rates differ in length.
     pub fn step<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
@@ -118,7 +122,7 @@ impl Stepper {
     fn resize(&mut self, size: usize) {
         let tableau = self.method.tableau();
         self.size = size;
-        self.lanes = size.div_ceil(Lane::default().len());
+        self.lanes = size.div_ceil(WIDTH);
         let rows = [
             (&mut self.start, 1),
             (&mut self.trial, 1),
@@ -134,7 +138,7 @@ impl Stepper {
 
     /// The rates at a place of the tableau.
     pub(super) fn place_mut(&mut self, place: usize) -> &mut [f64] {
-        &mut self.rates.as_flattened_mut()[4 * place * self.lanes..][..self.size]
+        &mut self.rates.as_flattened_mut()[WIDTH * place * self.lanes..][..self.size]
     }
 
     /// Asks for the rates of a stage.
@@ -165,7 +169,7 @@ impl Stepper {
         place: usize,
         node: f64,
     ) -> Result<(), S::Error> {
-        let rates = &mut self.rates.as_flattened_mut()[4 * place * self.lanes..][..self.size];
+        let rates = &mut self.rates.as_flattened_mut()[WIDTH * place * self.lanes..][..self.size];
         let state = &self.trial.as_flattened()[..self.size];
         system.derivative(self.offset + node * self.length, state, rates)
     }
@@ -180,7 +184,7 @@ impl Stepper {
     }
 
     fn error(&self, row: usize) -> &[f64] {
-        &self.errors.as_flattened()[4 * row * self.lanes..][..self.size]
+        &self.errors.as_flattened()[WIDTH * row * self.lanes..][..self.size]
     }
 }
 

@@ -1,0 +1,153 @@
+//! Measured orders.
+
+use crate::problem::{Errors, Planet, SIZE, distance, exact, rates_at, solve_in_steps};
+use halfgap_advance::ode::{Method, Ode, Point, Stepper};
+use std::convert::Infallible;
+
+const TIME: f64 = 5.0;
+
+/// Orders measured between a number of steps and twice that number.
+fn orders(method: Method, steps: u32) -> Errors {
+    let (coarse, fine) = (solve_in_steps(method, TIME, steps), solve_in_steps(method, TIME, 2 * steps));
+    Errors {
+        end: (coarse.end / fine.end).log2(),
+        velocity: (coarse.velocity / fine.velocity).log2(),
+        position: (coarse.position / fine.position).log2(),
+    }
+}
+
+/// Steps at which the leading term of the error rules and rounding does not.
+const STEPS: [(Method, u32); 5] = [
+    (Method::Dop853, 80),
+    (Method::DormandPrince5, 160),
+    (Method::Rk4, 320),
+    (Method::ModifiedEuler, 320),
+    (Method::Euler, 1280),
+];
+
+#[test]
+fn ends_converge_with_the_order_of_the_method() {
+    for (method, steps) in STEPS {
+        let (measured, order) = (orders(method, steps).end, f64::from(method.order()));
+        assert!((measured - order).abs() < 0.08 * order, "{method:?}: {measured}");
+    }
+}
+
+#[test]
+fn polynomials_converge_with_the_least_of_their_own_order_and_that_of_the_ends() {
+    // Local errors of degree 7 and 4 fall as the steps to the 8 and 5, as do the ends; cubics do not hinder order 4.
+    for (method, steps) in STEPS {
+        let (measured, order) = (orders(method, steps), f64::from(method.order()));
+        assert!((measured.velocity - order).abs() < 0.08 * order, "{method:?}: {}", measured.velocity);
+        assert!((measured.position - order).abs() < 0.08 * order, "{method:?}: {}", measured.position);
+    }
+}
+
+#[test]
+fn a_step_costs_the_derivatives_it_says() {
+    let costs = [
+        (Method::Dop853, 11, 3),
+        (Method::DormandPrince5, 6, 0),
+        (Method::Rk4, 3, 0),
+        (Method::ModifiedEuler, 1, 0),
+        (Method::Euler, 0, 0),
+    ];
+    for (method, after_the_first, for_dense) in costs {
+        let (mut planet, mut stepper) = (Planet::default(), Stepper::new(method));
+        let (state, mut end) = (exact(0.0), [0.0; SIZE]);
+        let rates = rates_at(0.0, &state);
+        let Ok(()) =
+            stepper.step(&mut planet, Point { offset: 0.0, state: &state, rates: &rates }, 0.1, &mut end);
+        assert_eq!(planet.derivatives, after_the_first, "{method:?}");
+        let end_rates = rates_at(0.1, &end);
+        let Ok(()) = stepper.dense(
+            &mut planet,
+            Point { offset: 0.1, state: &end, rates: &end_rates },
+            0..1,
+            &mut [Default::default()],
+        );
+        assert_eq!(planet.derivatives, after_the_first + for_dense, "{method:?}");
+    }
+}
+
+/// Rates that are powers of the offset, and nothing else.
+struct Powers;
+
+impl Ode for Powers {
+    type Error = Infallible;
+
+    fn derivative(&mut self, offset: f64, _state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        for (power, rate) in (0..).zip(rates) {
+            *rate = offset.powi(power);
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn powers_are_integrated_exactly_also_in_between() {
+    // Exact: t^(k+1) / (k + 1) for k below the order, and for k below the degree of the polynomials.
+    let degrees = [(Method::Dop853, 7), (Method::DormandPrince5, 4), (Method::Rk4, 3), (Method::Euler, 1)];
+    for (method, degree) in degrees {
+        let size = method.order() as usize;
+        let (mut stepper, mut end) = (Stepper::new(method), vec![0.0; size]);
+        let (state, mut rates) = (vec![0.0; size], vec![0.0; size]);
+        let Ok(()) = Powers.derivative(0.0, &state, &mut rates);
+        let start = Point { offset: 0.0, state: &state, rates: &rates };
+        let Ok(()) = stepper.step(&mut Powers, start, 2.0, &mut end);
+        let integral = |power: usize, time: f64| time.powi(power as i32 + 1) / (power as f64 + 1.0);
+        for (power, end) in end.iter().enumerate() {
+            assert!((end - integral(power, 2.0)).abs() < 1e-14 * 256.0, "{method:?}: t^{power}");
+        }
+        let (mut end_rates, mut out) = (vec![0.0; size], vec![Default::default(); size]);
+        let Ok(()) = Powers.derivative(2.0, &end, &mut end_rates);
+        let end_point = Point { offset: 2.0, state: &end, rates: &end_rates };
+        let Ok(()) = stepper.dense(&mut Powers, end_point, 0..size, &mut out);
+        for (power, polynomial) in out.iter().enumerate().take(degree) {
+            for at in [0.2, 0.7, 1.3, 1.9] {
+                let error = (polynomial.value_at(at) - integral(power, at)).abs();
+                assert!(error < 1e-14 * 256.0, "{method:?}: t^{power} at {at}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn going_back_returns_to_the_start() {
+    // DOP853 in 160 steps is good to 1e-12 one way (see the closed form in the other tests).
+    let (steps, step) = (160, TIME / 160.0);
+    let (mut stepper, mut planet) = (Stepper::new(Method::Dop853), Planet::default());
+    let mut state = exact(0.0);
+    for index in 0..2 * steps {
+        let (offset, step) = if index < steps {
+            (f64::from(index) * step, step)
+        } else {
+            (f64::from(2 * steps - index) * step, -step)
+        };
+        let rates = rates_at(offset, &state);
+        let mut end = [0.0; SIZE];
+        let Ok(()) =
+            stepper.step(&mut planet, Point { offset, state: &state, rates: &rates }, step, &mut end);
+        state = end;
+        if index == steps - 1 {
+            assert!(distance(&state, &exact(0.0)) > 0.5, "the planet moves");
+        }
+    }
+    assert!(distance(&state, &exact(0.0)) < 3e-12, "{:e}", distance(&state, &exact(0.0)));
+}
+
+#[test]
+fn one_stepper_serves_systems_of_changing_size() {
+    let mut shared = Stepper::new(Method::Dop853);
+    for size in [8, 3, 5, 1, 9] {
+        let (state, rates) = (vec![1.0; size], vec![0.5; size]);
+        let start = Point { offset: 0.5, state: &state, rates: &rates };
+        let (mut end, mut end_alone) = (vec![0.0; size], vec![0.0; size]);
+        let mut alone = Stepper::new(Method::Dop853);
+        let Ok(()) = shared.step(&mut Powers, start, 0.25, &mut end);
+        let Ok(()) = alone.step(&mut Powers, start, 0.25, &mut end_alone);
+        assert_eq!(end, end_alone);
+        let scales = vec![1e-9; size];
+        assert_eq!(shared.error_norm(&scales), alone.error_norm(&scales));
+    }
+}
