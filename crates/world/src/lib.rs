@@ -31,6 +31,7 @@ mod builder;
 #[cfg(feature = "scene")]
 mod check;
 mod event;
+pub mod force;
 mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
@@ -44,10 +45,12 @@ mod run_error;
 mod scales;
 #[cfg(feature = "scene")]
 pub mod scene;
+mod settings;
 mod start;
 mod world;
+mod world_error;
 
-pub use builder::{BodySpec, DEFAULT_TOLERANCE, WorldBuilder, WorldError, WorldSettings};
+pub use builder::{BodySpec, WorldBuilder};
 #[cfg(feature = "scene")]
 pub use check::{CheckReport, check};
 pub use event::{Impact, ImpactRow};
@@ -62,4 +65,6 @@ pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
 pub use run::{Record, RunPlan, RunReport, run};
 pub use run_error::{RunError, Status};
 pub use scales::ToleranceOverrides;
+pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
+pub use world_error::WorldError;

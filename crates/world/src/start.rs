@@ -4,9 +4,9 @@
 //! the rows J of all touching pairs and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0 has the
 //! displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated until they fit.
 
-use crate::builder::WorldError;
 use crate::overlap::overlap_depth;
 use crate::world::Named;
+use crate::world_error::WorldError;
 use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{

@@ -1,19 +1,22 @@
 //! A world: named bodies, what acts on them, and the clock.
 
 use crate::event::{Impact, ImpactRow};
+use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::run_error::RunError;
 use glam::DVec2;
 use halfgap_advance::rigid::{ImpactReport, RigidSystem};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{BodyId, BodyState, Tolerances};
 use halfgap_geometry::Shape;
+use std::sync::Arc;
 
 /// Kinetic and potential energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Potential energy [J]: of uniform gravity, 0 with the centre of mass at the world's origin.
+    /// Potential energy [J]: of uniform gravity, 0 with the centre of mass at the world's origin, and of the force laws
+    /// that have one.
     pub potential: f64,
 }
 
@@ -70,6 +73,7 @@ pub struct Inertia {
 pub struct World {
     system: RigidSystem,
     bodies: Vec<Named>,
+    forces: Vec<Arc<dyn ForceLaw>>,
     now: Time,
     warnings: Vec<String>,
     start_correction: f64,
@@ -81,11 +85,12 @@ impl World {
     pub(crate) fn new(
         system: RigidSystem,
         bodies: Vec<Named>,
+        forces: Vec<Arc<dyn ForceLaw>>,
         now: Time,
         warnings: Vec<String>,
         start_correction: f64,
     ) -> Self {
-        Self { system, bodies, now, warnings, start_correction, told: Impact::default() }
+        Self { system, bodies, forces, now, warnings, start_correction, told: Impact::default() }
     }
 
     /// The present time [s].
@@ -162,7 +167,23 @@ impl World {
                 0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
             energy.potential -= inertia.mass * gravity.dot(state.position);
         }
+        energy.potential += self.law_potential();
         energy
+    }
+
+    /// Potential energy of the force laws [J].
+    fn law_potential(&self) -> f64 {
+        if self.forces.is_empty() {
+            return 0.0;
+        }
+        let moving: Vec<_> = self.bodies().map(|body| Moving::from(&self.state(body))).collect();
+        potential_of(&self.forces, &Snapshot::new(self.time(), &moving))
+    }
+
+    /// The force laws, in the order in which they were added.
+    #[must_use]
+    pub fn forces(&self) -> &[Arc<dyn ForceLaw>] {
+        &self.forces
     }
 
     /// The thresholds of touching, as derived from the tolerance or given.
