@@ -3,8 +3,8 @@
 use crate::force::{Attachment, ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
-use crate::start::lift_overlaps;
-use crate::world::{Inertia, Named, World};
+use crate::start::{StartParts, lift_overlaps};
+use crate::world::{Inertia, Named, Start, World, energy_of};
 use crate::world_error::WorldError;
 use glam::DVec2;
 use halfgap_advance::Time;
@@ -157,11 +157,18 @@ impl WorldBuilder {
             .unwrap_or(DEFAULT_START_OVERLAP * scales.smallest_radius.unwrap_or(scales.coordinate));
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
-        let start_correction = if self.settings.collisions {
+        let total = |bodies: &[StartParts]| {
+            let state = |body: BodyId| bodies[body.index()].2;
+            energy_of(&named, &self.forces, self.settings.start_time, state).total()
+        };
+        let given = total(&bodies);
+        let displacement = if self.settings.collisions {
             lift_overlaps(&mut bodies, &named, &self.excluded, &tolerances, allowed)?
         } else {
             0.0
         };
+        let energy = total(&bodies);
+        let start = Start { displacement, energy_change: energy - given, energy };
         let settings = RigidSettings {
             tolerances,
             law: self.settings.impact_law,
@@ -172,7 +179,7 @@ impl WorldBuilder {
         let now = Time::from_seconds(self.settings.start_time);
         // WIRE: the system takes `self.forces.clone()` here.
         let system = RigidSystem::new(bodies, &self.excluded, settings, now);
-        Ok(World::new(system, named, self.forces, now, warnings, start_correction))
+        Ok(World::new(system, named, self.forces, now, warnings, start))
     }
 
     fn check(&self) -> Result<(), WorldError> {
@@ -280,7 +287,7 @@ fn centered(body: &BodySpec) -> Shape {
     body.shape.translated(-center_of_mass(body))
 }
 
-type Parts = (Named, (Body, FlightLaw, BodyState));
+type Parts = (Named, StartParts);
 
 fn into_parts(((spec, law), gravity): ((BodySpec, FlightLaw), DVec2)) -> Parts {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));

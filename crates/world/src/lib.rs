@@ -32,6 +32,7 @@ mod builder;
 mod check;
 mod event;
 pub mod force;
+mod ledger;
 mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
@@ -53,12 +54,13 @@ mod world_error;
 pub use builder::{BodySpec, WorldBuilder};
 #[cfg(feature = "scene")]
 pub use check::{CheckReport, check};
-pub use event::{Impact, ImpactRow};
+pub use event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 pub use halfgap_collision::{BodyId, BodyState, Tolerances};
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
+pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
-pub use recording::{Frame, RecordedBody, Recording};
+pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording};
 #[cfg(feature = "scene")]
 pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
