@@ -43,8 +43,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for record in &records {
         let (parties, geometry, motion) = (&record.parties, &record.geometry, &record.motion);
         println!("found by          {:?}", parties.detector);
-        println!("primary           body {}, {:?}", parties.primary.body.0, parties.primary.kind);
-        println!("normal            body {}, {:?}", parties.normal.body.0, parties.normal.kind);
+        for (name, side) in [("primary", parties.primary), ("normal", parties.normal)] {
+            if let Some(site) = side.site {
+                println!("{name:<17} body {}, {:?}", side.body.0, site.kind);
+            }
+        }
         println!("gap               {:.3e} m ({:?})", geometry.distance, record.zone());
         println!("point             ({:.6}, {:.6}) m", geometry.point_primary.x, geometry.point_primary.y);
         println!("normal            ({:.6}, {:.6})", geometry.normal.x, geometry.normal.y);

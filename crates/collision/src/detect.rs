@@ -64,16 +64,14 @@ fn detect_features(
     }
     let (primary, normal, primary_feature, normal_feature) =
         if sample.primary_is_a { (a, b, feature_a, feature_b) } else { (b, a, feature_b, feature_a) };
+    let (shape_primary, shape_normal) = (&primary.body.shape, &normal.body.shape);
     let sides = [
-        Participant::new(primary.id, &primary.body.shape, primary_feature),
-        Participant::new(normal.id, &normal.body.shape, normal_feature),
+        Participant::new(primary.id, shape_primary, primary_feature),
+        Participant::new(normal.id, shape_normal, normal_feature),
     ];
-    let parties = Parties {
-        primary: sides[0],
-        normal: sides[1],
-        bilateral: false,
-        detector: detector(sides[0].kind, sides[1].kind),
-    };
+    let kinds = [shape_primary.source(primary_feature).kind, shape_normal.source(normal_feature).kind];
+    let parties =
+        Parties { primary: sides[0], normal: sides[1], bilateral: false, detector: detector(kinds) };
     let radii = [
         primary.body.shape.feature(primary_feature).radius(),
         normal.body.shape.feature(normal_feature).radius(),
@@ -89,10 +87,10 @@ fn detect_features(
     ))
 }
 
-fn detector(primary: FeatureKind, normal: FeatureKind) -> Detector {
-    match (primary, normal) {
-        (FeatureKind::Vertex, FeatureKind::Vertex) => Detector::CornerCorner,
-        (FeatureKind::Vertex, _) | (_, FeatureKind::Vertex) => Detector::VertexEdge,
+fn detector(kinds: [FeatureKind; 2]) -> Detector {
+    match kinds {
+        [FeatureKind::Vertex, FeatureKind::Vertex] => Detector::CornerCorner,
+        [FeatureKind::Vertex, _] | [_, FeatureKind::Vertex] => Detector::VertexEdge,
         _ => Detector::EdgeEdge,
     }
 }

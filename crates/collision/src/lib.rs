@@ -14,13 +14,14 @@
 //! with its `zone` predicates and its time `estimate`; `kinematics` gives the gap's rate, Jacobian and acceleration
 //! term. `detect` finds the records of two bodies at one moment and `merge` drops doubles. `first_contact` finds when
 //! two moving bodies first close to their target gap: by `closed` forms where motions are polynomial, by the `march`
-//! along second-order bounds otherwise. `broad` keeps the pairs that are near enough to matter.
+//! along second-order bounds otherwise. `connector` ties bodies by rows that are gaps too. `broad` keeps the pairs that are near enough to matter.
 
 #![forbid(unsafe_code)]
 
 mod body;
 mod broad;
 mod closed;
+mod connector;
 mod detect;
 mod estimate;
 mod first_contact;
@@ -36,6 +37,10 @@ mod zone;
 
 pub use body::{Body, BodyId};
 pub use broad::BroadPhase;
+pub use connector::{
+    Alignment, Anchor, Connector, ConnectorError, ConnectorId, ConnectorKind, ConnectorSample, RailError,
+    RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, rope_contact,
+};
 pub use detect::{Moment, detect_pair};
 pub use estimate::{EstimatePoint, estimate_target_time};
 pub use first_contact::{
@@ -48,7 +53,7 @@ pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
 pub use quadratic::first_closing_time;
 pub use record::{
     Collision, CollisionError, ContactGeometry, ContactMotion, Detection, Detector, Participant, Parties,
-    Response,
+    Response, Site,
 };
 pub use tolerances::Tolerances;
 pub use zone::Zone;

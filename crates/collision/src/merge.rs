@@ -1,13 +1,14 @@
 //! Two detectors can find one spot twice; the more exact record stays.
 
-use crate::record::Collision;
+use crate::record::{Collision, Detector};
 use std::cmp::Ordering;
 
 /// Two normals are one when their directions agree to this sine [-] at least: far more than rounding, far less than a
 /// corner.
 const PARALLEL: f64 = 1e-6;
 
-/// True if two records are the same physical collision: the same two bodies touch at one place along one normal.
+/// True if two records are the same physical collision: the same two bodies touch at one place along one normal. Rows of
+/// connectors are never the same as anything.
 ///
 /// Places are one when they lie within `distance_tol` of each other: that is what cannot be told apart.
 #[must_use]
@@ -16,6 +17,10 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
         let (p, n) = (c.parties.primary.body, c.parties.normal.body);
         (p.min(n), p.max(n))
     };
+    let is_connector = |c: &Collision| matches!(c.parties.detector, Detector::Connector { .. });
+    if is_connector(a) || is_connector(b) {
+        return false;
+    }
     if bodies(a) != bodies(b) || a.parties.bilateral != b.parties.bilateral {
         return false;
     }

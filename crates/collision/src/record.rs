@@ -1,6 +1,7 @@
 //! The collision record: everything that is known of one place where two bodies touch or are about to.
 
 use crate::body::BodyId;
+use crate::connector::{Connector, ConnectorId, ConnectorSample};
 use crate::estimate::{EstimatePoint, estimate_target_time};
 use crate::kinematics::{Arms, GapKinematics};
 use crate::motion::Moving;
@@ -17,6 +18,13 @@ pub enum Detector {
     VertexEdge,
     /// Two edges, at least one of them an arc.
     EdgeEdge,
+    /// A row of a connector: nothing is detected.
+    Connector {
+        /// The connector.
+        id: ConnectorId,
+        /// Which of its rows.
+        row: u32,
+    },
 }
 
 /// One body's side of a collision.
@@ -24,7 +32,14 @@ pub enum Detector {
 pub struct Participant {
     /// The body.
     pub body: BodyId,
-    /// The feature of its shape.
+    /// The part of its shape that touches; `None` in a connector, which ties points that may lie anywhere.
+    pub site: Option<Site>,
+}
+
+/// Part of a shape that takes part in a collision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Site {
+    /// The feature of the shape.
     pub feature: FeatureId,
     /// What kind of feature that is.
     pub kind: FeatureKind,
@@ -39,7 +54,20 @@ impl Participant {
     #[must_use]
     pub fn new(body: BodyId, shape: &Shape, feature: FeatureId) -> Self {
         let source = shape.source(feature);
-        Self { body, feature, kind: source.kind, path: source.path, edge: source.edge }
+        let site = Site { feature, kind: source.kind, path: source.path, edge: source.edge };
+        Self { body, site: Some(site) }
+    }
+
+    /// An end of a connector on a body.
+    #[must_use]
+    pub fn of_connector(body: BodyId) -> Self {
+        Self { body, site: None }
+    }
+
+    /// The feature of the body's shape, if it is a shape that touches.
+    #[must_use]
+    pub fn feature(&self) -> Option<FeatureId> {
+        self.site.map(|site| site.feature)
     }
 }
 
@@ -188,7 +216,36 @@ impl Collision {
         elasticity: f64,
         time: f64,
     ) -> Self {
-        let (geometry, motion) = describe(measured.0, measured.1, bodies);
+        let described = describe(measured.0, measured.1, bodies);
+        Self::from_parts(parties, described, tolerances, elasticity, time)
+    }
+
+    /// The record of a connector's row for its bodies a and b at a time [s]; its target gap is 0.
+    #[must_use]
+    pub fn of_connector(
+        id: ConnectorId,
+        row: u32,
+        connector: &Connector,
+        sample: &ConnectorSample,
+        bodies: [&Moving; 2],
+        tolerances: &Tolerances,
+        time: f64,
+    ) -> Self {
+        let [primary, normal] = connector.bodies().map(Participant::of_connector);
+        let detector = Detector::Connector { id, row };
+        let parties = Parties { primary, normal, bilateral: connector.is_bilateral(), detector };
+        let tolerances = Tolerances { target_gap: 0.0, ..*tolerances };
+        let described = describe_connector(connector, sample, bodies);
+        Self::from_parts(parties, described, tolerances, connector.elasticity, time)
+    }
+
+    fn from_parts(
+        parties: Parties,
+        (geometry, motion): (ContactGeometry, ContactMotion),
+        tolerances: Tolerances,
+        elasticity: f64,
+        time: f64,
+    ) -> Self {
         let mut record = Self {
             parties,
             geometry,
@@ -244,7 +301,22 @@ impl Collision {
     ///
     /// `must_handle` stays true once it was: the collision happened, even though the bodies are apart again.
     pub fn update(&mut self, measured: (&GapSample, [Option<f64>; 2]), bodies: [&Moving; 2], time: f64) {
-        (self.geometry, self.motion) = describe(measured.0, measured.1, bodies);
+        self.update_parts(describe(measured.0, measured.1, bodies), time);
+    }
+
+    /// As [`Collision::update`], for the row of a connector.
+    pub fn update_connector(
+        &mut self,
+        connector: &Connector,
+        sample: &ConnectorSample,
+        bodies: [&Moving; 2],
+        time: f64,
+    ) {
+        self.update_parts(describe_connector(connector, sample, bodies), time);
+    }
+
+    fn update_parts(&mut self, (geometry, motion): (ContactGeometry, ContactMotion), time: f64) {
+        (self.geometry, self.motion) = (geometry, motion);
         self.updated = time;
         self.must_handle |= self.is_illegal();
         self.estimate = self.detection.and_then(|seen| {
@@ -283,18 +355,19 @@ impl Collision {
     fn involves(&self, body: BodyId, path: u32, edge: u32, of_kind: impl Fn(FeatureKind) -> bool) -> bool {
         [self.parties.primary, self.parties.normal]
             .iter()
-            .any(|side| side.body == body && side.path == path && side.edge == edge && of_kind(side.kind))
+            .filter(|side| side.body == body)
+            .filter_map(|side| side.site)
+            .any(|site| site.path == path && site.edge == edge && of_kind(site.kind))
     }
 }
 
 fn describe(
     sample: &GapSample,
     radii: [Option<f64>; 2],
-    [primary, normal]: [&Moving; 2],
+    bodies: [&Moving; 2],
 ) -> (ContactGeometry, ContactMotion) {
+    let [primary, normal] = bodies;
     let kinematics = GapKinematics::of(sample, primary, normal);
-    let impact_arm_primary = sample.point_primary - primary.pose.position;
-    let impact_arm_normal = sample.point_normal - normal.pose.position;
     let geometry = ContactGeometry {
         point_primary: sample.point_primary,
         point_normal: sample.point_normal,
@@ -304,17 +377,49 @@ fn describe(
         distance: sample.gap,
         radius_primary: radii[0],
         radius_normal: radii[1],
-        impact_arm_primary,
-        impact_arm_normal,
+        impact_arm_primary: sample.point_primary - primary.pose.position,
+        impact_arm_normal: sample.point_normal - normal.pose.position,
         arms: Arms::of(sample, primary, normal),
     };
-    let impact_velocity = primary.velocity_at(impact_arm_primary) - normal.velocity_at(impact_arm_normal);
-    let motion = ContactMotion {
+    (geometry, describe_motion(&geometry, kinematics, bodies))
+}
+
+fn describe_connector(
+    connector: &Connector,
+    sample: &ConnectorSample,
+    bodies: [&Moving; 2],
+) -> (ContactGeometry, ContactMotion) {
+    let [primary, normal] =
+        [sample.point_a - bodies[0].pose.position, sample.point_b - bodies[1].pose.position];
+    let [radius_primary, radius_normal] = connector.radii(sample);
+    let geometry = ContactGeometry {
+        point_primary: sample.point_a,
+        point_normal: sample.point_b,
+        normal: sample.normal,
+        normal_is_fixed: connector.has_fixed_normal(),
+        normal_rate: sample.kinematics.normal_rate,
+        distance: sample.gap,
+        radius_primary,
+        radius_normal,
+        impact_arm_primary: primary,
+        impact_arm_normal: normal,
+        arms: Arms { primary, normal },
+    };
+    (geometry, describe_motion(&geometry, sample.kinematics, bodies))
+}
+
+fn describe_motion(
+    geometry: &ContactGeometry,
+    kinematics: GapKinematics,
+    [primary, normal]: [&Moving; 2],
+) -> ContactMotion {
+    let impact_velocity =
+        primary.velocity_at(geometry.impact_arm_primary) - normal.velocity_at(geometry.impact_arm_normal);
+    ContactMotion {
         impact_velocity,
         lateral_velocity: geometry.tangent().dot(impact_velocity),
         center_velocity: kinematics.center_velocity,
         normal_velocity: kinematics.rate,
         kinematics,
-    };
-    (geometry, motion)
+    }
 }

@@ -14,7 +14,7 @@ pub enum Zone {
     Target,
     /// 3: nearer than the target zone, not overlapping.
     Near,
-    /// 4: overlapping.
+    /// 4: overlapping; where the target zone reaches below 0, as that of a connector does, deeper than that.
     Penetrating,
 }
 
@@ -23,7 +23,7 @@ impl Zone {
     #[must_use]
     pub fn of(distance: f64, tolerances: &Tolerances) -> Self {
         let Tolerances { target_gap, accuracy, .. } = *tolerances;
-        if distance < 0.0 {
+        if distance < (target_gap - accuracy).min(0.0) {
             Zone::Penetrating
         } else if distance < target_gap - accuracy {
             Zone::Near

@@ -112,7 +112,8 @@ fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
 
     let early = 0.05;
     let moments = [flight.moving_at(early), rest.moving_at(early)];
-    let features = [record.parties.primary.feature, record.parties.normal.feature];
+    let features =
+        [record.parties.primary, record.parties.normal].map(|side| side.feature().expect("shapes touch"));
     let (round, line) = (disc.shape.feature(features[0]), block.shape.feature(features[1]));
     let sample = GapSample::measure(round, &moments[0].pose, line, &moments[1].pose).expect("disc over line");
     record.update((&sample, [round.radius(), line.radius()]), [&moments[0], &moments[1]], early);
@@ -186,15 +187,15 @@ fn a_tight_fit_has_its_own_thresholds() {
 #[test]
 fn records_name_their_parties() {
     let record = over(1e-3, 0.0).expect("in range");
-    let side = record.parties.normal;
+    let site = record.parties.normal.site.expect("a shape touches");
     assert!(
         record.involves_body(BodyId(3))
             && record.involves_body(BodyId(8))
             && !record.involves_body(BodyId(0))
     );
-    assert!(record.involves_edge(BodyId(8), side.path, side.edge));
-    assert!(!record.involves_edge(BodyId(8), side.path, side.edge + 1));
-    assert!(!record.involves_vertex(BodyId(8), side.path, side.edge));
+    assert!(record.involves_edge(BodyId(8), site.path, site.edge));
+    assert!(!record.involves_edge(BodyId(8), site.path, site.edge + 1));
+    assert!(!record.involves_vertex(BodyId(8), site.path, site.edge));
     assert_eq!(record.response.elasticity, 0.5);
     assert!((record.distance_to_target()).abs() < 1e-15);
     assert!((record.motion.lateral_velocity.abs() - 0.2).abs() < 1e-15);

@@ -225,8 +225,10 @@ impl RigidSystem {
 
     /// Brings a record to the bodies' velocities after the impulses.
     fn remeasure(&self, record: &mut Collision, moving: &[halfgap_collision::Moving; 2], time: Time) {
-        let [primary, normal] = [&record.parties.primary, &record.parties.normal]
-            .map(|side| self.flyer(side.body).body().shape.feature(side.feature));
+        let sides = [&record.parties.primary, &record.parties.normal]
+            .map(|side| side.feature().map(|feature| self.flyer(side.body).body().shape.feature(feature)));
+        // The rows of connectors have no features.
+        let [Some(primary), Some(normal)] = sides else { return };
         let sample = halfgap_geometry::GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
         if let Some(sample) = sample.filter(|sample| sample.primary_is_a) {
             record.update(

@@ -1,0 +1,48 @@
+//! How a body is moved to satisfy a connector before the start.
+
+use super::{Connector, ConnectorKind};
+use crate::motion::Moving;
+use glam::DVec2;
+use halfgap_geometry::Pose;
+
+/// Which end of a connector is moved, and by how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alignment {
+    /// True if body b is moved, false if body a is.
+    pub moves_b: bool,
+    /// Translation [m] of that body.
+    pub shift: DVec2,
+}
+
+impl Connector {
+    /// The least translation of body b, or of body a if b cannot be moved, that satisfies the connector; `None` if
+    /// neither can be moved.
+    #[must_use]
+    pub fn align(&self, a: &Pose, b: &Pose, can_move: [bool; 2]) -> Option<Alignment> {
+        let moves_b = can_move[1] && self.anchors().1.is_some();
+        if !(moves_b || can_move[0]) {
+            return None;
+        }
+        let [a, b] = [a, b].map(|&pose| Moving { pose, ..Moving::BACKGROUND });
+        let shift_of_a = self.shift_of_a(&a, &b);
+        Some(Alignment { moves_b, shift: if moves_b { -shift_of_a } else { shift_of_a } })
+    }
+
+    fn shift_of_a(&self, a: &Moving, b: &Moving) -> DVec2 {
+        let row = self.measure(0, a, b);
+        match &self.kind {
+            ConnectorKind::Pin { .. } => row.point_b - row.point_a,
+            // Both points stay on a line with the normal, so that the way back is the gap.
+            ConnectorKind::Slot { .. } | ConnectorKind::Rod { .. } => row.normal * -row.gap,
+            ConnectorKind::Rope { .. } => row.normal * (-row.gap).max(0.0),
+            ConnectorKind::Rail { .. } => row.point_b - row.point_a,
+            ConnectorKind::RailStop { path, at, .. } => {
+                if row.gap < 0.0 {
+                    path.place_at(*at).point() - row.point_b
+                } else {
+                    DVec2::ZERO
+                }
+            }
+        }
+    }
+}

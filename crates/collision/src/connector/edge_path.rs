@@ -1,0 +1,260 @@
+//! A path of lines and arcs, open or closed.
+
+use super::box_tree::BoxTree;
+use super::edge_piece::EdgePiece;
+use super::error::RailError;
+use super::path::{Foot, RailHint, RailKnot, RailPlace};
+use glam::DVec2;
+use halfgap_geometry::{Aabb, Arc, Edge, EdgeSpec, Line};
+
+/// End points and arc radii may be off by this part of the path's size; they are then made exact.
+const FIT: f64 = 1e-6;
+/// A bulge below this is a straight edge: its rise would be less than 1.25e-8 chords.
+const FLATTEST_BULGE: f64 = 2.5e-8;
+/// A joint that turns by less than this [rad] is smooth.
+const SMOOTH_TURN: f64 = 1e-6;
+/// Curvatures that differ by less than this part of the larger are the same.
+const SAME_CURVATURE: f64 = 1e-9;
+
+/// The path. An open one has its two continuations as first and last piece.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct EdgePath {
+    pieces: Vec<EdgePiece>,
+    closed: bool,
+    length: f64,
+    /// Over the pieces, without the continuations.
+    tree: BoxTree,
+    knots: Vec<RailKnot>,
+}
+
+impl EdgePath {
+    pub(super) fn new(start: DVec2, specs: &[EdgeSpec]) -> Result<Self, RailError> {
+        let edges = build_edges(start, specs)?;
+        let (Some(first), Some(last)) = (edges.first(), edges.last()) else {
+            return Err(RailError::NoEdges);
+        };
+        let closed = first.from() == last.to();
+        let mut pieces = Vec::with_capacity(edges.len() + 2);
+        if !closed {
+            pieces.push(EdgePiece::ray(first.from(), first.start_direction(), 0.0, [f64::NEG_INFINITY, 0.0]));
+        }
+        let mut length = 0.0;
+        for edge in &edges {
+            pieces.push(EdgePiece::new(edge, length));
+            length += edge.length();
+        }
+        if !closed {
+            pieces.push(EdgePiece::ray(last.to(), last.end_direction(), length, [0.0, f64::INFINITY]));
+        }
+        let boxes: Vec<Aabb> = edges.iter().map(Edge::bounds).collect();
+        let tree = BoxTree::new(&boxes).ok_or(RailError::NoEdges)?;
+        let knots = find_knots(&pieces, &edges, closed);
+        Ok(Self { pieces, closed, length, tree, knots })
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.length
+    }
+
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        self.tree.bounds()
+    }
+
+    pub(super) fn knots(&self) -> &[RailKnot] {
+        &self.knots
+    }
+
+    /// First place of a piece that is entered forward, else its last [m].
+    pub(super) fn place_at_knot(&self, piece: usize, forward: bool) -> f64 {
+        self.pieces.get(piece).map_or(0.0, |piece| piece.range[usize::from(!forward)])
+    }
+
+    pub(super) fn nearest(&self, point: DVec2, hint: Option<&RailHint>) -> RailPlace {
+        let (piece, along) = match hint {
+            None => {
+                let piece = self.nearest_piece(point);
+                (piece, self.pieces[piece].along(point, self.near_middle(piece)))
+            }
+            Some(hint) if hint.stays => {
+                let piece = self.hinted_piece(hint);
+                (piece, self.pieces[piece].along(point, hint.parameter))
+            }
+            Some(hint) => self.walk(point, hint),
+        };
+        let mut foot = self.pieces[piece].foot(piece, point);
+        foot.parameter = along;
+        RailPlace::new(foot, self.pieces[piece].start + along)
+    }
+
+    #[inline]
+    pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {
+        let piece = match hint {
+            None => self.nearest_piece(point),
+            Some(hint) if hint.stays => self.hinted_piece(hint),
+            Some(hint) => self.walk(point, hint).0,
+        };
+        self.pieces[piece].foot(piece, point)
+    }
+
+    pub(super) fn place_at(&self, arc_length: f64) -> RailPlace {
+        let arc_length = if self.closed { arc_length.rem_euclid(self.length) } else { arc_length };
+        // The continuation before the path starts at 0 like the first edge, and ends there.
+        let after = self.pieces.partition_point(|piece| piece.start + piece.range[0] <= arc_length);
+        let piece = after.saturating_sub(1);
+        let along = arc_length - self.pieces[piece].start;
+        let mut foot = self.pieces[piece].foot_at(piece, along);
+        foot.parameter = along;
+        RailPlace::new(foot, arc_length)
+    }
+
+    /// The piece nearest to a point; a continuation if that is where the point lies beyond the nearest end.
+    #[inline]
+    fn nearest_piece(&self, point: DVec2) -> usize {
+        let rays = usize::from(!self.closed);
+        let (mut best, mut least) = (rays, f64::INFINITY);
+        self.tree.visit_nearest(point, &mut |index| {
+            let distance_sq = self.pieces[index + rays].distance_sq(point);
+            if distance_sq < least {
+                (best, least) = (index + rays, distance_sq);
+            }
+            least
+        });
+        if !self.closed {
+            let last = self.pieces.len() - 1;
+            for (ray, beside) in [(0, 1), (last, last - 1)] {
+                // On the continuation the point is at least as near as at the end itself.
+                let place = self.pieces[ray].along(point, 0.0);
+                let beyond = place > self.pieces[ray].range[0] && place < self.pieces[ray].range[1];
+                let end = self.pieces[ray].foot_at(ray, 0.0).point;
+                if best == beside && beyond && (point - end).length_squared() <= least {
+                    return ray;
+                }
+            }
+        }
+        best
+    }
+
+    /// Follows the path from the hint to the first piece on which the point has a foot, or to a corner between two.
+    fn walk(&self, point: DVec2, hint: &RailHint) -> (usize, f64) {
+        let mut piece = self.hinted_piece(hint);
+        let mut along = self.pieces[piece].along(point, hint.parameter);
+        let mut last_step = 0;
+        for _ in 0..=self.pieces.len() {
+            let [first, last] = self.pieces[piece].range;
+            let step = i32::from(along > last) - i32::from(along < first);
+            if step == 0 || step == -last_step {
+                break;
+            }
+            piece = self.neighbor(piece, step > 0);
+            let [first, last] = self.pieces[piece].range;
+            along = self.pieces[piece].along(point, if step > 0 { first } else { last });
+            last_step = step;
+        }
+        (piece, along)
+    }
+
+    /// The piece after or before; the ranges of continuations see to it that none is asked for beyond them.
+    fn neighbor(&self, piece: usize, forward: bool) -> usize {
+        let count = self.pieces.len();
+        if forward { (piece + 1) % count } else { (piece + count - 1) % count }
+    }
+
+    fn hinted_piece(&self, hint: &RailHint) -> usize {
+        (hint.piece as usize).min(self.pieces.len() - 1)
+    }
+
+    fn near_middle(&self, piece: usize) -> f64 {
+        let middle = self.pieces[piece].half_way();
+        if middle.is_finite() { middle } else { 0.0 }
+    }
+}
+
+/// The edges, each starting exactly where the one before it ends.
+fn build_edges(start: DVec2, specs: &[EdgeSpec]) -> Result<Vec<Edge>, RailError> {
+    let Some(last) = specs.len().checked_sub(1) else { return Err(RailError::NoEdges) };
+    if !(start.is_finite() && specs.iter().all(|spec| spec.to().is_finite())) {
+        return Err(RailError::NotFinite);
+    }
+    let size = path_size(start, specs);
+    let mut from = start;
+    let mut edges = Vec::with_capacity(specs.len());
+    for (index, spec) in specs.iter().enumerate() {
+        let returns = (spec.to() - start).length() <= FIT * size;
+        let to = if index == last && returns { start } else { spec.to() };
+        edges.push(build_edge(index, from, to, spec, size)?);
+        from = to;
+    }
+    Ok(edges)
+}
+
+/// Larger side of the box around the ends and the centers [m].
+fn path_size(start: DVec2, specs: &[EdgeSpec]) -> f64 {
+    let mut bounds = Aabb::around(start);
+    for spec in specs {
+        bounds = bounds.including(spec.to());
+        if let EdgeSpec::Arc { center, .. } = spec {
+            bounds = bounds.including(*center);
+        }
+    }
+    bounds.size().max_element()
+}
+
+fn build_edge(index: usize, from: DVec2, to: DVec2, spec: &EdgeSpec, size: f64) -> Result<Edge, RailError> {
+    let straight = || {
+        let line = Line::new(from, to).map_err(|source| RailError::Line { edge: index, source })?;
+        Ok(Edge::Line(line))
+    };
+    let arc = match *spec {
+        EdgeSpec::Line { .. } => return straight(),
+        EdgeSpec::Bulge { bulge, .. } if bulge.abs() < FLATTEST_BULGE => return straight(),
+        EdgeSpec::Arc { center, clockwise, .. } if (to - from).length() <= FIT * size => {
+            Arc::circle(center, from, clockwise)
+        }
+        EdgeSpec::Arc { center, clockwise, .. } => Arc::between(from, to, center, clockwise, FIT * size),
+        EdgeSpec::Bulge { bulge, .. } => {
+            // On the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
+            let chord = to - from;
+            let center = from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
+            Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)
+        }
+    };
+    arc.map(Edge::Arc).map_err(|source| RailError::Arc { edge: index, source })
+}
+
+/// The joints at which direction or curvature jump. Pieces and edges differ by the continuations of an open path.
+fn find_knots(pieces: &[EdgePiece], edges: &[Edge], closed: bool) -> Vec<RailKnot> {
+    let count = pieces.len();
+    let directions = |piece: usize| -> [DVec2; 2] {
+        let edge =
+            if closed { Some(&edges[piece]) } else { piece.checked_sub(1).and_then(|at| edges.get(at)) };
+        match edge {
+            Some(edge) => [edge.start_direction(), edge.end_direction()],
+            None => [pieces[piece].foot_at(piece, 0.0).tangent; 2],
+        }
+    };
+    let joints = if closed { 0..count } else { 1..count };
+    let mut knots = Vec::new();
+    for after in joints {
+        let before = (after + count - 1) % count;
+        let ([_, arriving], [leaving, _]) = (directions(before), directions(after));
+        let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
+        let turn = if turn.abs() < SMOOTH_TURN { 0.0 } else { turn };
+        let curvatures = [pieces[before].curvature(), pieces[after].curvature()];
+        let largest = curvatures[0].abs().max(curvatures[1].abs());
+        if turn != 0.0 || (curvatures[0] - curvatures[1]).abs() > SAME_CURVATURE * largest {
+            let index = |piece: usize| u32::try_from(piece).unwrap_or(u32::MAX);
+            knots.push(RailKnot {
+                arc_length: pieces[after].start,
+                before: index(before),
+                after: index(after),
+                turn,
+                curvatures,
+            });
+        }
+    }
+    knots
+}

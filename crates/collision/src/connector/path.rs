@@ -1,0 +1,242 @@
+//! The path of a rail, fixed in the world: edges joined to each other, or a spline through points.
+//!
+//! Arc length counts from the path's first point. An open path goes on straight beyond its ends, so that every point has
+//! a nearest one.
+
+use super::edge_path::EdgePath;
+use super::error::RailError;
+use super::spline::Spline;
+use glam::DVec2;
+use halfgap_geometry::{Aabb, EdgeSpec};
+
+/// The path of a rail.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RailPath {
+    curve: Curve,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Curve {
+    Edges(EdgePath),
+    Spline(Spline),
+}
+
+/// A place on a path: the nearest to some point, or the one at some arc length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RailPlace {
+    foot: Foot,
+    /// Arc length from the path's first point [m]; negative or more than the path's length beyond its ends.
+    pub arc_length: f64,
+}
+
+/// The nearest point of a path, without its arc length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Foot {
+    /// Index of the piece.
+    pub(super) piece: u32,
+    /// Place in the piece [m]: of a spline, as its cubics measure it.
+    pub(super) parameter: f64,
+    /// The point of the path [m].
+    pub(super) point: DVec2,
+    /// Unit vector of travel.
+    pub(super) tangent: DVec2,
+    /// Unit vector to the left of it.
+    pub(super) normal: DVec2,
+    /// Curvature [1/m], positive to the left.
+    pub(super) curvature: f64,
+    /// Its derivative by the arc length [1/m^2].
+    pub(super) curvature_rate: f64,
+    /// How far the point lies to the left of the path [m].
+    pub(super) gap: f64,
+}
+
+/// Where on a path to look for the nearest point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RailHint {
+    pub(super) piece: u32,
+    pub(super) parameter: f64,
+    pub(super) stays: bool,
+}
+
+/// A joint of a path at which its curvature, or even its direction, jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RailKnot {
+    /// Arc length from the path's first point [m].
+    pub arc_length: f64,
+    /// Index of the piece before it.
+    pub before: u32,
+    /// Index of the piece after it.
+    pub after: u32,
+    /// By how much the direction of travel turns there [rad]: 0 where the joint is smooth.
+    pub turn: f64,
+    /// Curvature of the two pieces [1/m], positive to the left.
+    pub curvatures: [f64; 2],
+}
+
+impl RailPath {
+    /// The path of lines and arcs that starts at a point [m]; closed if it ends there.
+    ///
+    /// End points and arc radii may be off by 1e-6 of the path's size and are then made exact. An arc that ends where it
+    /// starts is a full circle.
+    ///
+    /// # Errors
+    /// No edges, numbers that are not finite, or an edge that cannot be built.
+    pub fn from_edges(start: DVec2, edges: &[EdgeSpec]) -> Result<Self, RailError> {
+        Ok(Self { curve: Curve::Edges(EdgePath::new(start, edges)?) })
+    }
+
+    /// The cubic spline through points [m], with their distances as parameter: periodic if `closed`, else natural.
+    ///
+    /// A closed spline runs from the last point to the first; the first may be repeated at the end.
+    ///
+    /// # Errors
+    /// Fewer than two points (closed: three), numbers that are not finite, neighbours that coincide, or a cusp.
+    pub fn through(points: &[DVec2], closed: bool) -> Result<Self, RailError> {
+        Ok(Self { curve: Curve::Spline(Spline::new(points, closed)?) })
+    }
+
+    /// Length [m], without what lies beyond the ends.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        match &self.curve {
+            Curve::Edges(path) => path.length(),
+            Curve::Spline(spline) => spline.length(),
+        }
+    }
+
+    /// True if it ends where it starts and goes on.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        match &self.curve {
+            Curve::Edges(path) => path.is_closed(),
+            Curve::Spline(spline) => spline.is_closed(),
+        }
+    }
+
+    /// A box around it, without what lies beyond the ends.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        match &self.curve {
+            Curve::Edges(path) => path.bounds(),
+            Curve::Spline(spline) => spline.bounds(),
+        }
+    }
+
+    /// The joints at which curvature or direction jump, by arc length; a spline has none.
+    #[must_use]
+    pub fn knots(&self) -> &[RailKnot] {
+        match &self.curve {
+            Curve::Edges(path) => path.knots(),
+            Curve::Spline(_) => &[],
+        }
+    }
+
+    /// The hint to look from a knot forward, or backward, along the piece that comes next.
+    #[must_use]
+    pub fn hint_past(&self, knot: &RailKnot, forward: bool) -> RailHint {
+        let piece = if forward { knot.after } else { knot.before };
+        let parameter = match &self.curve {
+            Curve::Edges(path) => path.place_at_knot(piece as usize, forward),
+            Curve::Spline(_) => 0.0,
+        };
+        RailHint { piece, parameter, stays: false }
+    }
+
+    /// The place nearest to a point [m]: of the whole path without a hint, else the first found along the path from the
+    /// hint, or on the hint's piece if it stays there. Beyond an open end, that on the straight continuation.
+    #[must_use]
+    pub fn nearest(&self, point: DVec2, hint: Option<&RailHint>) -> RailPlace {
+        match &self.curve {
+            Curve::Edges(path) => path.nearest(point, hint),
+            Curve::Spline(spline) => {
+                let foot = spline.foot(point, hint);
+                RailPlace { foot, arc_length: spline.arc_length(foot.piece as usize, foot.parameter) }
+            }
+        }
+    }
+
+    /// The place at an arc length [m]: beyond the ends of an open path on its continuation, on a closed one in another lap.
+    #[must_use]
+    pub fn place_at(&self, arc_length: f64) -> RailPlace {
+        match &self.curve {
+            Curve::Edges(path) => path.place_at(arc_length),
+            Curve::Spline(spline) => spline.place_at(arc_length),
+        }
+    }
+
+    /// [`RailPath::nearest`] without the arc length, which costs as much as everything else.
+    #[inline]
+    pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {
+        match &self.curve {
+            Curve::Edges(path) => path.foot(point, hint),
+            Curve::Spline(spline) => spline.foot(point, hint),
+        }
+    }
+}
+
+impl RailPlace {
+    pub(super) fn new(foot: Foot, arc_length: f64) -> Self {
+        Self { foot, arc_length }
+    }
+
+    pub(super) fn foot(&self) -> &Foot {
+        &self.foot
+    }
+
+    /// Index of the piece of the path; the continuations of an open path of edges count as its first and last piece.
+    #[must_use]
+    pub fn piece(&self) -> u32 {
+        self.foot.piece
+    }
+
+    /// The point of the path [m].
+    #[must_use]
+    pub fn point(&self) -> DVec2 {
+        self.foot.point
+    }
+
+    /// Unit vector of travel.
+    #[must_use]
+    pub fn tangent(&self) -> DVec2 {
+        self.foot.tangent
+    }
+
+    /// Unit normal, on the left of the direction of travel.
+    #[must_use]
+    pub fn normal(&self) -> DVec2 {
+        self.foot.normal
+    }
+
+    /// Curvature [1/m], positive to the left.
+    #[must_use]
+    pub fn curvature(&self) -> f64 {
+        self.foot.curvature
+    }
+
+    /// Derivative of the curvature by the arc length [1/m^2].
+    #[must_use]
+    pub fn curvature_rate(&self) -> f64 {
+        self.foot.curvature_rate
+    }
+
+    /// How far the point lies to the left of the path [m].
+    #[must_use]
+    pub fn gap(&self) -> f64 {
+        self.foot.gap
+    }
+
+    /// A hint to look near this place.
+    #[must_use]
+    pub fn hint(&self) -> RailHint {
+        RailHint { piece: self.foot.piece, parameter: self.foot.parameter, stays: false }
+    }
+}
+
+impl RailHint {
+    /// The hint to stay on the piece, continued as the circle or straight line that it is, although another may be nearer:
+    /// so that nothing jumps before an event at the joint is handled. On a spline, where nothing jumps, it is as before.
+    #[must_use]
+    pub fn staying(self) -> Self {
+        Self { stays: true, ..self }
+    }
+}

@@ -1,0 +1,217 @@
+//! The cubic spline through points, with their distances as parameter.
+//!
+//! With h the distances, D the divided differences and M the second derivatives at the points, continuity of the first
+//! derivative asks h[i-1] M[i-1] + 2 (h[i-1] + h[i]) M[i] + h[i] M[i+1] = 6 (D[i] - D[i-1]); natural ends have M = 0, a
+//! closed spline has one such equation for every point. The system is diagonally dominant: elimination without pivots.
+//!
+//! Source: C. de Boor, "A Practical Guide to Splines", 1978, chapter IV; for the corner entries of the closed system
+//! W. Press et al., "Numerical Recipes", 2.7 (Sherman-Morrison).
+
+use super::box_tree::BoxTree;
+use super::cubic::{Cubic, Jet};
+use super::error::RailError;
+use glam::DVec2;
+use halfgap_geometry::Aabb;
+
+/// Points closer than this part of the spline's size are one.
+const COINCIDENT: f64 = 1e-9;
+/// A span of a spline turns by about this at most [rad].
+const SPAN_TURN: f64 = 0.25;
+/// Where the speed by the parameter, mostly about 1, falls below this, the spline has a cusp.
+const SLOWEST: f64 = 1e-3;
+/// Most spans of a piece: a piece that is nowhere slower than `SLOWEST` rarely needs as many.
+const MOST_SPANS: f64 = 256.0;
+
+/// The spline.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Spline {
+    pub(super) pieces: Vec<Cubic>,
+    /// Equal parts of the pieces that turn little, in order.
+    pub(super) spans: Vec<Span>,
+    /// Index of the first span of every piece.
+    pub(super) first_span: Vec<usize>,
+    pub(super) closed: bool,
+    pub(super) length: f64,
+    pub(super) tree: BoxTree,
+}
+
+/// A part of a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub(super) piece: usize,
+    /// Parameters at its ends.
+    pub(super) range: [f64; 2],
+    /// Arc length of the spline at its start [m].
+    pub(super) start: f64,
+}
+
+impl Spline {
+    pub(super) fn new(points: &[DVec2], closed: bool) -> Result<Self, RailError> {
+        let points = checked_points(points, closed)?;
+        let pieces = build_pieces(&points, closed);
+        let mut spline = Self::in_spans(pieces, closed)?;
+        spline.measure_length();
+        Ok(spline)
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.length
+    }
+
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        self.tree.bounds()
+    }
+
+    /// The curve at a parameter of a piece, straight beyond the ends of an open spline.
+    #[inline]
+    pub(super) fn jet(&self, piece: usize, u: f64) -> Jet {
+        let cubic = &self.pieces[piece];
+        if (0.0..=cubic.width).contains(&u) {
+            return cubic.jet(u);
+        }
+        let end = u.clamp(0.0, cubic.width);
+        cubic.jet(end).straight_on(u - end)
+    }
+
+    fn in_spans(pieces: Vec<Cubic>, closed: bool) -> Result<Self, RailError> {
+        let mut spans = Vec::with_capacity(pieces.len());
+        let mut first_span = Vec::with_capacity(pieces.len());
+        for (piece, cubic) in pieces.iter().enumerate() {
+            first_span.push(spans.len());
+            let count = span_count(cubic).ok_or(RailError::Cusp(piece))?;
+            for part in 0..count {
+                let place = |part: u32| cubic.width * (f64::from(part) / f64::from(count));
+                spans.push(Span { piece, range: [place(part), place(part + 1)], start: 0.0 });
+            }
+        }
+        let boxes: Vec<Aabb> = spans.iter().map(|span| span_box(&pieces[span.piece], span.range)).collect();
+        let tree = BoxTree::new(&boxes).ok_or(RailError::TooFewPoints { least: 2, got: 0 })?;
+        Ok(Self { pieces, spans, first_span, closed, length: 0.0, tree })
+    }
+}
+
+/// In how many parts, a power of two, the piece turns little; `None` if it has a cusp.
+fn span_count(cubic: &Cubic) -> Option<u32> {
+    let mut count = 1u32;
+    loop {
+        let width = cubic.width / f64::from(count);
+        let (mut largest_turn, mut slowest) = (0.0, f64::INFINITY);
+        for part in 0..count {
+            let from = width * f64::from(part);
+            let second = cubic.largest_second(from, from + width);
+            // The speed changes by at most half of this from the middle of the span.
+            let slow = cubic.speed(from + 0.5 * width);
+            slowest = f64::min(slowest, slow);
+            largest_turn = f64::max(largest_turn, second * width / slow);
+        }
+        if slowest < SLOWEST {
+            return None;
+        }
+        if largest_turn <= SPAN_TURN {
+            return Some(count);
+        }
+        if f64::from(count) >= MOST_SPANS {
+            return None;
+        }
+        count *= 2;
+    }
+}
+
+/// A box around a span: its chord, and by how much a curve can leave it.
+fn span_box(cubic: &Cubic, [from, to]: [f64; 2]) -> Aabb {
+    let rise = cubic.largest_second(from, to) * (to - from) * (to - from) / 8.0;
+    Aabb::around(cubic.jet(from).point).including(cubic.jet(to).point).grown(rise)
+}
+
+/// The points, without a repeated first one at the end of a closed spline.
+fn checked_points(points: &[DVec2], closed: bool) -> Result<Vec<DVec2>, RailError> {
+    if !points.iter().all(|point| point.is_finite()) {
+        return Err(RailError::NotFinite);
+    }
+    let mut points = points.to_vec();
+    let boxes = points.iter().map(|&point| Aabb::around(point));
+    let size = boxes.reduce(Aabb::union).map_or(0.0, |bounds| bounds.size().max_element());
+    let coincide = |a: DVec2, b: DVec2| (a - b).length() <= COINCIDENT * size;
+    if closed && points.len() > 1 && coincide(points[0], points[points.len() - 1]) {
+        points.pop();
+    }
+    let least = if closed { 3 } else { 2 };
+    if points.len() < least {
+        return Err(RailError::TooFewPoints { least, got: points.len() });
+    }
+    match points.windows(2).position(|pair| coincide(pair[0], pair[1])) {
+        Some(first) => Err(RailError::CoincidentPoints(first + 1)),
+        None => Ok(points),
+    }
+}
+
+fn build_pieces(points: &[DVec2], closed: bool) -> Vec<Cubic> {
+    let count = points.len();
+    let pieces = if closed { count } else { count - 1 };
+    let chords: Vec<DVec2> = (0..pieces).map(|i| points[(i + 1) % count] - points[i]).collect();
+    let widths: Vec<f64> = chords.iter().map(|chord| chord.length()).collect();
+    let slopes: Vec<DVec2> = chords.iter().zip(&widths).map(|(&chord, &width)| chord / width).collect();
+    let seconds = if closed { closed_seconds(&widths, &slopes) } else { natural_seconds(&widths, &slopes) };
+    (0..pieces)
+        .map(|i| {
+            let (width, first, last) = (widths[i], seconds[i], seconds[(i + 1) % count]);
+            Cubic {
+                from: points[i],
+                slope: slopes[i] - (first * 2.0 + last) * (width / 6.0),
+                bend: first * 0.5,
+                twist: (last - first) / (6.0 * width),
+                width,
+            }
+        })
+        .collect()
+}
+
+/// Second derivatives at the points of an open spline, 0 at its ends.
+fn natural_seconds(widths: &[f64], slopes: &[DVec2]) -> Vec<DVec2> {
+    let inner = widths.len() - 1;
+    let diagonal: Vec<f64> = (0..inner).map(|i| 2.0 * (widths[i] + widths[i + 1])).collect();
+    let mut seconds: Vec<DVec2> = (0..inner).map(|i| (slopes[i + 1] - slopes[i]) * 6.0).collect();
+    if inner > 0 {
+        solve_tridiagonal(&diagonal, &widths[1..inner], &mut seconds);
+    }
+    seconds.insert(0, DVec2::ZERO);
+    seconds.push(DVec2::ZERO);
+    seconds
+}
+
+/// Second derivatives at the points of a closed spline.
+fn closed_seconds(widths: &[f64], slopes: &[DVec2]) -> Vec<DVec2> {
+    let count = widths.len();
+    let before = |i: usize| (i + count - 1) % count;
+    let mut diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (widths[before(i)] + widths[i])).collect();
+    let mut seconds: Vec<DVec2> = (0..count).map(|i| (slopes[i] - slopes[before(i)]) * 6.0).collect();
+    // The two corner entries are a matrix of rank one, corner (1, .., 1)(1, .., 1)^T, more on the diagonal.
+    let corner = widths[count - 1];
+    diagonal[0] -= corner;
+    diagonal[count - 1] -= corner;
+    let mut unit = vec![DVec2::ZERO; count];
+    (unit[0], unit[count - 1]) = (DVec2::splat(corner), DVec2::splat(corner));
+    solve_tridiagonal(&diagonal, &widths[..count - 1], &mut seconds);
+    solve_tridiagonal(&diagonal, &widths[..count - 1], &mut unit);
+    let share = (seconds[0] + seconds[count - 1]) / (1.0 + unit[0].x + unit[count - 1].x);
+    seconds.iter().zip(&unit).map(|(&second, &unit)| second - unit * share).collect()
+}
+
+/// Solves a symmetric tridiagonal system in place.
+fn solve_tridiagonal(diagonal: &[f64], beside: &[f64], right: &mut [DVec2]) {
+    let mut pivots = diagonal.to_vec();
+    for i in 1..diagonal.len() {
+        let factor = beside[i - 1] / pivots[i - 1];
+        pivots[i] -= factor * beside[i - 1];
+        let above = right[i - 1];
+        right[i] -= above * factor;
+    }
+    for i in (0..diagonal.len()).rev() {
+        let below = if i + 1 < diagonal.len() { right[i + 1] * beside[i] } else { DVec2::ZERO };
+        right[i] = (right[i] - below) / pivots[i];
+    }
+}

@@ -1,0 +1,181 @@
+//! The point of a spline nearest to a given one.
+//!
+//! With E = P - Q(u), half of the squared distance has the derivative F = -E.Q' and F' = |Q'|^2 - E.Q''. Near a hint Newton's
+//! method finds the root of F. Without one, spans are searched from near to far: a curve leaves its chord by at most
+//! |Q''| w^2/8 over a width w, which rules out most; where |Q'|^2 > |E| |Q''| on all of a span the distance has one minimum
+//! there, found by Newton's method in a bracket; what allows neither is split.
+
+use super::cubic::Cubic;
+use super::path::{Foot, RailHint};
+use super::spline::Spline;
+use glam::DVec2;
+
+/// A step below this part of a piece is the last of Newton's: the next would be rounding.
+const SETTLED: f64 = 1e-8;
+/// Steps of Newton's method from a hint before the whole spline is searched: from nearby it takes two or three.
+const STEPS_FROM_HINT: u32 = 12;
+/// Most steps of the bracketed method; by bisection alone so many would end at rounding.
+const BRACKETED_STEPS: u32 = 60;
+/// How often a span is halved: only a point near a centre of curvature, equally far from much of it, needs as many.
+const MOST_HALVINGS: u32 = 12;
+
+/// The nearest point so far.
+#[derive(Clone, Copy)]
+struct Best {
+    piece: usize,
+    u: f64,
+    distance_sq: f64,
+}
+
+/// A part of a piece with its end points.
+#[derive(Clone, Copy)]
+struct Part {
+    range: [f64; 2],
+    ends: [DVec2; 2],
+    halvings: u32,
+}
+
+impl Spline {
+    #[inline]
+    pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {
+        let near = hint.and_then(|hint| self.nearest_from(point, hint));
+        let (piece, u) = near.unwrap_or_else(|| self.nearest_of_all(point));
+        self.jet(piece, u).foot(piece, u, point)
+    }
+
+    /// The nearest place by Newton's method from a hint; `None` if the distance is not convex there.
+    fn nearest_from(&self, point: DVec2, hint: &RailHint) -> Option<(usize, f64)> {
+        let mut piece = (hint.piece as usize).min(self.pieces.len() - 1);
+        let mut u = hint.parameter;
+        for _ in 0..STEPS_FROM_HINT {
+            let width = self.pieces[piece].width;
+            let jet = self.jet(piece, u);
+            let seen = point - jet.point;
+            let convexity = jet.first.length_squared() - seen.dot(jet.second);
+            if convexity <= 0.0 {
+                return None;
+            }
+            // A step of more than a piece is a guess; on a straight continuation it is exact.
+            let step = seen.dot(jet.first) / convexity;
+            let is_beyond = u < 0.0 || u > width;
+            let step = if is_beyond { step } else { step.clamp(-width, width) };
+            (piece, u) = self.carried(piece, u + step);
+            if step.abs() <= SETTLED * width {
+                return Some((piece, u));
+            }
+        }
+        None
+    }
+
+    /// The parameter in the piece before or after, if there is one.
+    #[inline]
+    fn carried(&self, piece: usize, u: f64) -> (usize, f64) {
+        let count = self.pieces.len();
+        let width = self.pieces[piece].width;
+        if u < 0.0 && (self.closed || piece > 0) {
+            let before = (piece + count - 1) % count;
+            (before, self.pieces[before].width + u)
+        } else if u > width && (self.closed || piece + 1 < count) {
+            ((piece + 1) % count, u - width)
+        } else {
+            (piece, u)
+        }
+    }
+
+    fn nearest_of_all(&self, point: DVec2) -> (usize, f64) {
+        let mut best = Best { piece: 0, u: 0.0, distance_sq: f64::INFINITY };
+        self.tree.visit_nearest(point, &mut |index| {
+            let span = &self.spans[index];
+            let cubic = &self.pieces[span.piece];
+            let ends = span.range.map(|u| cubic.jet(u).point);
+            search_part(cubic, span.piece, point, Part { range: span.range, ends, halvings: 0 }, &mut best);
+            best.distance_sq
+        });
+        let Best { piece, u, .. } = best;
+        self.beyond_end(point, piece, u).unwrap_or((piece, u))
+    }
+
+    /// The place on a straight continuation, if the nearest one is an open end beyond which the point lies.
+    fn beyond_end(&self, point: DVec2, piece: usize, u: f64) -> Option<(usize, f64)> {
+        if self.closed {
+            return None;
+        }
+        let jet = self.pieces[piece].jet(u);
+        let step = jet.first.dot(point - jet.point) / jet.first.length_squared();
+        let is_first = piece == 0 && u == 0.0 && step < 0.0;
+        let is_last = piece + 1 == self.pieces.len() && u == self.pieces[piece].width && step > 0.0;
+        (is_first || is_last).then_some((piece, u + step))
+    }
+}
+
+fn search_part(cubic: &Cubic, piece: usize, point: DVec2, part: Part, best: &mut Best) {
+    let [from, to] = part.range;
+    let width = to - from;
+    let second = cubic.largest_second(from, to);
+    let to_chord = distance_to_segment(point, part.ends);
+    let at_least = (to_chord - second * width * width / 8.0).max(0.0);
+    if at_least * at_least >= best.distance_sq {
+        return;
+    }
+    // From the middle of the part the speed changes by half of this.
+    let change = second * width;
+    let middle = cubic.jet(0.5 * (from + to));
+    let speed = middle.first.length();
+    let slowest = (speed - 0.5 * change).max(0.0);
+    let farthest = (point - middle.point).length() + 0.5 * width * (speed + 0.5 * change);
+    if slowest * slowest > farthest * second || part.halvings == MOST_HALVINGS {
+        let u = nearest_in_bracket(cubic, point, part.range);
+        let distance_sq = (point - cubic.jet(u).point).length_squared();
+        if distance_sq < best.distance_sq {
+            *best = Best { piece, u, distance_sq };
+        }
+        return;
+    }
+    let (at, halvings) = (0.5 * (from + to), part.halvings + 1);
+    let first = Part { range: [from, at], ends: [part.ends[0], middle.point], halvings };
+    let last = Part { range: [at, to], ends: [middle.point, part.ends[1]], halvings };
+    let is_first_nearer = (point - part.ends[0]).length_squared() <= (point - part.ends[1]).length_squared();
+    for half in if is_first_nearer { [first, last] } else { [last, first] } {
+        search_part(cubic, piece, point, half, best);
+    }
+}
+
+/// The nearest parameter in a range in which the distance has one minimum.
+fn nearest_in_bracket(cubic: &Cubic, point: DVec2, [mut low, mut high]: [f64; 2]) -> f64 {
+    let width = high - low;
+    let slope_at = |u: f64| {
+        let jet = cubic.jet(u);
+        let seen = point - jet.point;
+        (-seen.dot(jet.first), jet.first.length_squared() - seen.dot(jet.second))
+    };
+    if slope_at(low).0 >= 0.0 {
+        return low;
+    }
+    if slope_at(high).0 <= 0.0 {
+        return high;
+    }
+    let mut u = 0.5 * (low + high);
+    for _ in 0..BRACKETED_STEPS {
+        let (slope, convexity) = slope_at(u);
+        if slope > 0.0 {
+            high = u;
+        } else {
+            low = u;
+        }
+        let newton = u - slope / convexity;
+        let next =
+            if convexity > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let step = next - u;
+        u = next;
+        if step.abs() <= SETTLED * width {
+            break;
+        }
+    }
+    u
+}
+
+fn distance_to_segment(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
+    let (chord, seen) = (to - from, point - from);
+    let share = (seen.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
+    (seen - chord * share).length()
+}
