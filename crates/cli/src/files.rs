@@ -21,6 +21,8 @@ pub(crate) fn write_all(
 ) -> Result<(), Failure> {
     write(folder, "states.csv", |out| recording.write_states_csv(out))?;
     write(folder, "impacts.csv", |out| recording.write_impacts_csv(out))?;
+    write(folder, "contacts.csv", |out| recording.write_contacts_csv(out))?;
+    write(folder, "forces.csv", |out| recording.write_forces_csv(out))?;
     write(folder, "energy.csv", |out| recording.write_energy_csv(out))?;
     write(folder, "recording.json", |out| recording.write_json(out))?;
     write(folder, "result.json", |out| writeln!(out, "{}", result.to_json()))?;

@@ -1,6 +1,6 @@
 //! The table that `halfgap run` prints.
 
-use halfgap::RunResult;
+use halfgap::{Ledger, RunResult};
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -16,6 +16,7 @@ pub(crate) fn of_result(result: &RunResult) -> String {
     let mut text = format!("{}: {} at t = {} s\n\n", result.scene, result.status.name(), result.time);
     push_states(&mut text, result);
     push_summary(&mut text, result);
+    push_ledger(&mut text, &result.ledger);
     text
 }
 
@@ -64,6 +65,25 @@ fn push_summary(text: &mut String, result: &RunResult) {
     ];
     for (name, value) in rows {
         let _ = writeln!(text, "{name:16} {value}");
+    }
+}
+
+/// What changed the energy, as far as anything did, and what is left of that.
+fn push_ledger(text: &mut String, ledger: &Ledger) {
+    let fixed = [
+        ("impacts", ledger.impacts),
+        ("captures", ledger.captures),
+        ("projections", ledger.projections),
+        ("damping", ledger.damping),
+    ];
+    let laws = ledger.laws.iter().map(|law| (law.law.as_str(), law.work));
+    let _ = writeln!(text, "\nenergy ledger");
+    for (name, change) in fixed.into_iter().chain(laws).filter(|(_, change)| *change != 0.0) {
+        let _ = writeln!(text, "  {name:30} {change:+.9e} J");
+    }
+    let _ = writeln!(text, "  {:30} {:+.9e} J", "integration error", ledger.integration_error());
+    if ledger.start_correction != 0.0 {
+        let _ = writeln!(text, "  {:30} {:+.9e} J", "corrections before the start", ledger.start_correction);
     }
 }
 

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut impacts = Vec::new();
     println!("time  big at            small at          kinetic energy");
     for step in 0..=6 {
-        world.advance_to(0.5 * f64::from(step), &mut |impact| impacts.push(impact.clone()))?;
+        world.advance_to(0.5 * f64::from(step), &mut |event| impacts.extend(event.impact().cloned()))?;
         print!("{:3.1} s", world.time());
         for body in world.bodies() {
             let place = world.state(body).position;

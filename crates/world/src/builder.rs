@@ -1,18 +1,20 @@
-//! Building a world in code: bodies, gravity, damping, settings.
+//! Building a world in code: bodies, and what acts on them.
 
-use crate::scales::{Scales, ToleranceOverrides};
-use crate::start::lift_overlaps;
-use crate::world::{Inertia, Named, World};
+use crate::force::{Attachment, ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
+use crate::scales::Scales;
+use crate::settings::WorldSettings;
+use crate::start::{StartParts, lift_overlaps};
+use crate::world::{Inertia, Named, Start, World, energy_of};
+use crate::world_error::WorldError;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidSettings, RigidSystem};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings};
-use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::{Aabb, Shape};
 use std::collections::BTreeSet;
+use std::slice::from_ref;
+use std::sync::Arc;
 
-/// Relative accuracy asked for unless said otherwise.
-pub const DEFAULT_TOLERANCE: f64 = 1e-8;
 /// Part of the smallest movable body's radius by which bodies may overlap at the start unless said otherwise.
 const DEFAULT_START_OVERLAP: f64 = 1e-6;
 
@@ -59,99 +61,6 @@ impl BodySpec {
     }
 }
 
-/// Why a world could not be built.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum WorldError {
-    /// Two bodies have one name.
-    #[error("there are two bodies named \"{name}\"")]
-    DoubleName {
-        /// The name.
-        name: String,
-    },
-    /// A number is out of range.
-    #[error("body \"{body}\": {quantity} must be {rule}, got {value}")]
-    BadNumber {
-        /// Name of the body.
-        body: String,
-        /// Which quantity.
-        quantity: &'static str,
-        /// What it must be.
-        rule: &'static str,
-        /// What it is.
-        value: f64,
-    },
-    /// A setting is out of range.
-    #[error("{setting} must be {rule}, got {value}")]
-    BadSetting {
-        /// Which setting.
-        setting: &'static str,
-        /// What it must be.
-        rule: &'static str,
-        /// What it is.
-        value: f64,
-    },
-    /// Two bodies overlap at the start by more than is allowed.
-    #[error(
-        "bodies \"{first}\" and \"{second}\" overlap by {depth} m at the start; at most {allowed} m are allowed"
-    )]
-    Overlap {
-        /// Name of one body.
-        first: String,
-        /// Name of the other body.
-        second: String,
-        /// How deep [m].
-        depth: f64,
-        /// How deep would be allowed [m].
-        allowed: f64,
-    },
-    /// Gaps at the start cannot all be lifted to the target gap.
-    #[error(
-        "bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {gap} m remain between them"
-    )]
-    CannotLift {
-        /// Name of one body.
-        first: String,
-        /// Name of the other body.
-        second: String,
-        /// The gap [m].
-        gap: f64,
-    },
-}
-
-/// How a world is to be simulated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WorldSettings {
-    /// Time at the start [s].
-    pub start_time: f64,
-    /// Relative accuracy asked for.
-    pub tolerance: f64,
-    /// Thresholds given in place of derived ones.
-    pub overrides: ToleranceOverrides,
-    /// How deep bodies may overlap at the start [m]; 1e-6 of the smallest movable body's radius if `None`.
-    pub start_overlap: Option<f64>,
-    /// The impact law.
-    pub impact_law: ImpactLaw,
-    /// The order in which serial laws take the rows.
-    pub impact_order: ImpactOrder,
-    /// False if bodies pass through each other.
-    pub collisions: bool,
-}
-
-impl Default for WorldSettings {
-    fn default() -> Self {
-        Self {
-            start_time: 0.0,
-            tolerance: DEFAULT_TOLERANCE,
-            overrides: ToleranceOverrides::default(),
-            start_overlap: None,
-            impact_law: ImpactLaw::default(),
-            impact_order: ImpactOrder::default(),
-            collisions: true,
-        }
-    }
-}
-
 /// Collects what a world is made of.
 #[derive(Clone, Debug, Default)]
 pub struct WorldBuilder {
@@ -159,6 +68,7 @@ pub struct WorldBuilder {
     bodies: Vec<BodySpec>,
     laws: Vec<FlightLaw>,
     gravity: Vec<DVec2>,
+    forces: Vec<Arc<dyn ForceLaw>>,
     excluded: Vec<(BodyId, BodyId)>,
 }
 
@@ -177,6 +87,15 @@ impl WorldBuilder {
         BodyId(u32::try_from(self.bodies.len() - 1).unwrap_or(u32::MAX))
     }
 
+    /// A body that was added.
+    ///
+    /// # Panics
+    /// If no such body was added.
+    #[must_use]
+    pub fn body(&self, body: BodyId) -> &BodySpec {
+        &self.bodies[body.index()]
+    }
+
     /// Lets uniform gravity [m/s^2] act on a body, in addition to what acts already.
     pub fn add_gravity(&mut self, body: BodyId, acceleration: DVec2) {
         self.laws[body.index()].acceleration += acceleration;
@@ -192,6 +111,21 @@ impl WorldBuilder {
         }
     }
 
+    /// Lets a force law act; see [`force`](crate::force).
+    pub fn add_force(&mut self, law: Arc<dyn ForceLaw>) {
+        self.forces.push(law);
+    }
+
+    /// The point of a body at the given shape coordinates [m], or of the background at world coordinates.
+    ///
+    /// # Panics
+    /// If no such body was added.
+    #[must_use]
+    pub fn attachment(&self, body: BodyId, point: DVec2) -> Attachment {
+        let origin = if body.is_world() { DVec2::ZERO } else { center_of_mass(&self.bodies[body.index()]) };
+        Attachment { body, point: point - origin }
+    }
+
     /// Lets two bodies pass through each other.
     pub fn let_pass(&mut self, a: BodyId, b: BodyId) {
         self.excluded.push((a, b));
@@ -203,7 +137,7 @@ impl WorldBuilder {
     /// Names that are not unique, numbers out of range, bodies that overlap: the error names the body and the number.
     pub fn build(self) -> Result<World, WorldError> {
         self.check()?;
-        let scales = self.scales();
+        let scales = self.scales(&self.wrenches()?);
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
         let mut warnings = Vec::new();
         if self.settings.overrides.target_gap.is_none()
@@ -223,11 +157,18 @@ impl WorldBuilder {
             .unwrap_or(DEFAULT_START_OVERLAP * scales.smallest_radius.unwrap_or(scales.coordinate));
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
-        let start_correction = if self.settings.collisions {
+        let total = |bodies: &[StartParts]| {
+            let state = |body: BodyId| bodies[body.index()].2;
+            energy_of(&named, &self.forces, self.settings.start_time, state).total()
+        };
+        let given = total(&bodies);
+        let displacement = if self.settings.collisions {
             lift_overlaps(&mut bodies, &named, &self.excluded, &tolerances, allowed)?
         } else {
             0.0
         };
+        let energy = total(&bodies);
+        let start = Start { displacement, energy_change: energy - given, energy };
         let settings = RigidSettings {
             tolerances,
             law: self.settings.impact_law,
@@ -236,8 +177,9 @@ impl WorldBuilder {
             search: SearchSettings::default(),
         };
         let now = Time::from_seconds(self.settings.start_time);
+        // WIRE: the system takes `self.forces.clone()` here.
         let system = RigidSystem::new(bodies, &self.excluded, settings, now);
-        Ok(World::new(system, named, now, warnings, start_correction))
+        Ok(World::new(system, named, self.forces, now, warnings, start))
     }
 
     fn check(&self) -> Result<(), WorldError> {
@@ -253,6 +195,7 @@ impl WorldBuilder {
             ("target_gap", self.settings.overrides.target_gap),
             ("accuracy", self.settings.overrides.accuracy),
             ("velocity_tol", self.settings.overrides.velocity_tol),
+            ("time_step", self.settings.time_step),
         ];
         for (setting, value) in positive {
             if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
@@ -262,21 +205,40 @@ impl WorldBuilder {
         Ok(())
     }
 
-    fn scales(&self) -> Scales {
+    /// Forces and torques of all laws at the start.
+    fn wrenches(&self) -> Result<Vec<Wrench>, WorldError> {
+        let count = self.bodies.len();
+        let moving: Vec<_> = self.bodies.iter().map(|body| Moving::from(&body.state)).collect();
+        let now = Snapshot::new(self.settings.start_time, &moving);
+        for law in &self.forces {
+            if let Some(body) = law.bodies().iter().find(|body| body.index() >= count) {
+                let law = law.name().to_owned();
+                return Err(WorldError::NoSuchBody { law, body: body.0, bodies: count });
+            }
+            let own = wrenches_of(from_ref(law), &now, count);
+            if let Some(bad) = own.iter().position(|sum| !(sum.force.is_finite() && sum.torque.is_finite())) {
+                let body = self.bodies[bad].name.clone();
+                return Err(WorldError::BadForce { law: law.name().to_owned(), body });
+            }
+        }
+        Ok(wrenches_of(&self.forces, &now, count))
+    }
+
+    fn scales(&self, wrenches: &[Wrench]) -> Scales {
         let mut scales = Scales::default();
-        for (body, law) in self.bodies.iter().zip(&self.laws) {
+        for ((body, law), wrench) in self.bodies.iter().zip(&self.laws).zip(wrenches) {
             let shape = centered(body);
             let bounds: Aabb = shape.bounds_at(&body.state.pose());
             let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
             scales.coordinate = scales.coordinate.max(largest);
-            if body.inertia.is_none() {
-                continue;
-            }
+            let Some(inertia) = &body.inertia else { continue };
             let reach = shape.reach();
             scales.smallest_radius = Some(scales.smallest_radius.map_or(reach, |least| least.min(reach)));
             let speed = body.state.velocity.length() + body.state.angular_velocity.abs() * reach;
             scales.speed = scales.speed.max(speed);
-            let acceleration = law.acceleration.length() + law.linear_rate * body.state.velocity.length();
+            let acceleration = (law.acceleration + wrench.force / inertia.mass).length()
+                + law.linear_rate * body.state.velocity.length()
+                + wrench.torque.abs() / inertia.moment * reach;
             scales.acceleration = scales.acceleration.max(acceleration);
         }
         scales
@@ -325,7 +287,7 @@ fn centered(body: &BodySpec) -> Shape {
     body.shape.translated(-center_of_mass(body))
 }
 
-type Parts = (Named, (Body, FlightLaw, BodyState));
+type Parts = (Named, StartParts);
 
 fn into_parts(((spec, law), gravity): ((BodySpec, FlightLaw), DVec2)) -> Parts {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));

@@ -1,7 +1,39 @@
-//! What a world tells of an impact.
+//! What a world tells while it advances: impacts, and contacts that begin and end.
 
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
+
+/// Something that happened at one moment.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Event {
+    /// Bodies collided, or a connector pulled tight.
+    Impact(Impact),
+    /// From now on two bodies rest on each other, or a connector that can be slack is taut.
+    ContactBegins(ContactEvent),
+    /// From now on they do so no longer.
+    ContactEnds(ContactEvent),
+}
+
+impl Event {
+    /// When [s].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::Impact(impact) => impact.time,
+            Self::ContactBegins(contact) | Self::ContactEnds(contact) => contact.time,
+        }
+    }
+
+    /// The impact, if it is one.
+    #[must_use]
+    pub fn impact(&self) -> Option<&Impact> {
+        match self {
+            Self::Impact(impact) => Some(impact),
+            Self::ContactBegins(_) | Self::ContactEnds(_) => None,
+        }
+    }
+}
 
 /// One place at which two bodies collided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,4 +67,28 @@ pub struct Impact {
     pub energy_change: f64,
     /// States of the movable bodies that took part, after the impact.
     pub states: Vec<(BodyId, BodyState)>,
+}
+
+/// The force of one row between two bodies: a contact, or one direction of a connector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// The body that the normal points to, and the one that it points out of; [`BodyId::WORLD`] for the background.
+    pub bodies: [BodyId; 2],
+    /// Index of the connector; `None` for bodies that touch.
+    pub connector: Option<u32>,
+    /// Where [m].
+    pub point: DVec2,
+    /// Unit normal.
+    pub normal: DVec2,
+    /// Force on the first body along the normal [N]; the other body gets the opposite.
+    pub force: f64,
+}
+
+/// A contact that begins or ends, with its force just then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactEvent {
+    /// When [s].
+    pub time: f64,
+    /// Between whom, where and how strong.
+    pub contact: ContactForce,
 }

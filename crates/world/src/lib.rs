@@ -31,6 +31,8 @@ mod builder;
 #[cfg(feature = "scene")]
 mod check;
 mod event;
+pub mod force;
+mod ledger;
 mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
@@ -44,22 +46,27 @@ mod run_error;
 mod scales;
 #[cfg(feature = "scene")]
 pub mod scene;
+mod settings;
 mod start;
 mod world;
+mod world_error;
 
-pub use builder::{BodySpec, DEFAULT_TOLERANCE, WorldBuilder, WorldError, WorldSettings};
+pub use builder::{BodySpec, WorldBuilder};
 #[cfg(feature = "scene")]
 pub use check::{CheckReport, check};
-pub use event::{Impact, ImpactRow};
+pub use event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 pub use halfgap_collision::{BodyId, BodyState, Tolerances};
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
+pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
-pub use recording::{Frame, RecordedBody, Recording};
+pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording};
 #[cfg(feature = "scene")]
 pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
 pub use run::{Record, RunPlan, RunReport, run};
 pub use run_error::{RunError, Status};
 pub use scales::ToleranceOverrides;
+pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
+pub use world_error::WorldError;

@@ -1,5 +1,6 @@
 //! The result of a run in short, and as JSON of the format `halfgap-result-1`.
 
+use crate::ledger::Ledger;
 use crate::recording::Recording;
 use crate::run::RunReport;
 use crate::run_error::Status;
@@ -56,6 +57,8 @@ pub struct RunResult {
     pub energy: EnergyResult,
     /// Counters.
     pub statistics: StatisticsResult,
+    /// Where the energy went.
+    pub ledger: Ledger,
 }
 
 /// Energy at start and end.
@@ -99,6 +102,7 @@ impl RunResult {
                 total: energy.total(),
             },
             statistics: StatisticsResult { world: world.statistics(), wall_seconds: report.wall_seconds },
+            ledger: world.ledger(),
         }
     }
 
@@ -111,7 +115,7 @@ impl RunResult {
 
 impl Serialize for RunResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut result = serializer.serialize_struct("RunResult", 7)?;
+        let mut result = serializer.serialize_struct("RunResult", 8)?;
         result.serialize_field("format", "halfgap-result-1")?;
         result.serialize_field("scene", &self.scene)?;
         result.serialize_field("status", &self.status)?;
@@ -119,6 +123,7 @@ impl Serialize for RunResult {
         result.serialize_field("bodies", &BodiesJson(&self.bodies))?;
         result.serialize_field("energy", &self.energy)?;
         result.serialize_field("statistics", &self.statistics)?;
+        result.serialize_field("ledger", &self.ledger)?;
         result.end()
     }
 }
@@ -168,5 +173,23 @@ impl Serialize for StatisticsResult {
         statistics.serialize_field("largest_connector_error", &world.largest_connector_error)?;
         statistics.serialize_field("wall_seconds", &self.wall_seconds)?;
         statistics.end()
+    }
+}
+
+/// All sums in J; what was booked, and the error that remains.
+impl Serialize for Ledger {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut ledger = serializer.serialize_struct("Ledger", 10)?;
+        ledger.serialize_field("start", &self.start)?;
+        ledger.serialize_field("start_correction", &self.start_correction)?;
+        ledger.serialize_field("kinetic", &self.now.kinetic)?;
+        ledger.serialize_field("potential", &self.now.potential)?;
+        ledger.serialize_field("impacts", &self.impacts)?;
+        ledger.serialize_field("captures", &self.captures)?;
+        ledger.serialize_field("projections", &self.projections)?;
+        ledger.serialize_field("damping", &self.damping)?;
+        ledger.serialize_field("laws", &self.laws)?;
+        ledger.serialize_field("integration_error", &self.integration_error())?;
+        ledger.end()
     }
 }

@@ -1,7 +1,7 @@
 //! Runs a world to the end of its scene and records it.
 
-use crate::event::Impact;
-use crate::recording::{Frame, Recording};
+use crate::event::{Event, Impact};
+use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
 use crate::world::{Energy, World};
@@ -13,7 +13,7 @@ const LAST_STEP_SHARE: f64 = 1e-6;
 /// What a run keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
-    /// States at all output times, and all impacts.
+    /// States and forces at all output times, and all events.
     Everything,
     /// The states at start and end.
     Ends,
@@ -80,7 +80,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     let mut recording = Recording::new(plan.title.clone(), world);
     recording.frames.push(recording.frame_of(world));
     let start_energy = world.energy();
-    let mut stepper = Stepper { impacts: Vec::new(), wall: Duration::ZERO, record: plan.record };
+    let mut stepper = Stepper::new(plan.record);
     let mut stops = Vec::new();
     let mut error = None;
     let mut output = 1;
@@ -111,6 +111,8 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
         stops.push(recording.frame_of(world));
     }
     recording.impacts = stepper.impacts;
+    recording.contacts = stepper.contacts;
+    recording.ledger = world.ledger();
     RunReport { recording, stops, start_energy, error, wall_seconds: stepper.wall.as_secs_f64() }
 }
 
@@ -125,24 +127,40 @@ fn done(time: f64, plan: &RunPlan) -> f64 {
     ((time - plan.start_time) / (plan.end_time - plan.start_time)).clamp(0.0, 1.0)
 }
 
-/// Advances a world, collects its impacts and measures the time that takes.
+/// Advances a world, collects its events and measures the time that takes.
 struct Stepper {
     impacts: Vec<Impact>,
+    contacts: Vec<ContactRecord>,
     wall: Duration,
     record: Record,
 }
 
 impl Stepper {
+    fn new(record: Record) -> Self {
+        Self { impacts: Vec::new(), contacts: Vec::new(), wall: Duration::ZERO, record }
+    }
+
     fn advance(&mut self, world: &mut World, time: f64) -> Result<(), RunError> {
-        let impacts = &mut self.impacts;
         let keep = self.record == Record::Everything;
         let started = Instant::now();
-        let result = world.advance_to(time, &mut |impact| {
+        let result = world.advance_to(time, &mut |event| {
             if keep {
-                impacts.push(impact.clone());
+                self.keep(event);
             }
         });
         self.wall += started.elapsed();
         result
+    }
+
+    fn keep(&mut self, event: &Event) {
+        match event {
+            Event::Impact(impact) => self.impacts.push(impact.clone()),
+            Event::ContactBegins(event) => {
+                self.contacts.push(ContactRecord { change: ContactChange::Begins, event: *event });
+            }
+            Event::ContactEnds(event) => {
+                self.contacts.push(ContactRecord { change: ContactChange::Ends, event: *event });
+            }
+        }
     }
 }

@@ -4,9 +4,9 @@
 //! the rows J of all touching pairs and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0 has the
 //! displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated until they fit.
 
-use crate::builder::WorldError;
 use crate::overlap::overlap_depth;
 use crate::world::Named;
+use crate::world_error::WorldError;
 use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{
@@ -17,11 +17,12 @@ use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Solution, Solver};
 /// Rounds of lifting; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
 
-type Parts = (Body, FlightLaw, BodyState);
+/// A body, what acts on it in flight, and its state at the start.
+pub(crate) type StartParts = (Body, FlightLaw, BodyState);
 
 /// Lifts gaps below the target zone to the target gap; returns the largest displacement [m].
 pub(crate) fn lift_overlaps(
-    bodies: &mut [Parts],
+    bodies: &mut [StartParts],
     named: &[Named],
     excluded: &[(BodyId, BodyId)],
     tolerances: &Tolerances,
@@ -56,12 +57,12 @@ pub(crate) fn lift_overlaps(
     }
 }
 
-fn pose(bodies: &[Parts], body: BodyId) -> halfgap_geometry::Pose {
+fn pose(bodies: &[StartParts], body: BodyId) -> halfgap_geometry::Pose {
     bodies[body.index()].2.pose()
 }
 
 /// Pairs that may collide and whose boxes come within `skin` [m].
-fn near_pairs(bodies: &[Parts], excluded: &[(BodyId, BodyId)], skin: f64) -> Vec<(BodyId, BodyId)> {
+fn near_pairs(bodies: &[StartParts], excluded: &[(BodyId, BodyId)], skin: f64) -> Vec<(BodyId, BodyId)> {
     let mut broad = BroadPhase::new();
     let boxes: Vec<_> =
         bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()).grown(skin)).collect();
@@ -83,7 +84,7 @@ fn near_pairs(bodies: &[Parts], excluded: &[(BodyId, BodyId)], skin: f64) -> Vec
 
 /// Records of all places where bodies touch, overlaps up to `depth` [m] included.
 fn touching(
-    bodies: &[Parts],
+    bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
     tolerances: &Tolerances,
     depth: f64,
@@ -106,7 +107,7 @@ fn lowest_below_zone(records: &[Collision]) -> Option<&Collision> {
 }
 
 /// Moves the bodies so that every gap that is too small becomes the target gap; false if that cannot be done.
-fn lift(bodies: &mut [Parts], records: &[Collision]) -> bool {
+fn lift(bodies: &mut [StartParts], records: &[Collision]) -> bool {
     let mut problem = Problem::new();
     for (body, _, _) in bodies.iter() {
         let inertia = Inertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment };
@@ -142,7 +143,7 @@ fn lift(bodies: &mut [Parts], records: &[Collision]) -> bool {
     true
 }
 
-fn largest_move(bodies: &[Parts], start: &[DVec2]) -> f64 {
+fn largest_move(bodies: &[StartParts], start: &[DVec2]) -> f64 {
     bodies
         .iter()
         .zip(start)

@@ -1,19 +1,23 @@
 //! A world: named bodies, what acts on them, and the clock.
 
-use crate::event::{Impact, ImpactRow};
+use crate::event::{ContactForce, Event, Impact, ImpactRow};
+use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
+use crate::ledger::{LawWork, Ledger};
 use crate::run_error::RunError;
 use glam::DVec2;
 use halfgap_advance::rigid::{ImpactReport, RigidSystem};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{BodyId, BodyState, Tolerances};
 use halfgap_geometry::Shape;
+use std::sync::Arc;
 
 /// Kinetic and potential energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Potential energy [J]: of uniform gravity, 0 with the centre of mass at the world's origin.
+    /// Potential energy [J]: of uniform gravity, 0 with the centre of mass at the world's origin, and of the force laws
+    /// that have one.
     pub potential: f64,
 }
 
@@ -70,22 +74,38 @@ pub struct Inertia {
 pub struct World {
     system: RigidSystem,
     bodies: Vec<Named>,
+    forces: Vec<Arc<dyn ForceLaw>>,
     now: Time,
     warnings: Vec<String>,
-    start_correction: f64,
-    /// The last impact told.
-    told: Impact,
+    start: Start,
+    /// The last impact told, always of that kind: its buffers are used again and again.
+    told: Event,
+    /// Sum of the energy changes of all impacts told [J].
+    impacts: f64,
+}
+
+/// What was done to the bodies before the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Start {
+    /// Largest distance by which a body was moved [m].
+    pub(crate) displacement: f64,
+    /// Change of the total energy [J].
+    pub(crate) energy_change: f64,
+    /// The total energy after that [J].
+    pub(crate) energy: f64,
 }
 
 impl World {
     pub(crate) fn new(
         system: RigidSystem,
         bodies: Vec<Named>,
+        forces: Vec<Arc<dyn ForceLaw>>,
         now: Time,
         warnings: Vec<String>,
-        start_correction: f64,
+        start: Start,
     ) -> Self {
-        Self { system, bodies, now, warnings, start_correction, told: Impact::default() }
+        let told = Event::Impact(Impact::default());
+        Self { system, bodies, forces, now, warnings, start, told, impacts: 0.0 }
     }
 
     /// The present time [s].
@@ -153,16 +173,37 @@ impl World {
     /// Energy at the present time.
     #[must_use]
     pub fn energy(&self) -> Energy {
-        let mut energy = Energy::default();
-        for body in self.bodies() {
-            let Named { inertia: Some(inertia), gravity, .. } = &self.bodies[body.index()] else { continue };
-            let state = self.state(body);
-            let spin = state.angular_velocity;
-            energy.kinetic +=
-                0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
-            energy.potential -= inertia.mass * gravity.dot(state.position);
+        energy_of(&self.bodies, &self.forces, self.time(), |body| self.state(body))
+    }
+
+    /// Where the energy went since the start.
+    #[must_use]
+    pub fn ledger(&self) -> Ledger {
+        // WIRE: captures, projections, damping and the work of the laws without a potential, from the system.
+        let laws = std::iter::empty::<LawWork>();
+        Ledger {
+            now: self.energy(),
+            start: self.start.energy,
+            start_correction: self.start.energy_change,
+            impacts: self.impacts,
+            captures: 0.0,
+            projections: 0.0,
+            damping: 0.0,
+            laws: laws.collect(),
         }
-        energy
+    }
+
+    /// The forces of all contacts and connectors at the present time.
+    #[must_use]
+    pub fn contact_forces(&self) -> Vec<ContactForce> {
+        // WIRE: the forces of the rows, from the system.
+        Vec::new()
+    }
+
+    /// The force laws, in the order in which they were added.
+    #[must_use]
+    pub fn forces(&self) -> &[Arc<dyn ForceLaw>] {
+        &self.forces
     }
 
     /// The thresholds of touching, as derived from the tolerance or given.
@@ -177,10 +218,11 @@ impl World {
         &self.warnings
     }
 
-    /// Largest distance [m] by which a body was moved at the start to lift gaps to the target gap.
+    /// Largest distance [m] by which a body was moved at the start to lift gaps to the target gap, and to put
+    /// connectors together.
     #[must_use]
     pub fn start_correction(&self) -> f64 {
-        self.start_correction
+        self.start.displacement
     }
 
     /// What the run has cost so far.
@@ -198,18 +240,21 @@ impl World {
         }
     }
 
-    /// Advances to a time [s], telling of each impact in order; nothing happens if that is in the past.
+    /// Advances to a time [s], telling of each event in order; nothing happens if that is in the past.
     ///
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
     ///
     /// # Errors
     /// Something that cannot be simulated happens; the world stays at the time of that event.
-    pub fn advance_to(&mut self, time: f64, on_impact: &mut dyn FnMut(&Impact)) -> Result<(), RunError> {
+    pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let until = Time::from_seconds(time);
-        let (system, told) = (&mut self.system, &mut self.told);
+        let (system, told, impacts) = (&mut self.system, &mut self.told, &mut self.impacts);
         let outcome = advance_until(system, until, |system, _| {
-            write_impact(told, system.last_impact());
-            on_impact(told);
+            // WIRE: contacts that begin and end, told as they are reported.
+            let report = system.last_impact();
+            *impacts += report.energy_change;
+            write_impact(told, report);
+            on_event(told);
         });
         match outcome {
             Ok(()) => {
@@ -224,8 +269,33 @@ impl World {
     }
 }
 
+/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them.
+pub(crate) fn energy_of(
+    bodies: &[Named],
+    forces: &[Arc<dyn ForceLaw>],
+    time: f64,
+    state_of: impl Fn(BodyId) -> BodyState,
+) -> Energy {
+    let ids = (0..u32::try_from(bodies.len()).unwrap_or(u32::MAX)).map(BodyId);
+    let mut energy = Energy::default();
+    for (body, named) in ids.clone().zip(bodies) {
+        let Named { inertia: Some(inertia), gravity, .. } = named else { continue };
+        let state = state_of(body);
+        let spin = state.angular_velocity;
+        energy.kinetic +=
+            0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
+        energy.potential -= inertia.mass * gravity.dot(state.position);
+    }
+    if !forces.is_empty() {
+        let moving: Vec<_> = ids.map(|body| Moving::from(&state_of(body))).collect();
+        energy.potential += potential_of(forces, &Snapshot::new(time, &moving));
+    }
+    energy
+}
+
 /// Tells an impact in the world's words, in a buffer that is used again and again.
-fn write_impact(impact: &mut Impact, report: &ImpactReport) {
+fn write_impact(told: &mut Event, report: &ImpactReport) {
+    let Event::Impact(impact) = told else { return };
     impact.time = report.time.seconds();
     impact.energy_change = report.energy_change;
     impact.rows.clear();

@@ -134,7 +134,12 @@ fn pictures_survive_a_million_impacts_and_broken_numbers() {
         let bad = if index % 1000 == 7 { f64::NAN } else { 0.0 };
         let state = BodyState { position: glam::DVec2::new(bad, 1.0), ..world.state(BodyId(1)) };
         let energy = Energy { kinetic: f64::from(index), potential: bad };
-        recording.frames.push(Frame { time: f64::from(index), states: vec![state], energy });
+        recording.frames.push(Frame {
+            time: f64::from(index),
+            states: vec![state],
+            energy,
+            forces: Vec::new(),
+        });
     }
     recording.impacts = (0..1_000_000).map(|index| impact(f64::from(index) * 0.02, 1.0)).collect();
     assert_drawable(&scene_picture(&world, &recording, &recording.frames[0]));

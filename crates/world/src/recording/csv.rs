@@ -3,7 +3,11 @@
 //! Numbers have the shortest form that reads back as the same bits.
 
 use super::Recording;
+use crate::event::ContactForce;
 use std::io::{self, Write};
+
+/// Columns of a force; the connector's is empty where bodies touch.
+const FORCE_HEADER: &str = "primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]";
 
 impl Recording {
     /// Writes a line for each movable body at each output time.
@@ -43,6 +47,42 @@ impl Recording {
             }
         }
         Ok(())
+    }
+
+    /// Writes a line for each contact that began or ended.
+    ///
+    /// # Errors
+    /// Whatever the writer fails with.
+    pub fn write_contacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "change,time [s],{FORCE_HEADER}")?;
+        for record in &self.contacts {
+            write!(out, "{},{},", record.change.name(), record.event.time)?;
+            self.write_force(out, &record.event.contact)?;
+        }
+        Ok(())
+    }
+
+    /// Writes a line for each contact and each direction of a connector at each output time.
+    ///
+    /// # Errors
+    /// Whatever the writer fails with.
+    pub fn write_forces_csv(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "time [s],{FORCE_HEADER}")?;
+        for frame in &self.frames {
+            for force in &frame.forces {
+                write!(out, "{},", frame.time)?;
+                self.write_force(out, force)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_force(&self, out: &mut dyn Write, force: &ContactForce) -> io::Result<()> {
+        let [primary, normal] = force.bodies.map(|body| quoted(self.name(body)));
+        let connector = force.connector.map(|index| index.to_string()).unwrap_or_default();
+        let (point, direction) = (force.point, force.normal);
+        write!(out, "{primary},{normal},{connector},{},{},", point.x, point.y)?;
+        writeln!(out, "{},{},{}", direction.x, direction.y, force.force)
     }
 
     /// Writes a line for each output time.

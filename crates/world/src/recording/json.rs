@@ -1,7 +1,9 @@
-//! Recordings as JSON, format `halfgap-recording-1`: bodies, states, energies and impacts in one object.
+//! Recordings as JSON, format `halfgap-recording-1`: bodies, states, energies, forces, events and the energy ledger in
+//! one object.
 
-use super::{Frame, Recording};
-use crate::event::{Impact, ImpactRow};
+use super::{ContactRecord, Frame, Recording};
+use crate::event::{ContactForce, Impact, ImpactRow};
+use crate::ledger::Ledger;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -12,8 +14,10 @@ struct RecordingJson<'a> {
     units: &'static str,
     bodies: Vec<BodyJson<'a>>,
     movable: Vec<&'a str>,
-    frames: Vec<FrameJson>,
+    frames: Vec<FrameJson<'a>>,
     impacts: Vec<ImpactJson<'a>>,
+    contacts: Vec<ContactJson<'a>>,
+    ledger: &'a Ledger,
 }
 
 #[derive(Serialize)]
@@ -24,12 +28,31 @@ struct BodyJson<'a> {
 
 /// States as `[x, y, angle, vx, vy, angular_velocity]`, in the order of `movable`.
 #[derive(Serialize)]
-struct FrameJson {
+struct FrameJson<'a> {
     time: f64,
     states: Vec<[f64; 6]>,
     kinetic: f64,
     potential: f64,
     total: f64,
+    forces: Vec<ForceJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct ForceJson<'a> {
+    primary: &'a str,
+    normal_body: &'a str,
+    connector: Option<u32>,
+    point: [f64; 2],
+    normal: [f64; 2],
+    force: f64,
+}
+
+#[derive(Serialize)]
+struct ContactJson<'a> {
+    change: &'static str,
+    time: f64,
+    #[serde(flatten)]
+    contact: ForceJson<'a>,
 }
 
 #[derive(Serialize)]
@@ -64,8 +87,10 @@ impl Recording {
             units: "SI, radians; states are [x, y, angle, vx, vy, angular_velocity] of the movable bodies",
             bodies: bodies.collect(),
             movable: self.movable.iter().map(|&body| self.name(body)).collect(),
-            frames: self.frames.iter().map(frame_json).collect(),
+            frames: self.frames.iter().map(|frame| self.frame_json(frame)).collect(),
             impacts: self.impacts.iter().map(|impact| self.impact_json(impact)).collect(),
+            contacts: self.contacts.iter().map(|record| self.contact_json(record)).collect(),
+            ledger: &self.ledger,
         };
         serde_json::to_writer(&mut *out, &json)?;
         writeln!(out)
@@ -88,18 +113,39 @@ impl Recording {
             impulse: row.impulse,
         }
     }
-}
 
-fn frame_json(frame: &Frame) -> FrameJson {
-    let states = frame.states.iter().map(|state| {
-        let (position, velocity) = (state.position, state.velocity);
-        [position.x, position.y, state.angle, velocity.x, velocity.y, state.angular_velocity]
-    });
-    FrameJson {
-        time: frame.time,
-        states: states.collect(),
-        kinetic: frame.energy.kinetic,
-        potential: frame.energy.potential,
-        total: frame.energy.total(),
+    fn force_json(&self, force: &ContactForce) -> ForceJson<'_> {
+        let [primary, normal_body] = force.bodies.map(|body| self.name(body));
+        ForceJson {
+            primary,
+            normal_body,
+            connector: force.connector,
+            point: force.point.to_array(),
+            normal: force.normal.to_array(),
+            force: force.force,
+        }
+    }
+
+    fn contact_json(&self, record: &ContactRecord) -> ContactJson<'_> {
+        ContactJson {
+            change: record.change.name(),
+            time: record.event.time,
+            contact: self.force_json(&record.event.contact),
+        }
+    }
+
+    fn frame_json(&self, frame: &Frame) -> FrameJson<'_> {
+        let states = frame.states.iter().map(|state| {
+            let (position, velocity) = (state.position, state.velocity);
+            [position.x, position.y, state.angle, velocity.x, velocity.y, state.angular_velocity]
+        });
+        FrameJson {
+            time: frame.time,
+            states: states.collect(),
+            kinetic: frame.energy.kinetic,
+            potential: frame.energy.potential,
+            total: frame.energy.total(),
+            forces: frame.forces.iter().map(|force| self.force_json(force)).collect(),
+        }
     }
 }

@@ -1,9 +1,11 @@
-//! What a run leaves behind: states at output times, impacts, energies.
+//! What a run leaves behind: states, energies and forces at output times, and all events in between.
 
 mod csv;
 mod json;
 
-use crate::event::Impact;
+use crate::event::{ContactEvent, ContactForce, Impact};
+use crate::ledger::Ledger;
+use crate::scene::WORLD;
 use crate::world::{Energy, World};
 use halfgap_collision::{BodyId, BodyState};
 
@@ -20,6 +22,39 @@ pub struct Recording {
     pub frames: Vec<Frame>,
     /// Every impact.
     pub impacts: Vec<Impact>,
+    /// Every contact that began or ended.
+    pub contacts: Vec<ContactRecord>,
+    /// Where the energy went from the start to the last frame.
+    pub ledger: Ledger,
+}
+
+/// A contact that began or ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRecord {
+    /// Which of both.
+    pub change: ContactChange,
+    /// When, where and how strong.
+    pub event: ContactEvent,
+}
+
+/// What became of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactChange {
+    /// It began.
+    Begins,
+    /// It ended.
+    Ends,
+}
+
+impl ContactChange {
+    /// The word for it in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Begins => "begins",
+            Self::Ends => "ends",
+        }
+    }
 }
 
 /// What a recording says about a body.
@@ -40,6 +75,8 @@ pub struct Frame {
     pub states: Vec<BodyState>,
     /// Energy of all bodies.
     pub energy: Energy,
+    /// Forces of all contacts and connectors.
+    pub forces: Vec<ContactForce>,
 }
 
 impl Recording {
@@ -50,19 +87,30 @@ impl Recording {
             .map(|body| RecordedBody { name: world.name(body).to_owned(), fixed: world.is_fixed(body) })
             .collect();
         let movable = body_ids(world).filter(|&body| !world.is_fixed(body)).collect();
-        Self { title: title.into(), bodies, movable, frames: Vec::new(), impacts: Vec::new() }
+        Self {
+            title: title.into(),
+            bodies,
+            movable,
+            frames: Vec::new(),
+            impacts: Vec::new(),
+            contacts: Vec::new(),
+            ledger: world.ledger(),
+        }
     }
 
     /// The world as it is now.
     #[must_use]
     pub fn frame_of(&self, world: &World) -> Frame {
         let states = self.movable.iter().map(|&body| world.state(body)).collect();
-        Frame { time: world.time(), states, energy: world.energy() }
+        Frame { time: world.time(), states, energy: world.energy(), forces: world.contact_forces() }
     }
 
-    /// Name of a body.
+    /// Name of a body; "world" for the background.
     #[must_use]
     pub fn name(&self, body: BodyId) -> &str {
+        if body.is_world() {
+            return WORLD;
+        }
         self.bodies.get(body.0 as usize).map_or("", |body| &body.name)
     }
 

@@ -91,6 +91,8 @@ pub enum Integrator {
     /// Dormand and Prince, order 8, adaptive.
     #[default]
     Dop853,
+    /// Dormand and Prince, order 5, adaptive.
+    DormandPrince5,
     /// The classical method of order 4, fixed steps.
     Rk4,
     /// Order 2, fixed steps.
@@ -119,7 +121,7 @@ pub enum Stabilization {
 }
 
 fn default_tolerance() -> f64 {
-    crate::builder::DEFAULT_TOLERANCE
+    crate::DEFAULT_TOLERANCE
 }
 
 fn yes() -> bool {

@@ -1,0 +1,228 @@
+//! A world from a scene: bodies here, `settings`, `force` and `connector` beside.
+
+mod force;
+mod settings;
+
+use crate::builder::{BodySpec, WorldBuilder};
+use crate::scene::{BodyData, EdgeData, FieldPath, PathData, Scene, SceneError, ShapeData, WORLD};
+use crate::world::{Inertia, World};
+use crate::world_error::WorldError;
+use halfgap_collision::{BodyId, BodyState};
+use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
+
+impl World {
+    /// Builds the world of a scene.
+    ///
+    /// # Errors
+    /// What is not simulated yet, shapes that cannot be, and bodies that overlap at the start; the error names the field.
+    pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
+        scene.check_supported()?;
+        collect(scene)?.build().map_err(|error| located(error, scene))
+    }
+}
+
+/// Everything that the scene is made of.
+fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
+    let mut builder = WorldBuilder::new(settings::of_run(&scene.run));
+    for (index, body) in scene.bodies.iter().enumerate() {
+        builder.add(body_spec(body).map_err(|error| {
+            let field = FieldPath::top().field("body").element(index).field("shape");
+            SceneError::new(field, error.to_string())
+        })?);
+    }
+    for (index, force) in scene.forces.iter().enumerate() {
+        force::add(&mut builder, scene, (index, force))?;
+    }
+    for (index, body) in scene.bodies.iter().enumerate() {
+        for other in
+            scene.bodies.iter().enumerate().filter(|(_, other)| body.passes_through.contains(&other.name))
+        {
+            builder.let_pass(body_id(index), body_id(other.0));
+        }
+    }
+    Ok(builder)
+}
+
+fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {
+    let shape = build_shape(&body.shape)?;
+    let uniform = shape.mass_properties();
+    let center_of_mass = body.center_of_mass.map(glam::DVec2::from);
+    let inertia = mass(body, &shape).filter(|_| !body.fixed).map(|mass| {
+        // A uniform shape about a centre of mass that is not its centroid: the parallel axis theorem.
+        let shift = center_of_mass.map_or(0.0, |center| (center - uniform.centroid).length_squared());
+        Inertia { mass, moment: body.moment.unwrap_or(mass * (uniform.moment_per_mass + shift)) }
+    });
+    let state = BodyState {
+        position: body.position.into(),
+        angle: body.angle,
+        velocity: body.velocity.into(),
+        angular_velocity: body.angular_velocity,
+    };
+    Ok(BodySpec {
+        name: body.name.clone(),
+        shape,
+        center_of_mass,
+        inertia,
+        state,
+        elasticity: body.elasticity,
+    })
+}
+
+/// Mass of a body [kg], given or by its density; a fixed body may have none.
+fn mass(body: &BodyData, shape: &Shape) -> Option<f64> {
+    body.mass.or_else(|| body.density.map(|density| density * shape.mass_properties().area))
+}
+
+fn build_shape(shape: &ShapeData) -> Result<Shape, ShapeError> {
+    match shape {
+        ShapeData::Disc(disc) => Shape::disc(disc.radius),
+        ShapeData::Block(block) => Shape::block(block.width, block.height),
+        ShapeData::RoundedBlock(block) => Shape::rounded_block(block.width, block.height, block.radius),
+        ShapeData::Polygon(polygon) => {
+            let vertices: Vec<_> = polygon.vertices.iter().map(|&vertex| vertex.into()).collect();
+            Shape::polygon(&vertices)
+        }
+        ShapeData::Ring(ring) => Shape::ring(ring.outer, ring.inner),
+        ShapeData::Outline(outline) => {
+            let paths: Vec<_> = outline.paths.iter().map(path_spec).collect();
+            Shape::from_paths(&paths)
+        }
+    }
+}
+
+fn path_spec(path: &PathData) -> PathSpec {
+    let edge = |edge: &EdgeData| match edge {
+        EdgeData::Line(to) => EdgeSpec::Line { to: (*to).into() },
+        EdgeData::Arc(arc) => {
+            EdgeSpec::Arc { to: arc.to.into(), center: arc.center.into(), clockwise: arc.clockwise }
+        }
+    };
+    PathSpec { start: path.start.into(), edges: path.edges.iter().map(edge).collect() }
+}
+
+fn body_id(index: usize) -> BodyId {
+    BodyId(u32::try_from(index).unwrap_or(u32::MAX))
+}
+
+/// The body of a name, or the background; names have been checked.
+fn find_body(scene: &Scene, name: &str) -> BodyId {
+    let index = scene.bodies.iter().position(|body| name != WORLD && body.name == name);
+    index.map_or(BodyId::WORLD, body_id)
+}
+
+/// Points the error at the body that it names.
+fn located(error: WorldError, scene: &Scene) -> SceneError {
+    let named = match &error {
+        WorldError::DoubleName { name } => Some((name, "name")),
+        WorldError::BadNumber { body, .. } => Some((body, "name")),
+        WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
+            Some((second, "position"))
+        }
+        WorldError::BadForce { body, .. } => Some((body, "position")),
+        WorldError::BadSetting { .. } | WorldError::NoSuchBody { .. } => None,
+    };
+    let place = named.and_then(|(name, field)| {
+        let index = scene.bodies.iter().position(|body| body.name == *name)?;
+        Some(FieldPath::top().field("body").element(index).field(field))
+    });
+    SceneError::new(place.unwrap_or_else(|| FieldPath::top().field("run")), error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneFormat;
+
+    /// A scene with all force laws, built although not all of it is simulated yet.
+    const FORCES: &str = r#"
+        format = "halfgap-scene-1"
+        title = "Forces"
+        run = { duration = 1.0, start_time = 3.0 }
+
+        [[body]]
+        name = "plate"
+        shape = { block = { width = 2.0, height = 2.0 } }
+        center_of_mass = [0.0, 1.0]
+        position = [1.0, 5.0]
+        mass = 2.0
+
+        [[body]]
+        name = "sun"
+        fixed = true
+        shape = { disc = { radius = 0.5 } }
+        density = 100.0
+        position = [-9.0, 5.0]
+
+        [[body]]
+        name = "wall"
+        fixed = true
+        shape = { disc = { radius = 0.5 } }
+        position = [-9.0, -5.0]
+    "#;
+
+    fn world(forces: &str) -> Result<World, SceneError> {
+        let scene = Scene::parse(&format!("{FORCES}{forces}"), SceneFormat::Toml).expect("a fine scene");
+        collect(&scene)?.build().map_err(|error| located(error, &scene))
+    }
+
+    fn potential(forces: &str) -> f64 {
+        world(forces).unwrap_or_else(|error| panic!("{error}")).energy().potential
+    }
+
+    #[test]
+    fn a_spring_is_tied_to_shape_coordinates() {
+        // The point (1, 1) is 1 m to the right of the centre of mass: at (2, 5), 3 m from the other end.
+        let spring = r#"
+            [[force]]
+            spring = { a = { body = "plate", point = [1, 1] }, b = { body = "world", point = [2, 2] }, rest_length = 1, stiffness = 7, damping = 2 }"#;
+        assert_eq!(potential(spring), 14.0);
+        let names: Vec<_> =
+            world(spring).expect("a fine world").forces().iter().map(|law| law.name().to_owned()).collect();
+        assert_eq!(names, ["force[0].spring", "force[0].spring.damping"]);
+    }
+
+    #[test]
+    fn fixed_bodies_attract_with_the_mass_they_are_given() {
+        let sun = 100.0 * std::f64::consts::PI * 0.25;
+        let found = potential("[[force]]\nmutual_gravity = { strength = 3.0 }");
+        assert!((found + 3.0 * 2.0 * sun / 10.0).abs() < 1e-12, "{found}");
+        assert_eq!(potential("[[force]]\nmutual_gravity = { strength = 3.0, bodies = [\"plate\"] }"), 0.0);
+        let error = world("[[force]]\nmutual_gravity = { strength = 3.0, bodies = [\"plate\", \"wall\"] }");
+        let error = error.expect_err("the wall has no mass").to_string();
+        assert_eq!(
+            error,
+            "force[0].mutual_gravity.bodies: body \"wall\" is fixed and has no mass to attract with"
+        );
+    }
+
+    #[test]
+    fn pushes_act_where_the_scene_says() {
+        use crate::force::{Moving, Snapshot, Wrench, Wrenches};
+        let push = |force: &str, time: f64| {
+            let world = world(&format!("[[force]]\n{force}")).expect("a fine world");
+            let moving: Vec<_> = world.bodies().map(|body| Moving::from(&world.state(body))).collect();
+            let mut sums = vec![Wrench::default(); moving.len()];
+            world.forces()[0].apply(&Snapshot::new(time, &moving), &mut Wrenches::new(&mut sums));
+            (sums[0].force, sums[0].torque)
+        };
+        let up = glam::DVec2::new(0.0, 2.0);
+        let body =
+            "constant = { body = \"plate\", point = [3, 1], force = [0, 2], frame = \"body\", torque = 0.5 }";
+        assert_eq!(push(body, 0.0), (up, 6.5));
+        let fixed = "constant = { body = \"plate\", point = [3, 1], force = [0, 2] }";
+        assert_eq!(push(fixed, 0.0), (up, 4.0));
+        // Time counts from the start of the run.
+        let turning = "rotating = { body = \"plate\", point = [3, 1], magnitude = 2, rate = 1, phase = 0 }";
+        assert_eq!(push(turning, 3.0), (glam::DVec2::new(2.0, 0.0), 0.0));
+    }
+
+    #[test]
+    fn accelerations_of_laws_at_the_start_scale_the_thresholds() {
+        let velocity_tol = |force: f64| {
+            let forces =
+                format!("[[force]]\nconstant = {{ body = \"plate\", point = [1, 5], force = [{force}, 0] }}");
+            world(&forces).expect("a fine world").tolerances().velocity_tol
+        };
+        assert!((velocity_tol(40.0) / velocity_tol(10.0) - 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,113 @@
+//! A constant force at a point, and a constant torque.
+
+use super::{ForceLaw, Snapshot, Wrenches};
+use glam::DVec2;
+use halfgap_collision::BodyId;
+
+/// The frame in which a constant force and its point are given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForceFrame {
+    /// Both turn with the body; the origin is its centre of mass.
+    Body,
+    /// Both stay where they are in the world, however the body moves.
+    World,
+}
+
+/// A constant force at a point, and a constant torque, on one body.
+///
+/// It has no potential. In the body's frame the force turns with the body; in the world's its torque depends on where
+/// the body is while the force does not depend on the angle: neither is a gradient.
+#[derive(Clone, Debug)]
+pub struct ConstantForce {
+    name: String,
+    body: [BodyId; 1],
+    frame: ForceFrame,
+    point: DVec2,
+    force: DVec2,
+    torque: f64,
+}
+
+impl ConstantForce {
+    /// A force [N] at a point [m], both in coordinates of a frame, and a torque [N m] on a body.
+    #[must_use]
+    pub fn new(
+        name: impl Into<String>,
+        body: BodyId,
+        frame: ForceFrame,
+        [point, force]: [DVec2; 2],
+        torque: f64,
+    ) -> Self {
+        Self { name: name.into(), body: [body], frame, point, force, torque }
+    }
+}
+
+impl ForceLaw for ConstantForce {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.body
+    }
+
+    fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+        let [body] = self.body;
+        let pose = now.body(body).pose;
+        let (force, arm) = match self.frame {
+            ForceFrame::Body => (pose.vector_to_world(self.force), pose.vector_to_world(self.point)),
+            ForceFrame::World => (self.force, self.point - pose.position),
+        };
+        wrenches.add_force(body, force, arm);
+        wrenches.add_torque(body, self.torque);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::law_check::{states, wrenches};
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    const POINT: DVec2 = DVec2::new(0.0, 2.0);
+    const FORCE: DVec2 = DVec2::new(3.0, 0.0);
+
+    #[test]
+    fn in_the_bodys_frame_force_and_point_turn_with_the_body() {
+        let law = ConstantForce::new("", BodyId(0), ForceFrame::Body, [POINT, FORCE], 0.5);
+        let mut states = states();
+        states[0].angle = FRAC_PI_2;
+        let pushed = wrenches(&law, &states)[0];
+        assert!((pushed.force - DVec2::new(0.0, 3.0)).length() < 1e-15);
+        assert!((pushed.torque - (0.5 - 6.0)).abs() < 1e-15, "{}", pushed.torque);
+    }
+
+    #[test]
+    fn in_the_worlds_frame_the_point_stays_while_the_body_moves() {
+        let law = ConstantForce::new("", BodyId(0), ForceFrame::World, [POINT, FORCE], 0.0);
+        let mut states = states();
+        for (height, torque) in [(0.0, -6.0), (2.0, 0.0), (3.0, 3.0)] {
+            states[0].position = DVec2::new(7.0, height);
+            let pushed = wrenches(&law, &states)[0];
+            assert_eq!((pushed.force, pushed.torque), (FORCE, torque));
+        }
+    }
+
+    #[test]
+    fn neither_is_a_gradient() {
+        // Around a small rectangle of height and angle the work is not zero, so no potential can exist.
+        for frame in [ForceFrame::Body, ForceFrame::World] {
+            let law = ConstantForce::new("", BodyId(0), frame, [POINT, FORCE], 0.0);
+            assert_eq!(law.potential(&Snapshot::new(0.0, &states().map(|state| (&state).into()))), None);
+            let push_at = |height: f64, angle: f64| {
+                let mut states = states();
+                states[0].position.y = height;
+                states[0].angle = angle;
+                wrenches(&law, &states)[0]
+            };
+            const STEP: f64 = 1e-3;
+            let up = STEP * (push_at(0.0, STEP).force.y - push_at(0.0, 0.0).force.y);
+            let turn = STEP * (push_at(0.0, 0.0).torque - push_at(STEP, 0.0).torque);
+            assert!((up + turn).abs() > STEP * STEP, "{frame:?}: {up} {turn}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Force laws: what acts on bodies beside uniform gravity and damping.
+//!
+//! Each law is a type of its own that implements [`ForceLaw`]: [`MutualGravity`], [`Spring`], [`Dashpot`],
+//! [`ConstantForce`], [`RotatingForce`], or yours. `attachment` is a point that moves with a body, `sum` adds up what
+//! several laws do.
+//!
+//! A law has a potential only if its forces are the gradient of one at all times. Mutual gravity and springs have; a
+//! constant force has none, although its size never changes: one that turns with its body, or that acts at a point
+//! fixed in the world, does work around a closed loop of positions and angles.
+//!
+//! # A law of your own
+//!
+//! ```
+//! use halfgap::force::{ForceLaw, Snapshot, Wrenches};
+//! use halfgap::geometry::{DVec2, Shape};
+//! use halfgap::{BodyId, BodySpec, BodyState, WorldBuilder, WorldSettings};
+//! use std::sync::Arc;
+//!
+//! /// Pulls a body back to the origin with a force of 3 N per metre.
+//! #[derive(Debug)]
+//! struct Well([BodyId; 1]);
+//!
+//! impl ForceLaw for Well {
+//!     fn name(&self) -> &str {
+//!         "well"
+//!     }
+//!     fn bodies(&self) -> &[BodyId] {
+//!         &self.0
+//!     }
+//!     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+//!         let position = now.body(self.0[0]).pose.position;
+//!         wrenches.add_force(self.0[0], -3.0 * position, DVec2::ZERO);
+//!     }
+//!     fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
+//!         Some(1.5 * now.body(self.0[0]).pose.position.length_squared())
+//!     }
+//! }
+//!
+//! let mut builder = WorldBuilder::new(WorldSettings::default());
+//! let start = BodyState { position: DVec2::new(2.0, 0.0), ..BodyState::default() };
+//! let ball = builder.add(BodySpec::movable("ball", Shape::disc(0.5)?, 1.0, start));
+//! builder.add_force(Arc::new(Well([ball])));
+//! assert_eq!(builder.build()?.energy().potential, 6.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod attachment;
+mod constant;
+mod dashpot;
+#[cfg(test)]
+mod law_check;
+mod mutual_gravity;
+mod rotating;
+mod spring;
+mod sum;
+
+pub use attachment::Attachment;
+pub use constant::{ConstantForce, ForceFrame};
+pub use dashpot::Dashpot;
+pub use halfgap_advance::rigid::{ForceLaw, Snapshot, Wrench, Wrenches};
+pub use halfgap_collision::Moving;
+pub use mutual_gravity::MutualGravity;
+pub use rotating::{RotatingForce, Turning};
+pub use spring::Spring;
+pub(crate) use sum::{potential_of, wrenches_of};

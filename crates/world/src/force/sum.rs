@@ -1,0 +1,18 @@
+//! What several laws do together.
+
+use super::{ForceLaw, Snapshot, Wrench, Wrenches};
+use std::sync::Arc;
+
+/// The sum of the potentials of those laws that have one [J].
+pub(crate) fn potential_of(laws: &[Arc<dyn ForceLaw>], now: &Snapshot<'_>) -> f64 {
+    laws.iter().filter_map(|law| law.potential(now)).sum()
+}
+
+/// The sums of forces and torques on each of `bodies` bodies.
+pub(crate) fn wrenches_of(laws: &[Arc<dyn ForceLaw>], now: &Snapshot<'_>, bodies: usize) -> Vec<Wrench> {
+    let mut sums = vec![Wrench::default(); bodies];
+    for law in laws {
+        law.apply(now, &mut Wrenches::new(&mut sums));
+    }
+    sums
+}

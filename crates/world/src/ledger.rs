@@ -1,0 +1,73 @@
+//! Where the energy of a run went.
+
+use crate::world::Energy;
+
+/// Every joule since the start, by what changed it.
+///
+/// Kinetic plus potential energy is the energy at the start plus all changes; what the booked ones leave of that is the
+/// error of the integration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ledger {
+    /// Kinetic and potential energy now.
+    pub now: Energy,
+    /// Total energy at the start, after the corrections there [J].
+    pub start: f64,
+    /// What the corrections at the start have changed the total by [J]: not a part of the changes since.
+    pub start_correction: f64,
+    /// Impacts [J].
+    pub impacts: f64,
+    /// Slow contacts caught without elasticity [J].
+    pub captures: f64,
+    /// Projections onto contacts and connectors [J].
+    pub projections: f64,
+    /// Work of linear and angular damping [J].
+    pub damping: f64,
+    /// Work of each force law that has no potential, in the order of the laws [J].
+    pub laws: Vec<LawWork>,
+}
+
+/// The work of a force law.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "scene", derive(serde::Serialize))]
+pub struct LawWork {
+    /// What the law is called.
+    pub law: String,
+    /// Its work since the start [J].
+    pub work: f64,
+}
+
+impl Ledger {
+    /// All changes that are booked [J].
+    #[must_use]
+    pub fn booked(&self) -> f64 {
+        let laws: f64 = self.laws.iter().map(|law| law.work).sum();
+        self.impacts + self.captures + self.projections + self.damping + laws
+    }
+
+    /// What remains: the error of the integration [J].
+    #[must_use]
+    pub fn integration_error(&self) -> f64 {
+        (self.now.total() - self.start) - self.booked()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_booked_is_the_error() {
+        let ledger = Ledger {
+            now: Energy { kinetic: 3.0, potential: -1.0 },
+            start: 5.0,
+            start_correction: 100.0,
+            impacts: -2.0,
+            captures: -0.5,
+            projections: 0.25,
+            damping: -1.0,
+            laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],
+        };
+        assert_eq!(ledger.booked(), -2.75);
+        assert_eq!(ledger.integration_error(), -0.25);
+    }
+}
