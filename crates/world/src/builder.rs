@@ -1,6 +1,7 @@
 //! Building a world in code: bodies, and what acts on them.
 
 use crate::force::{Attachment, ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
+use crate::rigid_settings::rigid_settings;
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
 use crate::start::{StartParts, lift_overlaps};
@@ -8,7 +9,7 @@ use crate::world::{Inertia, Named, Start, World, energy_of};
 use crate::world_error::WorldError;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{FlightLaw, RigidSettings, RigidSystem};
+use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings};
 use halfgap_geometry::{Aabb, Shape};
 use std::collections::BTreeSet;
@@ -169,16 +170,11 @@ impl WorldBuilder {
         };
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
-        let settings = RigidSettings {
-            tolerances,
-            law: self.settings.impact_law,
-            order: self.settings.impact_order,
-            collisions: self.settings.collisions,
-            search: SearchSettings::default(),
-        };
+        let settings = rigid_settings(&self.settings, &scales);
         let now = Time::from_seconds(self.settings.start_time);
-        // WIRE: the system takes `self.forces.clone()` here.
-        let system = RigidSystem::new(bodies, &self.excluded, settings, now);
+        let parts =
+            RigidParts { bodies, connectors: Vec::new(), laws: self.forces.clone(), excluded: self.excluded };
+        let system = RigidSystem::new(parts, settings, now).map_err(|source| WorldError::Start { source })?;
         Ok(World::new(system, named, self.forces, now, warnings, start))
     }
 

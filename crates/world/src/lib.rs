@@ -40,6 +40,7 @@ pub mod picture;
 mod recording;
 #[cfg(feature = "scene")]
 mod result;
+mod rigid_settings;
 #[cfg(feature = "scene")]
 mod run;
 mod run_error;

@@ -17,18 +17,6 @@ pub enum Status {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// Two bodies would stay in contact.
-    #[error(
-        "at {time} s \"{primary}\" comes to rest on \"{normal}\": resting contacts are not supported yet"
-    )]
-    RestingContact {
-        /// When [s].
-        time: f64,
-        /// Name of one body.
-        primary: String,
-        /// Name of the other body.
-        normal: String,
-    },
     /// An impact cannot be resolved.
     #[error("at {time} s in an impact of {}: {source}", quoted(bodies))]
     Impact {
@@ -69,9 +57,7 @@ impl RunError {
     #[must_use]
     pub fn time(&self) -> Option<f64> {
         match self {
-            Self::RestingContact { time, .. } | Self::Impact { time, .. } | Self::Stuck { time, .. } => {
-                Some(*time)
-            }
+            Self::Impact { time, .. } | Self::Stuck { time, .. } => Some(*time),
             Self::Advance(_) => None,
         }
     }
@@ -79,15 +65,9 @@ impl RunError {
     pub(crate) fn new(error: AdvanceError, name: impl Fn(BodyId) -> String) -> Self {
         let names = |between: Between| (name(between.primary), name(between.normal));
         match error {
-            AdvanceError::RestingContact { time, between } => {
-                let (primary, normal) = names(between);
-                Self::RestingContact { time, primary, normal }
+            AdvanceError::Impact { time, bodies, source } => {
+                Self::Impact { time, bodies: bodies.into_iter().map(|body| name(body)).collect(), source }
             }
-            AdvanceError::Impact { time, bodies, source } => Self::Impact {
-                time,
-                bodies: bodies.into_iter().map(|body| name(BodyId(body))).collect(),
-                source,
-            },
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);
                 Self::Stuck { time, primary, normal, events }

@@ -45,16 +45,21 @@ impl Scales {
         tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)
     }
 
+    /// A speed [m/s] of the scene: what falls across it reaches this, even if all is at rest at the start.
+    pub(crate) fn speed_scale(&self) -> f64 {
+        self.speed.max((self.acceleration * self.coordinate).sqrt())
+    }
+
     pub(crate) fn tolerances(&self, tolerance: f64, given: &ToleranceOverrides) -> Tolerances {
         let target_gap = given.target_gap.unwrap_or(self.wanted_gap(tolerance).max(self.smallest_gap()));
-        // What falls across the scene reaches this speed, even if all is at rest at the start.
-        let speed = self.speed.max((self.acceleration * self.coordinate).sqrt());
         let told_from_rounding =
             (SPEED_ROUNDINGS * f64::EPSILON * self.coordinate * self.acceleration).sqrt();
         Tolerances {
             target_gap,
             accuracy: given.accuracy.unwrap_or(Tolerances::ACCURACY_SHARE * target_gap),
-            velocity_tol: given.velocity_tol.unwrap_or((tolerance * speed).max(told_from_rounding)),
+            velocity_tol: given
+                .velocity_tol
+                .unwrap_or((tolerance * self.speed_scale()).max(told_from_rounding)),
         }
     }
 }

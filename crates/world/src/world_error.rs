@@ -76,4 +76,10 @@ pub enum WorldError {
         /// The gap [m].
         gap: f64,
     },
+    /// The forces at the start cannot be found.
+    #[error("at the start: {source}")]
+    Start {
+        /// Why not.
+        source: halfgap_advance::rigid::AdvanceError,
+    },
 }

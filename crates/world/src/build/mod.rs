@@ -119,7 +119,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
             Some((second, "position"))
         }
         WorldError::BadForce { body, .. } => Some((body, "position")),
-        WorldError::BadSetting { .. } | WorldError::NoSuchBody { .. } => None,
+        WorldError::BadSetting { .. } | WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
     };
     let place = named.and_then(|(name, field)| {
         let index = scene.bodies.iter().position(|body| body.name == *name)?;

@@ -1,0 +1,64 @@
+//! What the advance is told, from the settings of a world and its scales.
+
+use crate::scales::Scales;
+use crate::settings::{Integrator, Stabilization, WorldSettings};
+use halfgap_advance::ode::Method;
+use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, StepControl};
+use halfgap_collision::SearchSettings;
+
+/// Part of the tolerance that the error of one step may be.
+const LOCAL_SHARE: f64 = 0.1;
+
+/// The settings of the advance.
+pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> RigidSettings {
+    let tolerances = scales.tolerances(settings.tolerance, &settings.overrides);
+    let speed = scales.speed_scale();
+    // Without forces nothing makes speed: then what crosses the gap tells which events are near each other.
+    let resolution_time = if scales.acceleration > 0.0 {
+        tolerances.velocity_tol / scales.acceleration
+    } else if speed > 0.0 {
+        tolerances.target_gap / speed
+    } else {
+        0.0
+    };
+    RigidSettings {
+        tolerances,
+        law: settings.impact_law,
+        order: settings.impact_order,
+        collisions: settings.collisions,
+        search: SearchSettings::default(),
+        method: method(settings.integrator),
+        steps: StepControl {
+            local_error: LOCAL_SHARE * settings.tolerance,
+            length: scales.smallest_radius.unwrap_or(scales.coordinate),
+            speed,
+            largest_step: settings.fixed_step().or(settings.time_step),
+        },
+        projection: settings.stabilization == Stabilization::Projection,
+        extra: extra(settings),
+        contact_forces: settings.contacts,
+        resolution_time,
+    }
+}
+
+fn method(integrator: Integrator) -> Method {
+    match integrator {
+        Integrator::Dop853 => Method::Dop853,
+        Integrator::DormandPrince5 => Method::DormandPrince5,
+        Integrator::Rk4 => Method::Rk4,
+        Integrator::ModifiedEuler => Method::ModifiedEuler,
+        Integrator::Euler => Method::Euler,
+    }
+}
+
+fn extra(settings: &WorldSettings) -> Option<ExtraAcceleration> {
+    let time = settings.fixed_step()?;
+    let (distance, joints_only) = match settings.stabilization {
+        Stabilization::Projection | Stabilization::None => return None,
+        Stabilization::Velocity => (false, false),
+        Stabilization::VelocityJoints => (false, true),
+        Stabilization::VelocityAndDistance => (true, false),
+        Stabilization::VelocityAndDistanceJoints => (true, true),
+    };
+    Some(ExtraAcceleration { time, distance, joints_only })
+}
