@@ -56,16 +56,12 @@ impl Dynamics<'_> {
         scales: &mut Vec<f64>,
     ) -> Result<(), StepFailure> {
         self.set_scales(control, scales);
+        let limit = control.largest_step.unwrap_or(f64::INFINITY);
+        let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);
         end.clear();
         end.resize(state.len(), 0.0);
-        let limit = control.largest_step.unwrap_or(f64::INFINITY);
-        let mut step = match self.group.next_step {
-            Some(step) => step,
-            None => self.first_step(control),
-        }
-        .min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
         let mut rejected = false;
         let outcome = loop {
