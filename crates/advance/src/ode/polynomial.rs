@@ -6,15 +6,13 @@ const DEGREE: usize = 8;
 /// A function of time over a step, a polynomial of degree 8 at most.
 ///
 /// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and absolute sums
-/// of the coefficients are good bounds. The large constant is kept apart from the motion, with the rest that it cannot
-/// hold, so that the values at both ends are those given up to half an ulp and the rounding of the motion alone.
+/// of the coefficients are good bounds. Only the constant is as large as the value; the others are as small as the motion.
+/// So the values at both ends are those given, up to an ulp and the rounding of the motion alone.
 /// Offsets [s] count from the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SegmentPolynomial {
     /// Monomial coefficients in `s`; the first is the value at the middle.
     coefficients: [f64; DEGREE + 1],
-    /// What the first coefficient cannot hold.
-    rest: f64,
     /// Length of the step [s].
     step: f64,
     /// Rate of `s` [1/s].
@@ -97,12 +95,8 @@ impl SegmentPolynomial {
     /// The start value plus a motion, which is zero at the start.
     fn from_start(start: f64, motion: [f64; DEGREE + 1], step: f64) -> Self {
         let mut coefficients = motion;
-        let center = start + motion[0];
-        coefficients[0] = center;
-        // The exact error of the sum (Knuth).
-        let part = center - start;
-        let rest = (start - (center - part)) + (motion[0] - part);
-        Self { coefficients, rest, step, rate: 2.0 / step }
+        coefficients[0] += start;
+        Self { coefficients, step, rate: 2.0 / step }
     }
 
     /// Monomial coefficients in `s = 2 offset / step - 1`, the constant first.
@@ -125,7 +119,7 @@ impl SegmentPolynomial {
         let c = &self.coefficients;
         let slope =
             c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * (c[5] + s * (c[6] + s * (c[7] + s * c[8]))))));
-        c[0] + (self.rest + s * slope)
+        c[0] + s * slope
     }
 
     /// First derivative with respect to time at an offset [s].
@@ -168,7 +162,7 @@ impl SegmentPolynomial {
         half_curvature = half_curvature * s + slope;
         slope = slope * s + motion;
         Jet {
-            value: self.coefficients[0] + (self.rest + s * motion),
+            value: self.coefficients[0] + s * motion,
             derivative: self.rate * slope,
             second_derivative: self.rate * self.rate * (2.0 * half_curvature),
         }

@@ -2,6 +2,7 @@
 
 use crate::problem::{Planet, SIZE, exact, rates_at, solve_to_tolerance};
 use halfgap_advance::ode::{Method, Ode, Point, Stepper};
+use std::convert::Infallible;
 
 const TIME: f64 = 10.0;
 
@@ -81,6 +82,9 @@ fn steps_shrink_after_large_errors_and_grow_after_small_ones_within_limits() {
         assert_eq!(factors[6], factors[7]);
         assert!(factors[3] < factors[4] && factors[4] < 1.0 && factors[6] > 1.0);
         assert_eq!(method.step_factor_after_rejection(0.0), 1.0);
+        // An error 2^(order + 1) times smaller allows twice the step.
+        let smaller = method.error_order().map_or(0.0, |order| 0.5_f64.powi(order as i32 + 1));
+        assert!((method.step_factor(smaller) - 2.0 * method.step_factor(1.0)).abs() < 1e-12);
     }
 }
 
@@ -97,6 +101,43 @@ fn the_first_step_is_nearly_acceptable_and_not_far_too_short() {
         assert!(ideal > 0.5 * step && ideal <= 6.0 * step, "{tolerance}: {step} for {ideal}");
         let Ok(limited) = stepper.starting_step(&mut Planet::default(), start, &scales, 1e-3);
         assert!(limited <= 1e-3);
+    }
+}
+
+#[test]
+fn the_first_step_follows_the_tolerance_as_the_estimate_does() {
+    // For DOP853 the error of a step falls as its 8th power.
+    let proposed = |tolerance: f64| {
+        let (mut stepper, state) = (Stepper::new(Method::Dop853), exact(0.0));
+        let rates = rates_at(0.0, &state);
+        let start = Point { offset: 0.0, state: &state, rates: &rates };
+        let Ok(step) = stepper.starting_step(&mut Planet::default(), start, &[tolerance; SIZE], 1.0);
+        step
+    };
+    assert!((proposed(1e-5) / proposed(1e-13) - 10.0).abs() < 1e-9);
+}
+
+/// A fall along a line, or nothing at all.
+struct Fall {
+    gravity: f64,
+}
+
+impl Ode for Fall {
+    type Error = Infallible;
+
+    fn derivative(&mut self, _offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        rates.copy_from_slice(&[state[1], -self.gravity]);
+        Ok(())
+    }
+}
+
+#[test]
+fn the_first_step_from_rest_is_short_but_positive() {
+    for gravity in [9.81, 0.0] {
+        let mut stepper = Stepper::new(Method::Dop853);
+        let start = Point { offset: 0.0, state: &[0.0, 0.0], rates: &[0.0, -gravity] };
+        let Ok(step) = stepper.starting_step(&mut Fall { gravity }, start, &[1e-9; 2], 1.0);
+        assert!(step > 0.0 && step <= 1e-4, "{gravity}: {step:e}");
     }
 }
 

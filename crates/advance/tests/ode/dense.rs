@@ -80,18 +80,24 @@ fn positions_follow_velocities_and_meet_both_ends() {
 
 #[test]
 fn far_away_the_motion_keeps_its_digits() {
-    // The coordinate is 1e6, the motion about 0.2: its differences are right to the last place of the coordinate.
+    // The coordinate is about 1e6, the motion 0.2: its differences are right to the last place of the coordinate, and
+    // the ends to the last bit.
     let step = changed_step(Method::Dop853, 0.0);
     let velocity = step.velocities[1];
-    let far = 1e6 + 0.1;
-    let near = SegmentPolynomial::integrated(0.0, step.end[1] - step.start[1], &velocity);
-    let shifted = SegmentPolynomial::integrated(far, far + (step.end[1] - step.start[1]), &velocity);
-    assert_eq!(shifted.value_at(0.0), far);
-    assert_eq!(shifted.value_at(STEP), far + (step.end[1] - step.start[1]));
+    let motion = step.end[1] - step.start[1];
+    let near = SegmentPolynomial::integrated(0.0, motion, &velocity);
     let place = f64::EPSILON * 1e6;
-    for index in 0..=20 {
-        let at = STEP * f64::from(index) / 20.0;
-        assert!((shifted.value_at(at) - far - near.value_at(at)).abs() <= place, "at {at}");
-        assert!((shifted.derivative_at(at) - near.derivative_at(at)).abs() < 8.0 * place / STEP, "at {at}");
+    for far in (0..50).map(|index| 1e6 + 0.123 * f64::from(index)) {
+        let shifted = SegmentPolynomial::integrated(far, far + motion, &velocity);
+        assert_eq!(shifted.value_at(0.0), far);
+        assert_eq!(shifted.value_at(STEP), far + motion);
+        for index in 0..=20 {
+            let at = STEP * f64::from(index) / 20.0;
+            assert!((shifted.value_at(at) - far - near.value_at(at)).abs() <= place, "at {at}");
+            assert!(
+                (shifted.derivative_at(at) - near.derivative_at(at)).abs() < 8.0 * place / STEP,
+                "at {at}"
+            );
+        }
     }
 }
