@@ -49,6 +49,8 @@ pub(crate) struct Stage {
     /// Forces of the rows [N].
     pub(crate) forces: Vec<f64>,
     pub(crate) changes: Vec<[f64; 3]>,
+    /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows.
+    pub(crate) free_acceleration: f64,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
     /// Dense output of velocities and works.
@@ -101,6 +103,7 @@ impl Stage {
         let damping = works.iter().position(|&work| work == Work::Damping);
         let mut damped = 0.0;
         self.accelerations.clear();
+        self.free_acceleration = 0.0;
         for &body in bodies {
             let flyer = &physics.mechanism.flyers[body.index()];
             let (law, inertia) = (flyer.law(), flyer.body());
@@ -109,6 +112,8 @@ impl Stage {
             let linear = law.acceleration - v * law.linear_rate + wrench.force * inertia.inverse_mass;
             let angular = wrench.torque * inertia.inverse_moment - law.angular_rate * w;
             self.accelerations.push([linear.x, linear.y, angular]);
+            let of_points = linear.length() + angular.abs() * flyer.reach();
+            self.free_acceleration = self.free_acceleration.max(of_points);
             if damping.is_some() && law.is_damped() {
                 damped -= law.linear_rate * v.length_squared() / inertia.inverse_mass
                     + law.angular_rate * w * w / inertia.inverse_moment;

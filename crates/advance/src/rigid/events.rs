@@ -118,7 +118,8 @@ impl RigidSystem {
     fn handle_impact(&mut self, work: &mut EventWork, fired: Fired) -> Result<bool, AdvanceError> {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
-            self.now = self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, time));
+            let gap = fired.map(|(bodies, features)| self.gap_at(bodies, features, self.now).0);
+            self.now = self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
             self.remeasure(&mut work.region, self.now);
         }
         let is_storm = self.note_events(&work.region);
@@ -156,20 +157,13 @@ impl RigidSystem {
         SINK_SHARE * self.settings.tolerances.accuracy
     }
 
-    /// By how much [s] the time is off at which a pair is at its target gap, if that can be told.
-    fn time_error(&self, fired: Fired, time: Time) -> Option<f64> {
+    /// By how much [s] the time is off at which a pair has the gap [m] that it had by dense output, if that can be told.
+    fn time_error(&self, fired: Fired, wanted: Option<f64>, time: Time) -> Option<f64> {
         let (bodies, features) = fired?;
-        let moving = bodies.map(|body| self.flyer(body).moving_at(time));
-        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
-        let sample = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose)?;
-        let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
-        let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
-        let pair = self.pairs.between(bodies[0], bodies[1])?;
-        let rule = self.pairs.rules(pair).iter().find(|rule| rule.features == features);
-        let target = rule.and_then(|rule| rule.target).unwrap_or(self.settings.tolerances.target_gap);
-        let error = sample.gap - target;
+        let (gap, rate) = self.gap_at(bodies, features, time);
+        let error = gap - wanted?;
         let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
-        (counts && rate < 0.0).then(|| -error / rate)
+        (counts && rate < -self.settings.tolerances.velocity_tol).then(|| -error / rate)
     }
 
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
@@ -195,16 +189,16 @@ impl RigidSystem {
             let rule: Option<FeatureRule> = if is_held {
                 Some(touch.skipped())
             } else {
-                let (gap, rate) = self.gap_now(touch.bodies, touch.features);
+                let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
                 (rate <= rest).then(|| touch.lowered_to(gap.min(self.settings.tolerances.target_gap) - sink))
             };
             self.pairs.rules_mut(pair).extend(rule);
         }
     }
 
-    /// Gap [m] and rate [m/s] of two features at the present time.
-    fn gap_now(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> (f64, f64) {
-        let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
+    /// Gap [m] and rate [m/s] of two features at a time.
+    fn gap_at(&self, bodies: [BodyId; 2], features: [FeatureId; 2], time: Time) -> (f64, f64) {
+        let moving = bodies.map(|body| self.flyer(body).moving_at(time));
         let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
         let Some(sample) = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose) else {
             return (f64::INFINITY, 0.0);

@@ -110,19 +110,17 @@ impl Dynamics<'_> {
         self.physics.mechanism.flyers[body.index()].reach()
     }
 
-    /// A speed [m/s] of the group: of its fastest point now, or what its acceleration makes of it over the length.
+    /// A speed [m/s] of the group: of its fastest point now, or what forces would make of it over the length. What forces
+    /// of rows cancel counts too, so that a group at rest is not held to its rounding.
     fn speed(&self, control: &StepControl) -> f64 {
         let count = self.group.bodies.len();
-        let (mut speed, mut acceleration) = (0.0f64, 0.0f64);
+        let mut speed = (self.stage.free_acceleration * control.length).sqrt();
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let at = 3 * (count + place);
-            let of = |values: &[f64]| {
-                DVec2::new(values[at], values[at + 1]).length() + values[at + 2].abs() * self.reach(body)
-            };
-            speed = speed.max(of(&self.group.state));
-            acceleration = acceleration.max(of(&self.group.rates));
+            let state = &self.group.state;
+            let of_points = DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body);
+            speed = speed.max(of_points);
         }
-        let speed = speed.max((acceleration * control.length).sqrt());
         if speed > 0.0 { speed } else { control.speed }
     }
 
