@@ -59,6 +59,8 @@ pub(crate) struct Group {
     pub(crate) work_paths: Vec<SegmentPolynomial>,
     /// Length of the next step to try [s]; `None` if nothing is known.
     pub(crate) next_step: Option<f64>,
+    /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
+    pub(crate) free_acceleration: f64,
     /// Energy [J] that projections changed in this segment.
     pub(crate) projected: f64,
     /// Largest error of a held gap met [m].

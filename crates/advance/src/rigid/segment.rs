@@ -42,6 +42,7 @@ impl Dynamics<'_> {
         rates.clear();
         rates.resize(state.len(), 0.0);
         let Ok(()) = self.derivative(0.0, &state, &mut rates);
+        self.group.free_acceleration = self.stage.free_acceleration;
         self.group.forces.clear();
         self.group.forces.extend_from_slice(&self.stage.forces);
         self.group.state = state;
@@ -114,7 +115,7 @@ impl Dynamics<'_> {
     /// of rows cancel counts too, so that a group at rest is not held to its rounding.
     fn speed(&self, control: &StepControl) -> f64 {
         let count = self.group.bodies.len();
-        let mut speed = (self.stage.free_acceleration * control.length).sqrt();
+        let mut speed = (self.group.free_acceleration * control.length).sqrt();
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let at = 3 * (count + place);
             let state = &self.group.state;
@@ -190,6 +191,7 @@ impl Dynamics<'_> {
         rates.clear();
         rates.resize(end.len(), 0.0);
         let Ok(()) = self.derivative(self.group.span, &end, &mut rates);
+        self.group.free_acceleration = self.stage.free_acceleration;
         self.group.end_forces.clear();
         self.group.end_forces.extend_from_slice(&self.stage.forces);
         (self.group.end_state, self.group.end_rates) = (end, rates);
