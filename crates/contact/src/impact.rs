@@ -2,30 +2,56 @@
 //!
 //! With the Delassus matrix A = J M^-1 J^T (n, n) [1/kg] the rates b [m/s] of the rows become A j + b by impulses j >= 0
 //! [N s]. An impact law says which impulses: each row that closes faster than its `velocity_tol` is to open again at its
-//! elasticity times that speed, a slower one is to stop.
+//! elasticity times that speed, a slower one is to stop. Bilateral rows (connectors) have impulses of either sign and end
+//! at rest.
 //!
-//! Energy never grows: the impulses of one solve lose (1 - e^2) of the energy in the closing motion at least, and rows
-//! solved one after another repeat that.
+//! Energy never grows. Impulses j that take the rates from b to b' change it by sum j (b + b')/2: a row that closes at
+//! b < 0 and ends at b' = -e b adds j (1 - e) b/2 <= 0, a row held at rest nothing. So a problem may hold rows that close or
+//! rest, but not rows that open; only without elasticity, b' = 0 throughout, may it hold any (then it is the projection
+//! onto the admissible motions, in the measure of energy).
+//!
+//! | module | what |
+//! |---|---|
+//! | `law` | which rows are solved when; errors |
+//! | `together`, `serial` | all rows in one problem, or one after another |
+//! | `patience` | when ricochets end |
+//! | `pair_problem`, `many_rows` | one or two rows in closed form; more by the active-set method |
+//! | `couplings` | the Delassus matrix |
+//! | `shuffle` | random orders |
 
+mod couplings;
 mod law;
+mod many_rows;
 mod pair_problem;
+mod patience;
 mod serial;
 mod shuffle;
+mod together;
 
 pub use law::{ImpactError, ImpactLaw, ImpactOrder};
 
 use crate::row::CollisionRow;
+use couplings::Couplings;
+use many_rows::ManyRows;
+
+/// Part of the largest change of a rate so far that is rounding.
+const NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// An impact: rows with their rates and the impulses applied so far.
 #[derive(Clone, Debug, Default)]
 pub struct Impact {
     rows: Vec<CollisionRow>,
+    has_connectors: bool,
     /// Rate of each row [m/s] after the impulses so far.
     rates: Vec<f64>,
     /// Impulse of each row [N s] so far.
     impulses: Vec<f64>,
-    /// The Delassus matrix, row by row [1/kg].
-    delassus: Vec<f64>,
+    couplings: Couplings,
+    /// Rate [m/s] that is rounding of the impulses so far, or what rows that contradict each other by rounding leave.
+    noise: f64,
+    /// The fastest rate [m/s] that was to be changed.
+    fastest: f64,
+    bound: f64,
     /// How many complementarity problems were solved.
     solves: u64,
     scratch: Scratch,
@@ -34,13 +60,16 @@ pub struct Impact {
 /// Buffers of the laws, kept from one impact to the next.
 #[derive(Clone, Debug, Default)]
 struct Scratch {
-    /// The rows that are solved together.
+    /// The rows that are solved together, and a flag for each.
     set: Vec<usize>,
+    listed: Vec<bool>,
     /// Rates [m/s] that rows are to reach.
     targets: Vec<f64>,
     /// Rates [m/s] and impulses [N s] to go back to.
     rates: Vec<f64>,
     impulses: Vec<f64>,
+    /// Made when first needed, for most impacts have one row or two.
+    many: Option<Box<ManyRows>>,
 }
 
 impl Impact {
@@ -54,14 +83,15 @@ impl Impact {
     pub fn set_rows(&mut self, rows: impl IntoIterator<Item = CollisionRow>) {
         self.rows.clear();
         self.rows.extend(rows);
+        self.has_connectors = self.rows.iter().any(|row| row.bilateral);
         self.rates.clear();
         self.rates.extend(self.rows.iter().map(|row| row.rate));
         self.impulses.clear();
         self.impulses.resize(self.rows.len(), 0.0);
-        self.delassus.clear();
-        for row in &self.rows {
-            self.delassus.extend(self.rows.iter().map(|other| row.coupling(other)));
-        }
+        self.couplings.set_rows(&self.rows);
+        self.noise = 0.0;
+        self.fastest = 0.0;
+        self.bound = 0.0;
         self.solves = 0;
     }
 
@@ -77,10 +107,19 @@ impl Impact {
         &self.rates
     }
 
-    /// Impulse of each row [N s], at least 0 for a row that is not bilateral.
+    /// Impulse of each row [N s], at least 0 for a row that is not bilateral. Redundant rows leave a choice; the rates do
+    /// not depend on it.
     #[must_use]
     pub fn impulses(&self) -> &[f64] {
         &self.impulses
+    }
+
+    /// Greatest closing speed, or rate of a bilateral row [m/s], that the impact may have left: 1e-12 of its fastest
+    /// rate, or the rounding of its impulses; where rows are so nearly dependent that rounding makes them contradict each
+    /// other, what that leaves, at most 1e-5 of that rate.
+    #[must_use]
+    pub fn bound(&self) -> f64 {
+        self.bound
     }
 
     /// How many complementarity problems were solved.
@@ -95,23 +134,39 @@ impl Impact {
         self.impulses.iter().filter(|&&impulse| impulse != 0.0).count()
     }
 
-    fn coupling(&self, row: usize, other: usize) -> f64 {
-        self.delassus[row * self.rows.len() + other]
-    }
-
     /// Adds an impulse along one row and brings all rates up to date.
     fn apply(&mut self, row: usize, impulse: f64) {
         self.impulses[row] += impulse;
-        for other in 0..self.rows.len() {
-            let change = self.coupling(other, row) * impulse;
+        let mut largest = 0.0f64;
+        for (other, coupling) in self.couplings.row(row) {
+            let change = coupling * impulse;
+            largest = largest.max(change.abs());
             self.rates[other] += change;
         }
+        self.noise = self.noise.max(NOISE * largest);
     }
 
-    /// The rate that a row is to have after its impact [m/s]: its elasticity acts only above its `velocity_tol`.
-    fn rebound(&self, row: usize) -> f64 {
-        let closing = -self.rates[row];
-        let fast = closing > self.rows[row].velocity_tol;
-        if fast && !self.rows[row].bilateral { self.rows[row].elasticity * closing } else { 0.0 }
+    /// By how much a row's rate is wrong [m/s]: its closing speed, or a bilateral row's rate without sign.
+    fn violation(&self, row: usize) -> f64 {
+        if self.rows[row].bilateral { self.rates[row].abs() } else { -self.rates[row] }
+    }
+
+    /// Whether that is more than `small`, and more than rounding.
+    fn is_violated(&self, row: usize, small: f64) -> bool {
+        self.violation(row) > self.rest(small)
+    }
+
+    fn is_any_violated(&self, small: f64) -> bool {
+        (0..self.rows.len()).any(|row| self.is_violated(row, small))
+    }
+
+    /// Rate [m/s] up to which a row counts as at rest.
+    fn rest(&self, small: f64) -> f64 {
+        small.max(self.noise)
+    }
+
+    /// Whether an impulse along a row changes anything.
+    fn can_move(&self, row: usize) -> bool {
+        self.couplings.diagonal(row) > 0.0
     }
 }

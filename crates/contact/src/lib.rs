@@ -18,6 +18,8 @@
 //! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
+//! | `held_rows` | [`HeldRows`]: a fixed set of rows as equations, solved again and again |
+//! | `row`, `impact` | [`Impact`]: impulses of an impact by an [`ImpactLaw`] |
 //! | `warm` | [`WarmStart`]: carrying an answer over to the next step |
 //! | `json` | feature `json`: problems and answers as files |
 
@@ -31,6 +33,7 @@ mod dependent;
 mod dictionary;
 mod dual_active_set;
 mod error;
+mod held_rows;
 mod impact;
 mod islands;
 #[cfg(feature = "json")]
@@ -58,6 +61,7 @@ pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
+pub use held_rows::HeldRows;
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
 pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};

@@ -28,23 +28,39 @@ pub(crate) struct RowOrder {
 impl RowOrder {
     /// Finds an order for rows with these entries: the rows' own where that is good enough.
     pub(crate) fn prepare(&mut self, start: &[usize], column: &[u32], columns: usize) {
+        if self.take_pattern(start, column) && self.rows.len() >= FEW_ROWS {
+            let given = self.envelope(columns);
+            if given > self.rows.len() * NARROW {
+                self.improve(columns, given);
+            }
+        }
+    }
+
+    /// Finds the better of the rows' own order and the other, at any size, for a factor that is made many times.
+    pub(crate) fn prepare_narrow(&mut self, start: &[usize], column: &[u32], columns: usize) {
+        if self.take_pattern(start, column) {
+            let given = self.envelope(columns);
+            self.improve(columns, given);
+        }
+    }
+
+    /// Takes over a pattern with the rows in their own order; false if it is that of last time, with an order found.
+    fn take_pattern(&mut self, start: &[usize], column: &[u32]) -> bool {
         if self.start == start && self.column == column {
-            return;
+            return false;
         }
         self.start.clear();
         self.start.extend_from_slice(start);
         self.column.clear();
         self.column.extend_from_slice(column);
-        let n = start.len() - 1;
         self.rows.clear();
-        self.rows.extend(0..n as u32);
-        if n < FEW_ROWS {
-            return;
-        }
-        let given = self.envelope(columns);
-        if given <= n * NARROW {
-            return;
-        }
+        self.rows.extend(0..start.len() as u32 - 1);
+        true
+    }
+
+    /// Walks through the rows, and keeps that order if its envelope is less than that of their own.
+    fn improve(&mut self, columns: usize, given: usize) {
+        let n = self.rows.len();
         self.list_touching(columns);
         self.walk(columns);
         if self.envelope(columns) >= given {

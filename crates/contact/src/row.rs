@@ -27,24 +27,31 @@ impl CollisionRow {
     #[must_use]
     pub fn of_collision(collision: &Collision, inertia: [Inertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
-        let [a, b] = inertia;
-        let weights = [
-            a.inverse_mass,
-            a.inverse_mass,
-            a.inverse_moment,
-            b.inverse_mass,
-            b.inverse_mass,
-            b.inverse_moment,
-        ];
         Self {
             bodies: [collision.parties.primary.body, collision.parties.normal.body],
             jacobian,
-            response: std::array::from_fn(|k| jacobian[k] * weights[k]),
+            response: response(&jacobian, inertia),
             elasticity: collision.response.elasticity,
             velocity_tol: collision.tolerances.velocity_tol,
             bilateral: collision.parties.bilateral,
             rate: collision.motion.normal_velocity,
         }
+    }
+
+    /// A row that comes from no collision record, as of a connector. The background ([`BodyId::WORLD`]) and other bodies
+    /// that nothing moves have an inertia of zeros.
+    #[must_use]
+    pub fn new(
+        bodies: [BodyId; 2],
+        jacobian: [f64; 6],
+        inertia: [Inertia; 2],
+        rate: f64,
+        elasticity: f64,
+        velocity_tol: f64,
+        bilateral: bool,
+    ) -> Self {
+        let response = response(&jacobian, inertia);
+        Self { bodies, jacobian, response, elasticity, velocity_tol, bilateral, rate }
     }
 
     /// Change of this row's rate [m/s] by a unit impulse [N s] along another row: an entry of the Delassus matrix
@@ -66,12 +73,22 @@ impl CollisionRow {
     /// True if the rows act on a common body that can move.
     #[must_use]
     pub fn shares_movable_body(&self, other: &CollisionRow) -> bool {
-        self.coupling_bodies().any(|body| other.coupling_bodies().any(|theirs| theirs == body))
+        let theirs = other.movable_bodies();
+        self.movable_bodies().iter().any(|body| body.is_some() && theirs.contains(body))
     }
 
-    fn coupling_bodies(&self) -> impl Iterator<Item = BodyId> + '_ {
-        (0..2)
-            .filter(|&side| self.response[3 * side..3 * side + 3].iter().any(|&x| x != 0.0))
-            .map(|side| self.bodies[side])
+    /// The bodies that an impulse along the row moves; the background is none of them.
+    pub(crate) fn movable_bodies(&self) -> [Option<BodyId>; 2] {
+        [0, 1].map(|side| {
+            let moves = self.response[3 * side..3 * side + 3].iter().any(|&x| x != 0.0);
+            (moves && !self.bodies[side].is_world()).then_some(self.bodies[side])
+        })
     }
+}
+
+/// J M^-1.
+fn response(jacobian: &[f64; 6], [a, b]: [Inertia; 2]) -> [f64; 6] {
+    let weights =
+        [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
+    std::array::from_fn(|k| jacobian[k] * weights[k])
 }

@@ -1,21 +1,24 @@
 //! The impact laws, and what all of them share.
 
 use super::Impact;
-use super::pair_problem::{solve_one, solve_two};
-use super::serial::{Grouping, resolve_serially};
+use super::many_rows::NEARLY;
+use super::patience::{Patience, RICOCHET};
+use super::serial::Grouping;
 use super::shuffle::Shuffle;
+use crate::check::Residuals;
 
 /// Which rows are solved together, and what happens after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactLaw {
-    /// All rows that close or rest in one problem, again while it leaves some closing.
+    /// All rows that close or rest in one problem, with all connectors, again while it leaves some closing.
     Simultaneous,
-    /// Together those that close on the same bodies, one after another otherwise.
+    /// Together those that close on the same bodies, with all connectors that they reach through movable bodies; one
+    /// after another otherwise.
     #[default]
     Hybrid,
-    /// One row at a time.
+    /// One row at a time, connectors too. The only law in which a connector's elasticity acts.
     SerialSeparate,
-    /// One row at a time, with all joints that it reaches through movable bodies.
+    /// One row at a time, with all connectors that it reaches through movable bodies.
     SerialGrouped,
     /// As `SerialSeparate`, then all rows together without elasticity.
     SerialSeparateLastpass,
@@ -37,155 +40,139 @@ pub enum ImpactOrder {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
-    /// More rows at once than can be solved together.
-    #[error("an impact of {rows} rows at once is not supported yet; at most {most} are")]
-    TooManyRows {
-        /// How many rows act at once.
-        rows: usize,
-        /// How many may.
-        most: usize,
-    },
     /// A closing row moves nothing.
     #[error("row {row} closes at {closing} m/s, but neither of its bodies can move")]
     Immovable {
         /// Index of the row.
         row: usize,
-        /// Closing speed [m/s].
+        /// Closing speed [m/s]; of a bilateral row its rate without sign.
         closing: f64,
+    },
+    /// No impulses whatever keep all rows from closing, as of a body between jaws that nothing stops.
+    #[error(
+        "row {row} cannot be kept from closing: the rows that hold it contradict it by {contradiction} m/s"
+    )]
+    Infeasible {
+        /// Index of the row at which it showed.
+        row: usize,
+        /// Least change of rates [m/s] that would make it possible.
+        contradiction: f64,
+    },
+    /// The solver found no impulses that pass its check.
+    #[error("no impulses of {rows} rows pass the check: {residuals}")]
+    Unsolved {
+        /// How many rows were solved together.
+        rows: usize,
+        /// Residuals of the last impulses.
+        residuals: Residuals,
+    },
+    /// A row still closes, or a bilateral one moves, after all that was tried.
+    #[error("row {row} is left at a rate of {rate} m/s, beyond the bound of {bound} m/s")]
+    Unfinished {
+        /// Index of the row.
+        row: usize,
+        /// Its rate [m/s].
+        rate: f64,
+        /// Greatest rate [m/s] that may be left.
+        bound: f64,
     },
 }
 
-/// Rows that may act at once.
-pub(super) const MOST_ROWS: usize = 2;
-/// A row closing slower than this part of the impact's fastest is done: with it the ricochets end.
-const RICOCHET: f64 = 1e-12;
-/// Rounds per row after which the rest of an impact is stopped without elasticity.
-pub(super) const ROUNDS_PER_ROW: usize = 200;
+/// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes what the one before
+/// left by rounding, or by nearly dependent rows.
+const FINAL_PASSES: usize = 4;
 
 impl ImpactLaw {
     /// Finds the impulses of an impact; `random` counts the impacts of a seeded run.
     ///
+    /// After it no unilateral row closes faster than [`Impact::bound`], and no bilateral row has a greater rate.
+    ///
     /// # Errors
-    /// More than two rows act at once, or a closing row moves nothing.
+    /// [`ImpactError`] names the row that moves nothing, or that no impulses can keep from closing.
     pub fn resolve(self, impact: &mut Impact, order: ImpactOrder, random: u64) -> Result<(), ImpactError> {
-        let fastest = impact.rates.iter().fold(0.0f64, |most, rate| most.max(-rate));
-        let small = RICOCHET * fastest;
-        for (row, rate) in impact.rates.iter().enumerate() {
-            if *rate < -small && impact.coupling(row, row) <= 0.0 {
-                return Err(ImpactError::Immovable { row, closing: -rate });
-            }
-        }
+        let small = impact.begin()?;
         if impact.rows.len() == 1 {
             // The most common impact by far: no law changes it, and it needs no buffers.
-            let rebound = impact.rebound(0);
-            let impulse = solve_one(impact.coupling(0, 0), impact.rates[0] - rebound);
-            impact.solves = 1;
-            impact.apply(0, impulse);
+            impact.solve_single();
             return Ok(());
         }
         let mut shuffle = match order {
             ImpactOrder::Fastest => None,
             ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, random)),
         };
-        let grouping = match self {
-            ImpactLaw::Simultaneous => return impact.solve_all(small),
-            ImpactLaw::Hybrid => Grouping::SameBodies,
-            _ => Grouping::One,
-        };
-        resolve_serially(impact, grouping, shuffle.as_mut(), small)?;
+        let mut patience = Patience::new(impact.rows.len(), small);
+        if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
+            impact.settle_connectors(small)?;
+        }
+        match self.grouping() {
+            None => impact.solve_all(small, &mut patience)?,
+            Some(grouping) => impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?,
+        }
+        if matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass) {
+            impact.solve_all_inelastic(small)?;
+        }
+        impact.finish(small)
+    }
+
+    /// Which rows are solved together, if not all.
+    fn grouping(self) -> Option<Grouping> {
         match self {
-            ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass => {
-                impact.solve_all_inelastic(small)
-            }
-            _ => Ok(()),
+            ImpactLaw::Simultaneous => None,
+            ImpactLaw::Hybrid => Some(Grouping::Closing),
+            ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass => Some(Grouping::One),
+            ImpactLaw::SerialGrouped | ImpactLaw::SerialGroupedLastpass => Some(Grouping::Connectors),
         }
     }
 }
 
 impl Impact {
-    /// Problems of all rows: each that closes is to rebound, and rows at rest are held.
+    /// Stops all rows at once, without elasticity: the nearest motion that none of them forbids. Ends storms of events.
     ///
-    /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it then closes, it
-    /// is solved in the next round, with all others that do.
-    fn solve_all(&mut self, small: f64) -> Result<(), ImpactError> {
-        for _ in 0..ROUNDS_PER_ROW * self.rows.len() {
-            if !self.rates.iter().any(|&rate| rate < -small) {
-                return Ok(());
-            }
+    /// # Errors
+    /// As for [`ImpactLaw::resolve`].
+    pub fn resolve_inelastic(&mut self) -> Result<(), ImpactError> {
+        let small = self.begin()?;
+        self.solve_all_inelastic(small)?;
+        self.finish(small)
+    }
+
+    /// Finds which rates are rounding, and whether a row is violated that moves nothing.
+    fn begin(&mut self) -> Result<f64, ImpactError> {
+        self.fastest = (0..self.rows.len()).fold(0.0f64, |most, row| most.max(self.violation(row)));
+        let small = RICOCHET * self.fastest;
+        self.bound = small;
+        let stuck = (0..self.rows.len()).find(|&row| self.is_violated(row, small) && !self.can_move(row));
+        match stuck {
+            None => Ok(small),
+            Some(row) => Err(ImpactError::Immovable { row, closing: self.violation(row) }),
+        }
+    }
+
+    /// The only row: if it is bilateral it comes to rest.
+    fn solve_single(&mut self) {
+        if self.violation(0) > 0.0 && self.can_move(0) {
             self.aim_at_rebounds();
-            self.solve_growing(small, small)?;
+            self.solve_alone(0, self.scratch.targets[0]);
         }
-        self.solve_all_inelastic(small)
     }
 
-    /// One problem of all rows without elasticity.
-    pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
-        self.scratch.targets.clear();
-        self.scratch.targets.resize(self.rows.len(), 0.0);
-        self.solve_growing(small, f64::INFINITY)
-    }
-
-    /// Sets each row's target to its rebound from the rate that it has now.
-    pub(super) fn aim_at_rebounds(&mut self) {
-        let mut targets = std::mem::take(&mut self.scratch.targets);
-        targets.clear();
-        targets.extend((0..self.rows.len()).map(|row| self.rebound(row)));
-        self.scratch.targets = targets;
-    }
-
-    /// Solves the closing rows together; as long as others are driven to close that opened at most at the rate `slow`,
-    /// with these too.
-    fn solve_growing(&mut self, small: f64, slow: f64) -> Result<(), ImpactError> {
-        self.scratch.rates.clone_from(&self.rates);
-        self.scratch.impulses.clone_from(&self.impulses);
-        let mut set = std::mem::take(&mut self.scratch.set);
-        set.clear();
-        set.extend((0..self.rows.len()).filter(|&row| self.rates[row] < -small));
-        let outcome = loop {
-            if let Err(error) = self.solve_together(&set) {
-                break Err(error);
+    /// Stops what still closes, without elasticity.
+    fn finish(&mut self, small: f64) -> Result<(), ImpactError> {
+        for _ in 0..FINAL_PASSES {
+            if !self.is_any_violated(small) {
+                break;
             }
-            let count = set.len();
-            for row in 0..self.rows.len() {
-                let is_driven = self.scratch.rates[row] <= slow && self.rates[row] < -small;
-                if is_driven && !set[..count].contains(&row) {
-                    set.push(row);
-                }
-            }
-            if set.len() == count {
-                break Ok(());
-            }
-            set.sort_unstable();
-            self.rates.clone_from(&self.scratch.rates);
-            self.impulses.clone_from(&self.scratch.impulses);
-        };
-        self.scratch.set = set;
-        outcome
-    }
-
-    /// Solves the rows of a set together, each to reach its target rate, and applies the impulses.
-    pub(super) fn solve_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
-        let b = |row: usize| self.rates[row] - self.scratch.targets[row];
-        match *set {
-            [] => {}
-            [row] => {
-                let impulse = solve_one(self.coupling(row, row), b(row));
-                self.solves += 1;
-                self.apply(row, impulse);
-            }
-            [first, second] => {
-                let a = [
-                    self.coupling(first, first),
-                    self.coupling(first, second),
-                    self.coupling(second, second),
-                ];
-                let impulses = solve_two(a, [b(first), b(second)]);
-                self.solves += 1;
-                self.apply(first, impulses[0]);
-                self.apply(second, impulses[1]);
-            }
-            _ => return Err(ImpactError::TooManyRows { rows: set.len(), most: MOST_ROWS }),
+            self.solve_all_inelastic(small)?;
         }
-        Ok(())
+        let left = (0..self.rows.len()).max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)));
+        let violation = left.map_or(0.0, |row| self.violation(row));
+        self.bound = self.rest(small).max(violation);
+        let most = self.rest(NEARLY * self.fastest);
+        match left {
+            Some(row) if violation > most => {
+                Err(ImpactError::Unfinished { row, rate: self.rates[row], bound: most })
+            }
+            _ => Ok(()),
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! Rows solved one after another, until none closes.
 //!
-//! Each round takes one closing row as the focus, alone or with those that close on the same bodies, and lets it rebound.
-//! The rounds end because each takes energy out of the closing motion, or hands it on to rows that open; what still
-//! ricochets after many rounds (bodies in a tight chain) is stopped without elasticity.
+//! Each round takes one row as the focus, alone or with others, and lets it rebound: one that closes, or a bilateral one
+//! whose rate is not zero.
 
 use super::Impact;
-use super::law::{ImpactError, ROUNDS_PER_ROW};
+use super::law::ImpactError;
+use super::patience::Patience;
 use super::shuffle::Shuffle;
 
 /// Which rows join the focus.
@@ -13,47 +13,91 @@ use super::shuffle::Shuffle;
 pub(super) enum Grouping {
     /// None.
     One,
-    /// Those that close and share a movable body with it.
-    SameBodies,
+    /// All connectors that it reaches through movable bodies.
+    Connectors,
+    /// Those that close and share a movable body with it, and all connectors that these reach.
+    Closing,
 }
 
-pub(super) fn resolve_serially(
-    impact: &mut Impact,
-    grouping: Grouping,
-    mut shuffle: Option<&mut Shuffle>,
-    small: f64,
-) -> Result<(), ImpactError> {
-    for _ in 0..ROUNDS_PER_ROW * impact.rows.len() {
-        let Some(focus) = focus(impact, shuffle.as_deref_mut(), small) else { return Ok(()) };
-        let mut set = std::mem::take(&mut impact.scratch.set);
-        set.clear();
-        match grouping {
-            Grouping::One => set.push(focus),
-            Grouping::SameBodies => {
-                let joins = |row: &usize| {
-                    *row == focus
-                        || (impact.rates[*row] < -small
-                            && impact.rows[*row].shares_movable_body(&impact.rows[focus]))
-                };
-                set.extend((0..impact.rows.len()).filter(joins));
+impl Impact {
+    /// Rounds until no row is violated, or patience ends.
+    pub(super) fn solve_serially(
+        &mut self,
+        grouping: Grouping,
+        mut shuffle: Option<&mut Shuffle>,
+        patience: &mut Patience,
+    ) -> Result<(), ImpactError> {
+        while let Some(focus) = self.focus(shuffle.as_deref_mut(), patience.small()) {
+            let solved = if grouping == Grouping::One {
+                self.solve_alone(focus, self.rebound_alone(focus));
+                1
+            } else {
+                self.solve_around(focus, grouping, patience.small())?
+            };
+            if !patience.spend(solved) {
+                break;
             }
         }
-        impact.aim_at_rebounds();
-        let outcome = impact.solve_together(&set);
-        impact.scratch.set = set;
-        outcome?;
+        Ok(())
     }
-    impact.solve_all_inelastic(small)
-}
 
-/// The row to solve next: the fastest, ties by place, or a random one of those that close.
-fn focus(impact: &Impact, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
-    let closing = || (0..impact.rows.len()).filter(|&row| impact.rates[row] < -small);
-    match shuffle {
-        None => closing().min_by(|&p, &q| impact.rates[p].total_cmp(&impact.rates[q])),
-        Some(shuffle) => {
-            let count = closing().count();
-            if count == 0 { None } else { closing().nth(shuffle.below(count)) }
+    /// The row to solve next: the fastest, ties by place, or a random one of those that are violated.
+    fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
+        let violated = || (0..self.rows.len()).filter(|&row| self.is_violated(row, small));
+        match shuffle {
+            None => violated().min_by(|&p, &q| self.violation(q).total_cmp(&self.violation(p))),
+            Some(shuffle) => {
+                let count = violated().count();
+                if count == 0 { None } else { violated().nth(shuffle.below(count)) }
+            }
+        }
+    }
+
+    /// The rate that a row solved alone is to have [m/s]. The elasticity of a connector acts only here: solved with
+    /// others it could add energy to them.
+    fn rebound_alone(&self, row: usize) -> f64 {
+        let row_data = &self.rows[row];
+        if self.violation(row) > row_data.velocity_tol { -row_data.elasticity * self.rates[row] } else { 0.0 }
+    }
+
+    /// Solves a focus with the rows that join it, and says how many they are.
+    fn solve_around(&mut self, focus: usize, grouping: Grouping, small: f64) -> Result<usize, ImpactError> {
+        let mut set = std::mem::take(&mut self.scratch.set);
+        set.clear();
+        set.push(focus);
+        if grouping == Grouping::Closing && !self.rows[focus].bilateral {
+            let joins = |&row: &usize| {
+                let closes = !self.rows[row].bilateral && self.is_violated(row, small);
+                row != focus && closes && self.couplings.share_body(row, focus)
+            };
+            set.extend((0..self.rows.len()).filter(joins));
+        }
+        self.add_connectors(&mut set);
+        set.sort_unstable();
+        let outcome = self.rebound_together(&set);
+        let count = set.len();
+        self.scratch.set = set;
+        outcome.map(|()| count)
+    }
+
+    /// Adds the bilateral rows that a set reaches through movable bodies and one another.
+    fn add_connectors(&mut self, set: &mut Vec<usize>) {
+        if !self.has_connectors {
+            return;
+        }
+        let listed = &mut self.scratch.listed;
+        listed.clear();
+        listed.resize(self.rows.len(), false);
+        set.iter().for_each(|&row| listed[row] = true);
+        let mut next = 0;
+        while next < set.len() {
+            for (other, _) in self.couplings.row(set[next]) {
+                if self.rows[other].bilateral && !listed[other] {
+                    listed[other] = true;
+                    set.push(other);
+                }
+            }
+            next += 1;
         }
     }
 }

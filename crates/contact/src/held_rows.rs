@@ -1,0 +1,561 @@
+//! Forces of a fixed set of rows held as equations: A f = -b with A = J M⁻¹ Jᵀ, solved again and again as J and b change.
+//!
+//! That is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. So what depends
+//! on the structure alone is found once: an order of the rows that keeps the factor narrow (see `order`), and which
+//! pairs of rows share a body. A = L D Lᵀ is stored by rows from their first nonzero on, which for a chain of joints is a
+//! few entries a row: A. George, J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4.
+//!
+//! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot and no
+//! force. There is no refinement: the factor leaves a = A f + b at rounding of the terms A_ij f_j, and a step of refinement
+//! could not better that without sums of higher precision.
+
+use crate::order::RowOrder;
+use crate::problem::Inertia;
+use crate::settings::Settings;
+use crate::skyline::dot;
+
+/// Part of a row's square below which what earlier rows leave of it is measured with care.
+const DOUBTFUL: f64 = 1e-5;
+
+const NONE: u32 = u32::MAX;
+
+/// Rows held as equations, with the structure of their factor kept from solve to solve.
+///
+/// # Examples
+///
+/// ```
+/// use halfgap_contact::{HeldRows, Inertia};
+///
+/// // A pendulum: a rod of 2 kg and 1 m, pinned at its upper end, lying level; gravity pulls its middle down.
+/// let rod = Inertia { inverse_mass: 0.5, inverse_moment: 6.0 };
+/// let mut held = HeldRows::default();
+/// held.set_structure(&[rod], &[[Some(0), None]; 2]);
+/// let dependent = held.factorize(&[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, -0.5, 0.0, 0.0, 0.0]]);
+/// assert_eq!(dependent, 0);
+/// let mut force = [0.0; 2];
+/// held.solve(&[0.0, -9.81], &mut force);
+/// assert!((force[1] - 2.0 * 9.81 / 4.0).abs() < 1e-14);
+/// let mut change = [[0.0, -9.81, 0.0]];
+/// held.respond(&force, &mut change);
+/// assert!((change[0][1] + 0.75 * 9.81).abs() < 1e-14);
+/// ```
+#[derive(Clone, Debug)]
+pub struct HeldRows {
+    dependence: f64,
+    order: RowOrder,
+    /// Where each row's bodies begin in `column`, for the order.
+    start: Vec<usize>,
+    column: Vec<u32>,
+    body_count: usize,
+    // From here on by place in that order.
+    /// The movable bodies of each row; a body on both sides is named once.
+    bodies: Vec<[u32; 2]>,
+    /// Roots of the inverse masses of each row's coefficients.
+    root: Vec<[f64; 6]>,
+    /// Earlier rows that share a body, and where each row's begin.
+    shared: Vec<Shared>,
+    shared_start: Vec<usize>,
+    /// First column of each row of the factor, and where the row begins in `factor`.
+    first: Vec<usize>,
+    begin: Vec<usize>,
+    /// L without its diagonal, row by row.
+    factor: Vec<f64>,
+    /// 1/D; 0 for a row that depends on earlier ones.
+    inverse_pivot: Vec<f64>,
+    /// Ĵ = J M^(-1/2).
+    jacobian: Vec<[f64; 6]>,
+    work: Vec<f64>,
+    /// A motion of the bodies, in units of M^(1/2).
+    motion: Vec<[f64; 3]>,
+    /// Last place with a given body and side, and the one before each.
+    head: Vec<u32>,
+    previous: Vec<u32>,
+}
+
+/// An earlier row on a common body, with the first coefficients of that body in both rows.
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    place: u32,
+    own: u8,
+    theirs: u8,
+}
+
+impl Default for HeldRows {
+    fn default() -> Self {
+        Self::new(&Settings::default())
+    }
+}
+
+impl HeldRows {
+    /// No rows yet; of the settings `dependence` is used.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            dependence: settings.dependence,
+            order: RowOrder::default(),
+            start: Vec::new(),
+            column: Vec::new(),
+            body_count: 0,
+            bodies: Vec::new(),
+            root: Vec::new(),
+            shared: Vec::new(),
+            shared_start: Vec::new(),
+            first: Vec::new(),
+            begin: Vec::new(),
+            factor: Vec::new(),
+            inverse_pivot: Vec::new(),
+            jacobian: Vec::new(),
+            work: Vec::new(),
+            motion: Vec::new(),
+            head: Vec::new(),
+            previous: Vec::new(),
+        }
+    }
+
+    /// Other bodies and rows: which two bodies (index into `inertia`; None: immovable) each row acts on. Orders the rows
+    /// for small fill.
+    ///
+    /// # Panics
+    ///
+    /// If a row names a body that does not exist.
+    pub fn set_structure(&mut self, inertia: &[Inertia], rows: &[[Option<u32>; 2]]) {
+        self.body_count = inertia.len();
+        self.find_order(inertia, rows);
+        self.bodies.clear();
+        self.root.clear();
+        for place in 0..rows.len() {
+            let sides = movable(inertia, rows[self.order.rows[place] as usize]);
+            self.root.push(roots(inertia, sides));
+            // The coefficients of a body on both sides add up on the first.
+            self.bodies.push(if sides[0] == sides[1] { [sides[0], NONE] } else { sides });
+        }
+        self.list_shared();
+        self.lay_out();
+        self.jacobian.clear();
+        self.jacobian.resize(rows.len(), [0.0; 6]);
+        self.inverse_pivot.clear();
+        self.inverse_pivot.resize(rows.len(), 0.0);
+        self.work.clear();
+        self.work.resize(rows.len(), 0.0);
+        self.motion.clear();
+        self.motion.resize(self.body_count, [0.0; 3]);
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.root.len()
+    }
+
+    /// Whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.root.is_empty()
+    }
+
+    fn find_order(&mut self, inertia: &[Inertia], rows: &[[Option<u32>; 2]]) {
+        self.start.clear();
+        self.start.push(0);
+        self.column.clear();
+        for &row in rows {
+            self.column.extend(movable(inertia, row).into_iter().filter(|&body| body != NONE));
+            self.start.push(self.column.len());
+        }
+        self.order.prepare_narrow(&self.start, &self.column, inertia.len());
+    }
+
+    /// Lists the earlier rows that share a body with each.
+    fn list_shared(&mut self) {
+        self.head.clear();
+        self.head.resize(self.body_count, NONE);
+        self.previous.clear();
+        self.shared.clear();
+        self.shared_start.clear();
+        self.shared_start.push(0);
+        for sides in &self.bodies {
+            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
+                let mut at = self.head[body as usize];
+                while at != NONE {
+                    let (place, theirs) = (at / 2, 3 * (at % 2) as u8);
+                    self.shared.push(Shared { place, own: 3 * side as u8, theirs });
+                    at = self.previous[at as usize];
+                }
+            }
+            for (side, &body) in sides.iter().enumerate() {
+                let at = self.previous.len() as u32;
+                debug_assert_eq!(at % 2, side as u32);
+                self.previous.push(if body == NONE { NONE } else { self.head[body as usize] });
+                if body != NONE {
+                    self.head[body as usize] = at;
+                }
+            }
+            self.shared_start.push(self.shared.len());
+        }
+    }
+
+    /// Finds the envelope of the factor.
+    fn lay_out(&mut self) {
+        self.first.clear();
+        self.begin.clear();
+        let mut end = 0;
+        for place in 0..self.bodies.len() {
+            let shared = &self.shared[self.shared_start[place]..self.shared_start[place + 1]];
+            let first = shared.iter().fold(place, |first, other| first.min(other.place as usize));
+            self.first.push(first);
+            self.begin.push(end);
+            end += place - first;
+        }
+        self.factor.clear();
+        self.factor.resize(end, 0.0);
+    }
+
+    /// New coefficients (primary x, y \[1\], rotation \[m\], normal the same) of every row. Returns how many rows depend on
+    /// others, which take no force.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one set of coefficients per row.
+    pub fn factorize(&mut self, jacobians: &[[f64; 6]]) -> usize {
+        assert_eq!(jacobians.len(), self.len(), "coefficients of every row");
+        let mut dependent = 0;
+        for place in 0..self.len() {
+            let coefficients = &jacobians[self.order.rows[place] as usize];
+            let diagonal = self.scale_row(place, coefficients);
+            let mut left = diagonal - self.eliminate(place);
+            if left <= DOUBTFUL * diagonal {
+                left = self.measure_rest(place);
+            }
+            let independent = left > self.dependence * diagonal;
+            self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
+            dependent += usize::from(!independent);
+        }
+        dependent
+    }
+
+    /// Sets a row of Ĵ and returns its square.
+    fn scale_row(&mut self, place: usize, coefficients: &[f64; 6]) -> f64 {
+        let root = &self.root[place];
+        let mut row: [f64; 6] = std::array::from_fn(|k| coefficients[k] * root[k]);
+        if self.bodies[place][1] == NONE {
+            row = [row[0] + row[3], row[1] + row[4], row[2] + row[5], 0.0, 0.0, 0.0];
+        }
+        self.jacobian[place] = row;
+        (row[0] * row[0] + row[1] * row[1] + row[2] * row[2])
+            + (row[3] * row[3] + row[4] * row[4] + row[5] * row[5])
+    }
+
+    /// Computes a row of L; returns the part of the row's square that earlier rows account for.
+    fn eliminate(&mut self, place: usize) -> f64 {
+        let (first, begin) = (self.first[place], self.begin[place]);
+        let (before, rest) = self.factor.split_at_mut(begin);
+        let row = &mut rest[..place - first];
+        row.fill(0.0);
+        let own = &self.jacobian[place];
+        for shared in &self.shared[self.shared_start[place]..self.shared_start[place + 1]] {
+            let (p, q) = (shared.own as usize, shared.theirs as usize);
+            let theirs = &self.jacobian[shared.place as usize];
+            row[shared.place as usize - first] +=
+                own[p] * theirs[q] + own[p + 1] * theirs[q + 1] + own[p + 2] * theirs[q + 2];
+        }
+        // Row i of L D by a forward substitution, u_j = A_ij - sum over k < j of L_jk u_k.
+        for j in first + 1..place {
+            let from = self.first[j].max(first);
+            let theirs = &before[self.begin[j] + from - self.first[j]..self.begin[j] + j - self.first[j]];
+            row[j - first] -= dot(theirs, &row[from - first..j - first]);
+        }
+        let mut square = 0.0;
+        for (entry, inverse) in row.iter_mut().zip(&self.inverse_pivot[first..place]) {
+            let scaled = *entry * inverse;
+            square += *entry * scaled;
+            *entry = scaled;
+        }
+        square
+    }
+
+    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|². That has
+    /// the rounding of the difference, squared, where the difference of squares has that of the squares, times what
+    /// earlier small pivots make of it.
+    fn measure_rest(&mut self, place: usize) -> f64 {
+        let first = self.first[place];
+        self.work[first..place].copy_from_slice(&self.factor[self.begin[place]..][..place - first]);
+        for k in (first..place).rev() {
+            let share = self.work[k];
+            let from = self.first[k].max(first);
+            let row = &self.factor[self.begin[k] + from - self.first[k]..self.begin[k] + k - self.first[k]];
+            for (out, entry) in self.work[from..k].iter_mut().zip(row) {
+                *out -= share * entry;
+            }
+        }
+        self.motion.fill([0.0; 3]);
+        self.push(place, 1.0);
+        for k in first..place {
+            self.push(k, -self.work[k]);
+        }
+        self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum()
+    }
+
+    /// Adds a multiple of a row of Ĵ to the motion.
+    fn push(&mut self, place: usize, share: f64) {
+        let row = &self.jacobian[place];
+        for (side, &body) in self.bodies[place].iter().enumerate().filter(|(_, body)| **body != NONE) {
+            for (out, entry) in self.motion[body as usize].iter_mut().zip(&row[3 * side..]) {
+                *out += share * entry;
+            }
+        }
+    }
+
+    /// Finds the forces with A f = -b: those that hold all rows at a = A f + b = 0. Rows that depend on others have none;
+    /// their a is 0 as far as their b agrees.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one offset and one force per row.
+    pub fn solve(&mut self, offset: &[f64], force: &mut [f64]) {
+        assert_eq!(offset.len(), self.len(), "one offset per row");
+        assert_eq!(force.len(), self.len(), "one force per row");
+        let rows = &self.order.rows;
+        let work = &mut self.work;
+        for place in 0..work.len() {
+            let (first, begin) = (self.first[place], self.begin[place]);
+            let row = &self.factor[begin..begin + place - first];
+            work[place] = -offset[rows[place] as usize] - dot(row, &work[first..place]);
+        }
+        for (value, inverse) in work.iter_mut().zip(&self.inverse_pivot) {
+            *value *= inverse;
+        }
+        for place in (0..work.len()).rev() {
+            let (first, begin) = (self.first[place], self.begin[place]);
+            let value = work[place];
+            force[rows[place] as usize] = value;
+            let row = &self.factor[begin..begin + place - first];
+            for (out, entry) in work[first..place].iter_mut().zip(row) {
+                *out -= value * entry;
+            }
+        }
+    }
+
+    /// Adds to the accelerations (x, y, rotation) of every body what the forces change: M⁻¹ Jᵀ f.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one force per row and one acceleration per body.
+    pub fn respond(&self, force: &[f64], change: &mut [[f64; 3]]) {
+        assert_eq!(force.len(), self.len(), "one force per row");
+        assert_eq!(change.len(), self.body_count, "one acceleration per body");
+        for (place, sides) in self.bodies.iter().enumerate() {
+            let push = force[self.order.rows[place] as usize];
+            let (row, root) = (&self.jacobian[place], &self.root[place]);
+            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
+                let out = &mut change[body as usize];
+                for k in 0..3 {
+                    out[k] += root[3 * side + k] * row[3 * side + k] * push;
+                }
+            }
+        }
+    }
+
+    /// Whether a row depends on others, by the last [`factorize`](Self::factorize).
+    #[must_use]
+    pub fn is_dependent(&self, row: usize) -> bool {
+        let place = self.order.rows.iter().position(|&other| other as usize == row);
+        place.is_some_and(|place| self.inverse_pivot[place] == 0.0)
+    }
+}
+
+/// The bodies of a row that can move, each once.
+fn movable(inertia: &[Inertia], sides: [Option<u32>; 2]) -> [u32; 2] {
+    sides.map(|side| match side {
+        Some(body) if inertia[body as usize].inverse_mass > 0.0 => body,
+        Some(body) if inertia[body as usize].inverse_moment > 0.0 => body,
+        _ => NONE,
+    })
+}
+
+/// Roots of the inverse masses on both sides, 0 on an immovable one.
+fn roots(inertia: &[Inertia], sides: [u32; 2]) -> [f64; 6] {
+    let [a, b] = sides.map(|body| {
+        let rest = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let Inertia { inverse_mass, inverse_moment } =
+            if body == NONE { rest } else { inertia[body as usize] };
+        [inverse_mass.sqrt(), inverse_mass.sqrt(), inverse_moment.sqrt()]
+    });
+    [a[0], a[1], a[2], b[0], b[1], b[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const INERTIA: Inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+
+    /// A = J M⁻¹ Jᵀ and M⁻¹ Jᵀ f the plain way.
+    fn accelerations(
+        inertia: &[Inertia],
+        rows: &[[Option<u32>; 2]],
+        jacobians: &[[f64; 6]],
+        force: &[f64],
+    ) -> (Vec<[f64; 3]>, Vec<f64>) {
+        let mut change = vec![[0.0; 3]; inertia.len()];
+        let entries = |row: usize| {
+            (0..6).filter_map(move |k| Some((rows[row][k / 3]? as usize, k % 3, jacobians[row][k])))
+        };
+        for (row, push) in force.iter().enumerate() {
+            for (body, k, coefficient) in entries(row) {
+                let weight = if k < 2 { inertia[body].inverse_mass } else { inertia[body].inverse_moment };
+                change[body][k] += weight * coefficient * push;
+            }
+        }
+        let rate = |row| entries(row).map(|(body, k, coefficient)| coefficient * change[body][k]).sum();
+        let rates = (0..rows.len()).map(rate).collect();
+        (change, rates)
+    }
+
+    /// Solves and compares with the plain products. The offsets must be those of some motion, so that dependent rows
+    /// agree. Returns how many rows are dependent.
+    fn check(
+        inertia: &[Inertia],
+        rows: &[[Option<u32>; 2]],
+        jacobians: &[[f64; 6]],
+        offset: &[f64],
+    ) -> usize {
+        let mut held = HeldRows::default();
+        held.set_structure(inertia, rows);
+        let dependent = held.factorize(jacobians);
+        let mut force = vec![f64::NAN; rows.len()];
+        held.solve(offset, &mut force);
+        let (expected, rates) = accelerations(inertia, rows, jacobians, &force);
+        let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
+        for row in 0..rows.len() {
+            // Dependent rows are taken as such with up to a root of the threshold left of them.
+            let rounding = if held.is_dependent(row) { 1e-4 } else { 1e-11 };
+            let left = rates[row] + offset[row];
+            assert!(
+                left.abs() <= rounding * largest,
+                "row {row} of {}: {left}, forces {largest}",
+                rows.len()
+            );
+            assert!(!held.is_dependent(row) || force[row] == 0.0);
+        }
+        assert_eq!((0..rows.len()).filter(|&row| held.is_dependent(row)).count(), dependent);
+        let mut change = vec![[0.0; 3]; inertia.len()];
+        held.respond(&force, &mut change);
+        for (p, q) in change.iter().zip(&expected) {
+            assert!((0..3).all(|k| (p[k] - q[k]).abs() <= 1e-12 * largest));
+        }
+        dependent
+    }
+
+    /// The offsets that rows have when the bodies accelerate so.
+    fn offsets(rows: &[[Option<u32>; 2]], jacobians: &[[f64; 6]], motion: &[[f64; 3]]) -> Vec<f64> {
+        let sum = |(sides, row): (&[Option<u32>; 2], &[f64; 6])| {
+            (0..6).filter_map(|k| Some(row[k] * motion[sides[k / 3]? as usize][k % 3])).sum()
+        };
+        rows.iter().zip(jacobians).map(sum).collect()
+    }
+
+    /// Two rows that pin body to body at two arms.
+    fn pin(sides: [Option<u32>; 2], [p, q]: [[f64; 2]; 2]) -> ([[Option<u32>; 2]; 2], [[f64; 6]; 2]) {
+        ([sides; 2], [[1.0, 0.0, -p[1], -1.0, 0.0, q[1]], [0.0, 1.0, p[0], 0.0, -1.0, -q[0]]])
+    }
+
+    #[test]
+    fn a_chain_has_a_narrow_factor_in_any_order() {
+        let links = 20;
+        let mut joints: Vec<_> =
+            (0..links).map(|k: u32| pin([Some(k), k.checked_sub(1)], [[-0.5, 0.1], [0.5, -0.1]])).collect();
+        joints.sort_by_key(|(rows, _)| rows[0][0].map(|body| body * 7 % 20));
+        let rows: Vec<_> = joints.iter().flat_map(|joint| joint.0).collect();
+        let jacobians: Vec<_> = joints.iter().flat_map(|joint| joint.1).collect();
+        let inertia = vec![INERTIA; links as usize];
+        let offset: Vec<f64> = (0..2 * links).map(|k| f64::from(k % 3) - 9.81).collect();
+        assert_eq!(check(&inertia, &rows, &jacobians, &offset), 0);
+        let mut held = HeldRows::default();
+        held.set_structure(&inertia, &rows);
+        assert!(held.factor.len() <= 3 * rows.len(), "{} entries", held.factor.len());
+    }
+
+    #[test]
+    fn the_third_contact_under_a_block_takes_no_force() {
+        let corner = |arm| [0.0, 1.0, arm, 0.0, 0.0, 0.0];
+        let jacobians = [corner(-0.5), corner(0.1), corner(0.5)];
+        assert_eq!(check(&[INERTIA], &[[Some(0), None]; 3], &jacobians, &[-9.81; 3]), 1);
+    }
+
+    #[test]
+    fn rows_without_a_movable_body_take_no_force() {
+        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let jacobians = [[1.0, 0.0, 0.0, -1.0, 0.0, 0.0]; 2];
+        assert_eq!(
+            check(&[fixed, INERTIA], &[[Some(0), None], [Some(0), Some(1)]], &jacobians, &[0.0, 1.0]),
+            1
+        );
+    }
+
+    #[test]
+    fn a_body_on_both_sides_counts_once() {
+        let jacobians = [[1.0, 0.5, 0.3, -0.2, 1.0, 0.4]];
+        assert_eq!(check(&[INERTIA], &[[Some(0), Some(0)]], &jacobians, &[2.0]), 0);
+    }
+
+    #[test]
+    fn another_structure_can_follow() {
+        let mut held = HeldRows::default();
+        for count in [3usize, 1, 5] {
+            let rows: Vec<_> = (0..count).map(|k| [Some(k as u32), None]).collect();
+            held.set_structure(&vec![INERTIA; count], &rows);
+            assert_eq!(held.len(), count);
+            assert_eq!(held.factorize(&vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; count]), 0);
+            let mut force = vec![0.0; count];
+            held.solve(&vec![-0.8; count], &mut force);
+            assert!(force.iter().all(|f| (f - 1.0).abs() < 1e-15));
+        }
+    }
+
+    fn any_body() -> impl Strategy<Value = Inertia> {
+        (0.1..10.0f64, 0.1..10.0f64, 0..8).prop_map(|(inverse_mass, inverse_moment, kind)| match kind {
+            0 => Inertia { inverse_mass: 0.0, inverse_moment: 0.0 },
+            _ => Inertia { inverse_mass, inverse_moment },
+        })
+    }
+
+    /// Pins: a tree, some loops, some of them twice.
+    fn any_linkage()
+    -> impl Strategy<Value = (Vec<Inertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>)> {
+        let arms = prop::array::uniform2(prop::array::uniform2(-1.0..1.0f64));
+        let joint = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), arms, 0..6);
+        let bodies = 1..25usize;
+        (bodies, 0..4usize).prop_flat_map(move |(bodies, loops)| {
+            let movers = prop::collection::vec(any_body(), bodies);
+            let motion = prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), bodies);
+            let joints = prop::collection::vec(joint.clone(), bodies + loops);
+            (movers, joints, motion).prop_map(|(movers, joints, motion)| {
+                let (mut rows, mut jacobians) = (Vec::new(), Vec::new());
+                for (k, (one, other, arms, kind)) in joints.iter().enumerate() {
+                    let first = if k < movers.len() { k } else { one.index(movers.len()) };
+                    let second = if first == 0 { None } else { Some(other.index(first) as u32) };
+                    let (sides, pair) = pin([Some(first as u32), second], *arms);
+                    for _ in 0..if *kind == 0 { 2 } else { 1 } {
+                        rows.extend(sides);
+                        jacobians.extend(pair);
+                    }
+                }
+                let moves = |body: usize| f64::from(u8::from(movers[body].inverse_mass > 0.0));
+                let motion = (0..movers.len()).map(|body| motion[body].map(|v| v * moves(body))).collect();
+                (movers, rows, jacobians, motion)
+            })
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn linkages_with_loops_and_doubled_joints_are_held((inertia, rows, jacobians, motion) in any_linkage()) {
+            let offset = offsets(&rows, &jacobians, &motion);
+            let dependent = check(&inertia, &rows, &jacobians, &offset);
+            let movable = inertia.iter().filter(|body| body.inverse_mass > 0.0).count();
+            prop_assert!(rows.len() - dependent <= 3 * movable);
+        }
+    }
+}

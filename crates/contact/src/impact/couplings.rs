@@ -1,0 +1,68 @@
+//! The Delassus matrix A = J M^-1 J^T (n, n) [1/kg] of an impact's rows, row by row.
+//!
+//! Only rows that share a movable body have an entry: in a pile each row has a few, however many rows there are.
+
+use crate::row::CollisionRow;
+
+/// Stands for a body that nothing moves.
+const NONE: u32 = u32::MAX;
+
+/// Entries of A, each row's in ascending order of column.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Couplings {
+    /// Where each row's entries begin in `entries`, and where the last row's end.
+    start: Vec<usize>,
+    /// Column and value.
+    entries: Vec<(u32, f64)>,
+    diagonal: Vec<f64>,
+    /// The movable bodies of each row.
+    bodies: Vec<[u32; 2]>,
+}
+
+impl Couplings {
+    /// Forms the matrix anew.
+    pub(super) fn set_rows(&mut self, rows: &[CollisionRow]) {
+        self.bodies.clear();
+        self.bodies
+            .extend(rows.iter().map(|row| row.movable_bodies().map(|body| body.map_or(NONE, |id| id.0))));
+        self.start.clear();
+        self.start.push(0);
+        self.entries.clear();
+        self.diagonal.clear();
+        for (i, row) in rows.iter().enumerate() {
+            for (j, other) in rows.iter().enumerate() {
+                if share(self.bodies[i], self.bodies[j]) {
+                    self.entries.push((j as u32, row.coupling(other)));
+                }
+            }
+            self.start.push(self.entries.len());
+            self.diagonal.push(row.coupling(row));
+        }
+    }
+
+    /// The rows that an impulse along this one moves, with the change of their rates per impulse.
+    pub(super) fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.entries[self.start[row]..self.start[row + 1]]
+            .iter()
+            .map(|&(other, value)| (other as usize, value))
+    }
+
+    /// Change of a row's own rate per impulse; 0 if neither of its bodies can move.
+    pub(super) fn diagonal(&self, row: usize) -> f64 {
+        self.diagonal[row]
+    }
+
+    /// Change of a row's rate per impulse along another.
+    pub(super) fn between(&self, row: usize, other: usize) -> f64 {
+        self.row(row).find(|&(column, _)| column == other).map_or(0.0, |(_, value)| value)
+    }
+
+    /// True if the rows act on a common body that can move.
+    pub(super) fn share_body(&self, row: usize, other: usize) -> bool {
+        share(self.bodies[row], self.bodies[other])
+    }
+}
+
+fn share(p: [u32; 2], q: [u32; 2]) -> bool {
+    p.iter().any(|&body| body != NONE && (body == q[0] || body == q[1]))
+}

@@ -1,0 +1,171 @@
+//! More rows than there are closed forms for, by the dual active-set method.
+
+use super::Impact;
+use super::couplings::Couplings;
+use super::law::ImpactError;
+use crate::dual_active_set::DualActiveSet;
+use crate::error::SolveError;
+use crate::matrix::{Matrix, SparseMatrix};
+use crate::problem::Problem;
+use crate::settings::{Contradiction, Settings};
+use crate::solution::Solution;
+use crate::solver::Solver;
+
+/// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the impact's
+/// fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak beside the speeds of its
+/// bodies, or when ricochets have become weak.
+const CONTRADICTION: f64 = 1e-3;
+
+/// Part of the impact's fastest rate by which nearly dependent rows may seem to contradict each other, through rounding of
+/// A: the least part of a row that the solver tells from none is a root of `Settings::dependence`.
+pub(super) const NEARLY: f64 = 1e-5;
+
+/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given.
+const RAISE: f64 = 1e-6;
+
+const OUTSIDE: u32 = u32::MAX;
+
+/// The problem of some rows of an impact, with its solver.
+#[derive(Clone, Debug)]
+pub(super) struct ManyRows {
+    solver: DualActiveSet,
+    /// `inconsistency` of the solver when nothing asks for more.
+    inconsistency: f64,
+    problem: Problem,
+    solution: Solution,
+    /// Place of each row of the impact in the problem, or `OUTSIDE`.
+    place: Vec<u32>,
+    /// max |b/s|, the unit in which the solver measures contradictions.
+    scale: f64,
+}
+
+impl Default for ManyRows {
+    fn default() -> Self {
+        let settings = Settings { contradiction: Contradiction::LeastSquares, ..Settings::default() };
+        let mut problem = Problem::new();
+        problem.matrix = Matrix::Symmetric(SparseMatrix::new());
+        Self {
+            solver: DualActiveSet::new(settings).expect("the default settings are usable"),
+            inconsistency: settings.inconsistency,
+            problem,
+            solution: Solution::new(),
+            place: Vec::new(),
+            scale: 0.0,
+        }
+    }
+}
+
+impl ManyRows {
+    /// Loads the entries of A between the rows of an ascending set.
+    fn load_matrix(&mut self, set: &[usize], couplings: &Couplings, rows: usize) {
+        self.place.clear();
+        self.place.resize(rows, OUTSIDE);
+        for (place, &row) in set.iter().enumerate() {
+            self.place[row] = place as u32;
+        }
+        let Matrix::Symmetric(matrix) = &mut self.problem.matrix else { return };
+        matrix.start.truncate(1);
+        matrix.column.clear();
+        matrix.value.clear();
+        for &row in set {
+            for (other, value) in couplings.row(row).filter(|&(other, _)| self.place[other] != OUTSIDE) {
+                matrix.column.push(self.place[other] as usize);
+                matrix.value.push(value);
+            }
+            matrix.start.push(matrix.column.len());
+        }
+    }
+
+    /// Raises the diagonal of A, so that there is one answer whatever the rows. It lacks a part `RAISE` of what it should
+    /// do to the rates, which the next round makes good, and it takes no less energy.
+    fn raise(&mut self) {
+        let Matrix::Symmetric(matrix) = &mut self.problem.matrix else { return };
+        for row in 0..matrix.rows() {
+            for e in matrix.start[row]..matrix.start[row + 1] {
+                if matrix.column[e] == row {
+                    matrix.value[e] *= 1.0 + RAISE;
+                }
+            }
+        }
+    }
+}
+
+impl Impact {
+    /// Solves the rows of an ascending set of any length, each to reach its target rate, and applies the impulses.
+    pub(super) fn solve_many(&mut self, set: &[usize]) -> Result<(), ImpactError> {
+        let mut many = self.scratch.many.take().unwrap_or_default();
+        let outcome = self.solve_with(&mut many, set);
+        self.scratch.many = Some(many);
+        outcome
+    }
+
+    fn solve_with(&mut self, many: &mut ManyRows, set: &[usize]) -> Result<(), ImpactError> {
+        many.load_matrix(set, &self.couplings, self.rows.len());
+        self.load_rates(many, set);
+        self.solves += 1;
+        if let Err(error) = many.solver.solve(&many.problem, &mut many.solution) {
+            if self.is_weak(set) {
+                return Ok(());
+            }
+            let error = self.explain(error, many, set);
+            if matches!(error, ImpactError::Infeasible { contradiction, .. } if contradiction > NEARLY * self.fastest)
+            {
+                return Err(error);
+            }
+            many.raise();
+            many.solver.solve(&many.problem, &mut many.solution).map_err(|_| error)?;
+        }
+        let left = many.solution.inconsistency * many.scale;
+        for (place, &row) in set.iter().enumerate() {
+            let impulse = many.solution.force[place];
+            self.noise = self.noise.max(left * self.length(row));
+            if impulse != 0.0 {
+                self.apply(row, if self.rows[row].bilateral { impulse } else { impulse.max(0.0) });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all that is wanted is so little that it may be rounding of the bodies' speeds. Then it is left.
+    fn is_weak(&mut self, set: &[usize]) -> bool {
+        let wanted = |&row: &usize| (self.rates[row] - self.scratch.targets[row]).abs();
+        let largest = set.iter().map(wanted).fold(0.0, f64::max);
+        let weak = set.iter().all(|&row| largest <= CONTRADICTION * self.rows[row].velocity_tol);
+        if weak {
+            self.noise = self.noise.max(largest);
+        }
+        weak
+    }
+
+    fn explain(&self, error: SolveError, many: &ManyRows, set: &[usize]) -> ImpactError {
+        if let SolveError::Infeasible(proof) = error {
+            let row = set[proof.row];
+            let contradiction = proof.contradiction * many.scale * self.length(row);
+            return ImpactError::Infeasible { row, contradiction };
+        }
+        ImpactError::Unsolved { rows: set.len(), residuals: many.solution.residuals }
+    }
+
+    /// Loads what each row lacks to its target, and by how much rows may contradict each other.
+    fn load_rates(&self, many: &mut ManyRows, set: &[usize]) {
+        many.problem.offset.clear();
+        many.problem.bilateral.clear();
+        many.scale = 0.0;
+        let mut allowed = 0.0f64;
+        for &row in set {
+            let (b, length) = (self.rates[row] - self.scratch.targets[row], self.length(row));
+            many.problem.offset.push(b);
+            many.problem.bilateral.push(self.rows[row].bilateral);
+            many.scale = many.scale.max((b / length).abs());
+            let slow = CONTRADICTION * self.rows[row].velocity_tol;
+            allowed = allowed.max((slow + self.noise + many.inconsistency * self.fastest) / length);
+        }
+        let relative = if many.scale > 0.0 { allowed / many.scale } else { 0.0 };
+        many.solver.settings.inconsistency = many.inconsistency.max(relative);
+    }
+
+    /// s = sqrt(A_ii) [1/sqrt(kg)] of a row, by which the solver measures it.
+    fn length(&self, row: usize) -> f64 {
+        self.couplings.diagonal(row).sqrt()
+    }
+}

@@ -1,0 +1,144 @@
+//! Rows solved in one problem.
+
+use super::Impact;
+use super::law::ImpactError;
+use super::pair_problem::{solve_one, solve_two};
+use super::patience::Patience;
+
+impl Impact {
+    /// Makes the bilateral rows fit, alone and without elasticity, if one does not.
+    ///
+    /// After that impulses of a problem in which they are held do no work along them; a rate left in one could add
+    /// energy where the elasticity of a contact drives it on.
+    pub(super) fn settle_connectors(&mut self, small: f64) -> Result<(), ImpactError> {
+        if !(0..self.rows.len()).any(|row| self.rows[row].bilateral && self.is_violated(row, small)) {
+            return Ok(());
+        }
+        let mut set = std::mem::take(&mut self.scratch.set);
+        set.clear();
+        set.extend((0..self.rows.len()).filter(|&row| self.rows[row].bilateral && self.can_move(row)));
+        self.aim_at_rest();
+        let outcome = self.solve_together(&set);
+        self.scratch.set = set;
+        outcome
+    }
+
+    /// Problems of all rows: each that closes is to rebound, rows at rest and bilateral ones are held.
+    ///
+    /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it then closes, it
+    /// is solved in the next round, with all others that do.
+    pub(super) fn solve_all(&mut self, small: f64, patience: &mut Patience) -> Result<(), ImpactError> {
+        let mut set = std::mem::take(&mut self.scratch.set);
+        let mut outcome = Ok(());
+        while outcome.is_ok() && self.is_any_violated(patience.small()) {
+            self.list_held(&mut set, small);
+            outcome = self.rebound_together(&set);
+            if !patience.spend(set.len()) {
+                break;
+            }
+        }
+        self.scratch.set = set;
+        outcome
+    }
+
+    /// One problem without elasticity of the rows that close or rest; as long as others are driven to close, with these
+    /// too. Without elasticity it is the nearest admissible motion that is found, and no row need stay out.
+    pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
+        self.aim_at_rest();
+        self.scratch.rates.clone_from(&self.rates);
+        self.scratch.impulses.clone_from(&self.impulses);
+        let mut set = std::mem::take(&mut self.scratch.set);
+        self.list_held(&mut set, small);
+        let outcome = loop {
+            if let Err(error) = self.solve_together(&set) {
+                break Err(error);
+            }
+            let count = set.len();
+            for row in 0..self.rows.len() {
+                if self.is_violated(row, small) && set[..count].binary_search(&row).is_err() {
+                    set.push(row);
+                }
+            }
+            if set.len() == count {
+                break Ok(());
+            }
+            set.sort_unstable();
+            self.rates.clone_from(&self.scratch.rates);
+            self.impulses.clone_from(&self.scratch.impulses);
+        };
+        self.scratch.set = set;
+        outcome
+    }
+
+    /// Lists the rows that close or rest, and the bilateral ones.
+    fn list_held(&self, set: &mut Vec<usize>, small: f64) {
+        let limit = self.rest(small);
+        let is_held =
+            |&row: &usize| (self.rows[row].bilateral || self.rates[row] <= limit) && self.can_move(row);
+        set.clear();
+        set.extend((0..self.rows.len()).filter(is_held));
+    }
+
+    /// Solves the rows of an ascending set together, each that closes to rebound.
+    ///
+    /// Rows that hardly open are held as if they rested. Where others depend on them and leave no room to rebound into, as
+    /// in a wedge, all are stopped.
+    pub(super) fn rebound_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
+        self.aim_at_rebounds();
+        self.solve_together(set).or_else(|_| {
+            self.aim_at_rest();
+            self.solve_together(set)
+        })
+    }
+
+    /// Sets each row's target to its rebound from the rate that it has now; bilateral rows are to rest.
+    pub(super) fn aim_at_rebounds(&mut self) {
+        let rows = self.rows.iter().zip(&self.rates);
+        self.scratch.targets.clear();
+        self.scratch.targets.extend(rows.map(|(row, &rate)| {
+            let rebounds = !row.bilateral && -rate > row.velocity_tol;
+            if rebounds { row.elasticity * -rate } else { 0.0 }
+        }));
+    }
+
+    /// Sets each row's target to rest.
+    fn aim_at_rest(&mut self) {
+        self.scratch.targets.clear();
+        self.scratch.targets.resize(self.rows.len(), 0.0);
+    }
+
+    /// Solves one row to reach a rate, and applies the impulse.
+    pub(super) fn solve_alone(&mut self, row: usize, target: f64) {
+        let b = self.rates[row] - target;
+        let impulse = solve_one(self.couplings.diagonal(row), b, self.rows[row].bilateral);
+        self.solves += 1;
+        self.apply(row, impulse);
+    }
+
+    /// Solves the rows of an ascending set together, each to reach its target rate, and applies the impulses.
+    pub(super) fn solve_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
+        match *set {
+            [] => Ok(()),
+            [row] => {
+                self.solve_alone(row, self.scratch.targets[row]);
+                Ok(())
+            }
+            [first, second] => self.solve_pair(first, second),
+            _ => self.solve_many(set),
+        }
+    }
+
+    fn solve_pair(&mut self, first: usize, second: usize) -> Result<(), ImpactError> {
+        let couplings = &self.couplings;
+        let a = [couplings.diagonal(first), couplings.between(first, second), couplings.diagonal(second)];
+        let b = [first, second].map(|row| self.rates[row] - self.scratch.targets[row]);
+        let bilateral = [first, second].map(|row| self.rows[row].bilateral);
+        let Some(impulses) = solve_two(a, b, bilateral) else {
+            return self.solve_many(&[first, second]);
+        };
+        self.solves += 1;
+        self.apply(first, impulses[0]);
+        self.apply(second, impulses[1]);
+        Ok(())
+    }
+}
