@@ -218,14 +218,17 @@ impl HeldRows {
     pub fn factorize(&mut self, jacobians: &[[f64; 6]]) -> usize {
         assert_eq!(jacobians.len(), self.len(), "coefficients of every row");
         let mut dependent = 0;
+        let mut nearly = false;
         for place in 0..self.len() {
             let coefficients = &jacobians[self.order.rows[place] as usize];
             let diagonal = self.scale_row(place, coefficients);
             let mut left = diagonal - self.eliminate(place);
-            if left <= DOUBTFUL * diagonal {
+            if nearly || left <= DOUBTFUL * diagonal {
                 left = self.measure_rest(place);
             }
             let independent = left > self.dependence * diagonal;
+            // A small pivot enlarges the rounding of all that follows.
+            nearly |= independent && left <= DOUBTFUL * diagonal;
             self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
             dependent += usize::from(!independent);
         }
@@ -277,19 +280,19 @@ impl HeldRows {
     /// earlier small pivots make of it.
     fn measure_rest(&mut self, place: usize) -> f64 {
         let first = self.first[place];
+        self.work[..first].fill(0.0);
         self.work[first..place].copy_from_slice(&self.factor[self.begin[place]..][..place - first]);
-        for k in (first..place).rev() {
-            let share = self.work[k];
-            let from = self.first[k].max(first);
-            let row = &self.factor[self.begin[k] + from - self.first[k]..self.begin[k] + k - self.first[k]];
-            for (out, entry) in self.work[from..k].iter_mut().zip(row) {
-                *out -= share * entry;
-            }
-        }
         self.motion.fill([0.0; 3]);
         self.push(place, 1.0);
-        for k in first..place {
-            self.push(k, -self.work[k]);
+        for k in (0..place).rev() {
+            let share = self.work[k];
+            if share != 0.0 {
+                self.push(k, -share);
+                let row = &self.factor[self.begin[k]..][..k - self.first[k]];
+                for (out, entry) in self.work[self.first[k]..k].iter_mut().zip(row) {
+                    *out -= share * entry;
+                }
+            }
         }
         self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum()
     }
@@ -519,9 +522,11 @@ mod tests {
         })
     }
 
+    /// Bodies, their rows, the coefficients of these, and a motion of the bodies.
+    type Linkage = (Vec<Inertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>);
+
     /// Pins: a tree, some loops, some of them twice.
-    fn any_linkage()
-    -> impl Strategy<Value = (Vec<Inertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>)> {
+    fn any_linkage() -> impl Strategy<Value = Linkage> {
         let arms = prop::array::uniform2(prop::array::uniform2(-1.0..1.0f64));
         let joint = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), arms, 0..6);
         let bodies = 1..25usize;

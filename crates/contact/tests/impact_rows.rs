@@ -192,8 +192,8 @@ proptest! {
         for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid] {
             let (once, impact) = resolve(law, &movers, &ties);
             let (doubled, _) = resolve(law, &movers, &twice);
-            // Of ricochets that are broken off the rows solved so far decide, and those are more.
-            if impact.solves() > 100 {
+            // Ricochets enlarge rounding, and where they are broken off depends on the number of rows.
+            if impact.solves() > 20 {
                 continue;
             }
             let scale = largest_impulse(&impact);
