@@ -14,6 +14,9 @@ use crate::problem::Inertia;
 use crate::settings::Settings;
 use crate::skyline::dot;
 
+/// Part of a row's square below which what earlier rows leave of it is measured with care.
+const DOUBTFUL: f64 = 1e-5;
+
 const NONE: u32 = u32::MAX;
 
 /// Rows held as equations, with the structure of their factor kept from solve to solve.
@@ -62,6 +65,8 @@ pub struct HeldRows {
     /// Ĵ = J M^(-1/2).
     jacobian: Vec<[f64; 6]>,
     work: Vec<f64>,
+    /// A motion of the bodies, in units of M^(1/2).
+    motion: Vec<[f64; 3]>,
     /// Last place with a given body and side, and the one before each.
     head: Vec<u32>,
     previous: Vec<u32>,
@@ -101,6 +106,7 @@ impl HeldRows {
             inverse_pivot: Vec::new(),
             jacobian: Vec::new(),
             work: Vec::new(),
+            motion: Vec::new(),
             head: Vec::new(),
             previous: Vec::new(),
         }
@@ -131,6 +137,8 @@ impl HeldRows {
         self.inverse_pivot.resize(rows.len(), 0.0);
         self.work.clear();
         self.work.resize(rows.len(), 0.0);
+        self.motion.clear();
+        self.motion.resize(self.body_count, [0.0; 3]);
     }
 
     /// Number of rows.
@@ -210,11 +218,17 @@ impl HeldRows {
     pub fn factorize(&mut self, jacobians: &[[f64; 6]]) -> usize {
         assert_eq!(jacobians.len(), self.len(), "coefficients of every row");
         let mut dependent = 0;
+        let mut nearly = false;
         for place in 0..self.len() {
             let coefficients = &jacobians[self.order.rows[place] as usize];
             let diagonal = self.scale_row(place, coefficients);
-            let left = diagonal - self.eliminate(place);
+            let mut left = diagonal - self.eliminate(place);
+            if nearly || left <= DOUBTFUL * diagonal {
+                left = self.measure_rest(place);
+            }
             let independent = left > self.dependence * diagonal;
+            // A small pivot enlarges the rounding of all that follows.
+            nearly |= independent && left <= DOUBTFUL * diagonal;
             self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
             dependent += usize::from(!independent);
         }
@@ -259,6 +273,38 @@ impl HeldRows {
             *entry = scaled;
         }
         square
+    }
+
+    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|². That has
+    /// the rounding of the difference, squared, where the difference of squares has that of the squares, times what
+    /// earlier small pivots make of it.
+    fn measure_rest(&mut self, place: usize) -> f64 {
+        let first = self.first[place];
+        self.work[..first].fill(0.0);
+        self.work[first..place].copy_from_slice(&self.factor[self.begin[place]..][..place - first]);
+        self.motion.fill([0.0; 3]);
+        self.push(place, 1.0);
+        for k in (0..place).rev() {
+            let share = self.work[k];
+            if share != 0.0 {
+                self.push(k, -share);
+                let row = &self.factor[self.begin[k]..][..k - self.first[k]];
+                for (out, entry) in self.work[self.first[k]..k].iter_mut().zip(row) {
+                    *out -= share * entry;
+                }
+            }
+        }
+        self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum()
+    }
+
+    /// Adds a multiple of a row of Ĵ to the motion.
+    fn push(&mut self, place: usize, share: f64) {
+        let row = &self.jacobian[place];
+        for (side, &body) in self.bodies[place].iter().enumerate().filter(|(_, body)| **body != NONE) {
+            for (out, entry) in self.motion[body as usize].iter_mut().zip(&row[3 * side..]) {
+                *out += share * entry;
+            }
+        }
     }
 
     /// Finds the forces with A f = -b: those that hold all rows at a = A f + b = 0. Rows that depend on others have none;
@@ -476,9 +522,11 @@ mod tests {
         })
     }
 
+    /// Bodies, their rows, the coefficients of these, and a motion of the bodies.
+    type Linkage = (Vec<Inertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>);
+
     /// Pins: a tree, some loops, some of them twice.
-    fn any_linkage()
-    -> impl Strategy<Value = (Vec<Inertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>)> {
+    fn any_linkage() -> impl Strategy<Value = Linkage> {
         let arms = prop::array::uniform2(prop::array::uniform2(-1.0..1.0f64));
         let joint = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), arms, 0..6);
         let bodies = 1..25usize;

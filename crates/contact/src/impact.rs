@@ -49,6 +49,8 @@ pub struct Impact {
     couplings: Couplings,
     /// Rate [m/s] that is rounding of the impulses so far, or what rows that contradict each other by rounding leave.
     noise: f64,
+    /// The fastest rate [m/s] that was to be changed.
+    fastest: f64,
     bound: f64,
     /// How many complementarity problems were solved.
     solves: u64,
@@ -88,6 +90,7 @@ impl Impact {
         self.impulses.resize(self.rows.len(), 0.0);
         self.couplings.set_rows(&self.rows);
         self.noise = 0.0;
+        self.fastest = 0.0;
         self.bound = 0.0;
         self.solves = 0;
     }
@@ -112,7 +115,8 @@ impl Impact {
     }
 
     /// Greatest closing speed, or rate of a bilateral row [m/s], that the impact may have left: 1e-12 of its fastest
-    /// rate, or the rounding of its impulses, or what rows that contradict each other by rounding leave.
+    /// rate, or the rounding of its impulses; where rows are so nearly dependent that rounding makes them contradict each
+    /// other, what that leaves, at most 1e-5 of that rate.
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.bound

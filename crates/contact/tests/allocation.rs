@@ -6,8 +6,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use halfgap_contact::{
-    Auto, BodyId, ContactKey, DualActiveSet, Inertia, Problem, ProximalNewton, Row, Solution, Solver,
-    WarmStart,
+    Auto, BodyId, CollisionRow, ContactKey, DualActiveSet, HeldRows, Impact, ImpactLaw, ImpactOrder, Inertia,
+    Problem, ProximalNewton, Row, Solution, Solver, WarmStart,
 };
 
 thread_local! {
@@ -74,4 +74,67 @@ fn a_warm_solve_of_known_size_allocates_nothing() {
         assert_eq!(allocations(&mut ProximalNewton::default(), boxes), 0, "proximal method, {boxes} boxes");
         assert_eq!(allocations(&mut Auto::default(), boxes), 0, "automatic choice, {boxes} boxes");
     }
+}
+
+/// The rows of a stack of boxes with two pins beside it, which closes at a speed that differs from step to step.
+fn impact_rows(boxes: u32, step: u32) -> impl Iterator<Item = CollisionRow> {
+    let world = halfgap_collision::BodyId::WORLD;
+    let inertia = |body: halfgap_collision::BodyId| {
+        let moves = f64::from(u8::from(!body.is_world()));
+        Inertia { inverse_mass: moves, inverse_moment: 12.0 * moves }
+    };
+    (0..2 * boxes).map(move |row| {
+        let upper = halfgap_collision::BodyId(row / 2);
+        let lower = if row < 2 { world } else { halfgap_collision::BodyId(row / 2 - 1) };
+        let arm = if row % 2 == 0 { -0.5 } else { 0.5 };
+        let rate = if row < 2 { -1.0 - 0.1 * f64::from(step % 3) } else { 0.0 };
+        let jacobian = [0.0, 1.0, arm, 0.0, -1.0, -arm];
+        let bilateral = row % 5 == 4;
+        CollisionRow::new([upper, lower], jacobian, [upper, lower].map(inertia), rate, 0.5, 1e-9, bilateral)
+    })
+}
+
+#[test]
+fn a_warm_impact_of_known_size_allocates_nothing() {
+    let laws =
+        [ImpactLaw::Simultaneous, ImpactLaw::Hybrid, ImpactLaw::SerialSeparate, ImpactLaw::SerialGrouped];
+    for law in laws {
+        let mut impact = Impact::new();
+        let mut before = 0;
+        for step in 0..12 {
+            if step == 6 {
+                before = COUNT.with(Cell::get);
+            }
+            impact.set_rows(impact_rows(10, step));
+            law.resolve(&mut impact, ImpactOrder::Fastest, 0).unwrap();
+            impact.set_rows(impact_rows(10, step));
+            impact.resolve_inelastic().unwrap();
+        }
+        assert_eq!(COUNT.with(Cell::get) - before, 0, "{law:?}");
+    }
+}
+
+#[test]
+fn held_rows_of_known_size_allocate_nothing() {
+    let inertia = [Inertia { inverse_mass: 1.0, inverse_moment: 12.0 }; 30];
+    let rows: Vec<[Option<u32>; 2]> =
+        (0..60u32).map(|row| [Some(row / 2), (row / 2).checked_sub(1)]).collect();
+    let arm = |row: usize| if row.is_multiple_of(2) { [1.0, 0.0, 0.1] } else { [0.0, 1.0, 0.5] };
+    let jacobians: Vec<[f64; 6]> = (0..60).map(arm).map(|[x, y, turn]| [x, y, turn, -x, -y, turn]).collect();
+    let (mut force, mut change) = ([0.0; 60], [[0.0; 3]; 30]);
+    let mut held = HeldRows::default();
+    let mut before = 0;
+    for step in 0..4 {
+        if step == 2 {
+            before = COUNT.with(Cell::get);
+        }
+        // Fewer rows in between, so that the structure is found anew.
+        for count in [60, 20] {
+            held.set_structure(&inertia, &rows[..count]);
+            held.factorize(&jacobians[..count]);
+            held.solve(&[-1.0; 60][..count], &mut force[..count]);
+            held.respond(&force[..count], &mut change);
+        }
+    }
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
 }

@@ -266,23 +266,6 @@ fn a_row_that_opens_is_not_held_by_force_in_a_simultaneous_impact() {
 }
 
 #[test]
-fn three_rows_at_once_are_too_many() {
-    let mover = |velocity| Mover { inverse: [1.0, 1.0, 2.0], velocity };
-    let movers = [mover([1.0, 0.0, 0.0]), mover([0.0; 3])];
-    let touch = |moment| Touch {
-        bodies: [0, 1],
-        angle: std::f64::consts::PI,
-        moments: [moment, moment],
-        elasticity: 1.0,
-    };
-    let touches = [touch(-0.1), touch(0.0), touch(0.1)];
-    for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid] {
-        let error = resolve(law, ImpactOrder::Fastest, &movers, &touches).expect_err("three rows close");
-        assert_eq!(error, ImpactError::TooManyRows { rows: 3, most: 2 });
-    }
-}
-
-#[test]
 fn a_closing_row_that_moves_nothing_is_an_error() {
     let wall = |velocity| Mover { inverse: [0.0; 3], velocity };
     let movers = [wall([1.0, 0.0, 0.0]), wall([0.0; 3])];

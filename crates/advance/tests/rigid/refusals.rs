@@ -4,7 +4,6 @@ use crate::box_of_bodies::*;
 use glam::DVec2;
 use halfgap_advance::rigid::{AdvanceError, Between};
 use halfgap_collision::BodyId;
-use halfgap_contact::ImpactError;
 
 #[test]
 fn a_ball_that_comes_to_rest_is_refused_with_bodies_and_time() {
@@ -28,23 +27,6 @@ fn a_ball_that_is_stopped_where_nothing_pulls_it_goes_on() {
     let state = states(&system, 5.0)[1];
     assert!((state.velocity - DVec2::new(0.5, 0.0)).length() < 1e-15);
     assert_eq!(system.counts().impacts, 1);
-}
-
-#[test]
-fn three_rows_at_once_are_refused_with_their_bodies() {
-    // A disc falls on three others at the same time.
-    let parts = [30.0f64, 150.0, 270.0].map(|angle| {
-        let place = DVec2::from_angle(angle.to_radians());
-        body(&disc(0.5), moving(place * 2.0, -place, 0.0))
-    });
-    let mut all = vec![body(&disc(0.5), moving(DVec2::ZERO, DVec2::ZERO, 0.0))];
-    all.extend(parts);
-    let mut system = system(all);
-    let error = advance(&mut system, 2.0).expect_err("three rows at once");
-    let AdvanceError::Impact { time, bodies, source } = error else { panic!("{error}") };
-    assert!((time - 1.0).abs() < 1e-9, "at {time} s");
-    assert_eq!(bodies, [0, 1, 2, 3]);
-    assert_eq!(source, ImpactError::TooManyRows { rows: 3, most: 2 });
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The impact laws, and what all of them share.
 
 use super::Impact;
+use super::many_rows::NEARLY;
 use super::patience::{Patience, RICOCHET};
 use super::serial::Grouping;
 use super::shuffle::Shuffle;
@@ -77,8 +78,8 @@ pub enum ImpactError {
     },
 }
 
-/// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes the rounding of the
-/// one before.
+/// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes what the one before
+/// left by rounding, or by nearly dependent rows.
 const FINAL_PASSES: usize = 4;
 
 impl ImpactLaw {
@@ -137,8 +138,8 @@ impl Impact {
 
     /// Finds which rates are rounding, and whether a row is violated that moves nothing.
     fn begin(&mut self) -> Result<f64, ImpactError> {
-        let fastest = (0..self.rows.len()).fold(0.0f64, |most, row| most.max(self.violation(row)));
-        let small = RICOCHET * fastest;
+        self.fastest = (0..self.rows.len()).fold(0.0f64, |most, row| most.max(self.violation(row)));
+        let small = RICOCHET * self.fastest;
         self.bound = small;
         let stuck = (0..self.rows.len()).find(|&row| self.is_violated(row, small) && !self.can_move(row));
         match stuck {
@@ -163,10 +164,15 @@ impl Impact {
             }
             self.solve_all_inelastic(small)?;
         }
-        self.bound = self.rest(small);
-        match (0..self.rows.len()).find(|&row| self.is_violated(row, small)) {
-            None => Ok(()),
-            Some(row) => Err(ImpactError::Unfinished { row, rate: self.rates[row], bound: self.bound }),
+        let left = (0..self.rows.len()).max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)));
+        let violation = left.map_or(0.0, |row| self.violation(row));
+        self.bound = self.rest(small).max(violation);
+        let most = self.rest(NEARLY * self.fastest);
+        match left {
+            Some(row) if violation > most => {
+                Err(ImpactError::Unfinished { row, rate: self.rates[row], bound: most })
+            }
+            _ => Ok(()),
         }
     }
 }

@@ -11,9 +11,17 @@ use crate::settings::{Contradiction, Settings};
 use crate::solution::Solution;
 use crate::solver::Solver;
 
-/// Part of a row's `velocity_tol` that dependent rows may contradict each other by: rates of nothing but rounding do, if
-/// the impact is weak beside the speeds of its bodies.
+/// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the impact's
+/// fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak beside the speeds of its
+/// bodies, or when ricochets have become weak.
 const CONTRADICTION: f64 = 1e-3;
+
+/// Part of the impact's fastest rate by which nearly dependent rows may seem to contradict each other, through rounding of
+/// A: the least part of a row that the solver tells from none is a root of `Settings::dependence`.
+pub(super) const NEARLY: f64 = 1e-5;
+
+/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given.
+const RAISE: f64 = 1e-6;
 
 const OUTSIDE: u32 = u32::MAX;
 
@@ -67,6 +75,19 @@ impl ManyRows {
             matrix.start.push(matrix.column.len());
         }
     }
+
+    /// Raises the diagonal of A, so that there is one answer whatever the rows. It lacks a part `RAISE` of what it should
+    /// do to the rates, which the next round makes good, and it takes no less energy.
+    fn raise(&mut self) {
+        let Matrix::Symmetric(matrix) = &mut self.problem.matrix else { return };
+        for row in 0..matrix.rows() {
+            for e in matrix.start[row]..matrix.start[row + 1] {
+                if matrix.column[e] == row {
+                    matrix.value[e] *= 1.0 + RAISE;
+                }
+            }
+        }
+    }
 }
 
 impl Impact {
@@ -82,14 +103,18 @@ impl Impact {
         many.load_matrix(set, &self.couplings, self.rows.len());
         self.load_rates(many, set);
         self.solves += 1;
-        many.solver.solve(&many.problem, &mut many.solution).map_err(|error| match error {
-            SolveError::Infeasible(proof) => {
-                let row = set[proof.row];
-                let contradiction = proof.contradiction * many.scale * self.length(row);
-                ImpactError::Infeasible { row, contradiction }
+        if let Err(error) = many.solver.solve(&many.problem, &mut many.solution) {
+            if self.is_weak(set) {
+                return Ok(());
             }
-            _ => ImpactError::Unsolved { rows: set.len(), residuals: many.solution.residuals },
-        })?;
+            let error = self.explain(error, many, set);
+            if matches!(error, ImpactError::Infeasible { contradiction, .. } if contradiction > NEARLY * self.fastest)
+            {
+                return Err(error);
+            }
+            many.raise();
+            many.solver.solve(&many.problem, &mut many.solution).map_err(|_| error)?;
+        }
         let left = many.solution.inconsistency * many.scale;
         for (place, &row) in set.iter().enumerate() {
             let impulse = many.solution.force[place];
@@ -99,6 +124,26 @@ impl Impact {
             }
         }
         Ok(())
+    }
+
+    /// Whether all that is wanted is so little that it may be rounding of the bodies' speeds. Then it is left.
+    fn is_weak(&mut self, set: &[usize]) -> bool {
+        let wanted = |&row: &usize| (self.rates[row] - self.scratch.targets[row]).abs();
+        let largest = set.iter().map(wanted).fold(0.0, f64::max);
+        let weak = set.iter().all(|&row| largest <= CONTRADICTION * self.rows[row].velocity_tol);
+        if weak {
+            self.noise = self.noise.max(largest);
+        }
+        weak
+    }
+
+    fn explain(&self, error: SolveError, many: &ManyRows, set: &[usize]) -> ImpactError {
+        if let SolveError::Infeasible(proof) = error {
+            let row = set[proof.row];
+            let contradiction = proof.contradiction * many.scale * self.length(row);
+            return ImpactError::Infeasible { row, contradiction };
+        }
+        ImpactError::Unsolved { rows: set.len(), residuals: many.solution.residuals }
     }
 
     /// Loads what each row lacks to its target, and by how much rows may contradict each other.
@@ -112,7 +157,8 @@ impl Impact {
             many.problem.offset.push(b);
             many.problem.bilateral.push(self.rows[row].bilateral);
             many.scale = many.scale.max((b / length).abs());
-            allowed = allowed.max((CONTRADICTION * self.rows[row].velocity_tol + self.noise) / length);
+            let slow = CONTRADICTION * self.rows[row].velocity_tol;
+            allowed = allowed.max((slow + self.noise + many.inconsistency * self.fastest) / length);
         }
         let relative = if many.scale > 0.0 { allowed / many.scale } else { 0.0 };
         many.solver.settings.inconsistency = many.inconsistency.max(relative);
