@@ -104,8 +104,11 @@ impl Case {
         });
         match (a.1, b.1) {
             (Some(first), Some(last)) => {
+                // At its ends a natural spline has a continuous curvature, but no more.
+                let ends = [0.0, self.connector.path().map_or(0.0, |path| path.length())];
                 let room = |place: &halfgap_collision::RailPlace| 1.0 - place.curvature() * place.gap();
                 first.piece() == last.piece()
+                    && ends.map(|end| first.arc_length < end) == ends.map(|end| last.arc_length < end)
                     && room(&first) > 0.7
                     && room(&last) > 0.7
                     && first.gap().abs() < 0.3
