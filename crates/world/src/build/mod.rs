@@ -284,9 +284,27 @@ mod tests {
             let text = format!("{CONNECTORS}[[connector]]\n{connector}");
             built(&text).expect_err("it cannot be").to_string()
         };
-        insta::assert_snapshot!(message("pin = { a = { body = \"bob\", point = [0, 0] }, b = { body = \"world\", point = [0, 0.5] } }"), @"");
-        insta::assert_snapshot!(message("rail_stop = { a = { body = \"bob\", point = [0, 0] }, path = { start = [0, 0], edges = [{ line = [2, 0] }] }, at = 3, upper = true }"), @"");
-        insta::assert_snapshot!(message("rail = { a = { body = \"bob\", point = [0, 0] }, path = { points = [[0, 0], [0, 0]] } }"), @"");
+        let pin =
+            "pin = { a = { body = \"bob\", point = [0, 0] }, b = { body = \"world\", point = [0, 0.5] } }";
+        assert_eq!(
+            message(pin),
+            "connector[0].pin: connector 0 (pin of \"bob\" and \"world\") is off by 0.25 m at the start; at most \
+             0.00000075 m are allowed"
+        );
+        let path = "path = { start = [0, 0], edges = [{ line = [2, 0] }] }";
+        let stop = format!(
+            "rail_stop = {{ a = {{ body = \"bob\", point = [0, 0] }}, {path}, at = 3, upper = true }}"
+        );
+        assert_eq!(
+            message(&stop),
+            "connector[0].rail_stop.at: a stop must lie on its rail, between 0 and 2 m, got 3 m"
+        );
+        let path = "path = { points = [[0, 0], [0, 0]] }";
+        let rail = format!("rail = {{ a = {{ body = \"bob\", point = [0, 0] }}, {path} }}");
+        assert_eq!(
+            message(&rail),
+            "connector[0].rail.path: point 1 of the rail coincides with the point before it"
+        );
     }
 
     #[test]
