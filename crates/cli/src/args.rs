@@ -31,6 +31,9 @@ pub(crate) struct RunOptions {
     /// Write the recording (CSV and JSON) and pictures (SVG) to this folder.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Also write so many pictures of times in between to that folder.
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
+    pub(crate) pictures: usize,
     /// Print one JSON object instead of the table.
     #[arg(long)]
     pub(crate) json: bool,

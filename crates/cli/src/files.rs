@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use halfgap::picture::{energy_picture, events_picture, scene_picture};
-use halfgap::{Recording, RunResult, World};
+use halfgap::{Frame, Recording, RunResult, World};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -12,12 +12,13 @@ pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.to_path_buf(), error))
 }
 
-/// Writes everything.
+/// Writes everything; beside start and end, so many `pictures` of times in between.
 pub(crate) fn write_all(
     folder: &Path,
     world: &World,
     recording: &Recording,
     result: &RunResult,
+    pictures: usize,
 ) -> Result<(), Failure> {
     write(folder, "states.csv", |out| recording.write_states_csv(out))?;
     write(folder, "impacts.csv", |out| recording.write_impacts_csv(out))?;
@@ -32,8 +33,19 @@ pub(crate) fn write_all(
     for (name, frame) in ends {
         write(folder, name, |out| out.write_all(scene_picture(world, recording, frame).as_bytes()))?;
     }
+    for (index, frame) in evenly(&recording.frames, pictures).enumerate() {
+        let name = format!("picture-{index:04}.svg");
+        write(folder, &name, |out| out.write_all(scene_picture(world, recording, frame).as_bytes()))?;
+    }
     write(folder, "energy.svg", |out| out.write_all(energy_picture(recording).as_bytes()))?;
     write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))
+}
+
+/// So many of the frames, evenly over the run and with both ends; all if there are no more.
+fn evenly(frames: &[Frame], count: usize) -> impl Iterator<Item = &Frame> {
+    let count = count.min(frames.len());
+    let last = frames.len().saturating_sub(1);
+    (0..count).map(move |index| &frames[index * last / count.saturating_sub(1).max(1)])
 }
 
 fn write(
@@ -48,4 +60,26 @@ fn write(
         out.flush()
     };
     fill_file().map_err(|error| Failure::Write(path.clone(), error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_spread_evenly_over_the_frames() {
+        let frame = |index: u32| Frame {
+            time: f64::from(index),
+            states: Vec::new(),
+            energy: halfgap::Energy::default(),
+            forces: Vec::new(),
+        };
+        let frames: Vec<_> = (0..9).map(frame).collect();
+        let times = |count| evenly(&frames, count).map(|frame| frame.time).collect::<Vec<_>>();
+        assert_eq!(times(0), []);
+        assert_eq!(times(1), [0.0]);
+        assert_eq!(times(3), [0.0, 4.0, 8.0]);
+        assert_eq!(times(100).len(), 9);
+        assert_eq!(evenly(&[], 5).count(), 0);
+    }
 }

@@ -30,7 +30,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     progress.finish();
     let result = RunResult::new(&world, &report);
     if let Some(folder) = &options.out {
-        files::write_all(folder, &world, &report.recording, &result)?;
+        files::write_all(folder, &world, &report.recording, &result, options.pictures)?;
     }
     if options.json {
         output::print(&format!("{}\n", result.to_json()));

@@ -71,6 +71,7 @@ fn run_prints_a_table() {
     assert_eq!(output.status.code(), Some(0));
     assert!(text.starts_with("Free flight: done at t = 2 s\n"), "{text}");
     assert!(text.contains("disc      2.000000000      0.000000000"), "{text}");
+    assert!(text.contains("integration error              +0.000000000e0 J"), "{text}");
     assert!(output.stderr.is_empty(), "no progress bar when piped");
 }
 
@@ -85,6 +86,8 @@ fn run_prints_one_json_object() {
     assert_eq!(result["bodies"]["disc"]["position"], serde_json::json!([1.0, 0.0]));
     assert_eq!(result["energy"]["start"], 1.0);
     assert_eq!(result["statistics"]["largest_connector_error"], serde_json::Value::Null);
+    assert_eq!(result["ledger"]["start"], 1.0);
+    assert_eq!(result["ledger"]["integration_error"], 0.0);
 }
 
 #[test]
@@ -100,7 +103,7 @@ fn out_writes_recording_and_pictures() {
     let scene =
         folder.write("flight.toml", &FLIGHT.replace("2.0\n\n[[body", "2.0\noutput_step = 0.75\n\n[[body"));
     let out = folder.path("deep/out");
-    assert_eq!(halfgap(&["run", &scene, "--out", &out, "--quiet"]).status.code(), Some(0));
+    assert_eq!(halfgap(&["run", &scene, "--out", &out, "--pictures", "3", "--quiet"]).status.code(), Some(0));
     let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name)).expect("the file is there");
     insta::assert_snapshot!(read("states.csv"), @r"
     time [s],body,x [m],y [m],angle [rad],vx [m/s],vy [m/s],angular_velocity [rad/s]
@@ -116,11 +119,15 @@ fn out_writes_recording_and_pictures() {
     1.5,1,0,1
     2,1,0,1
     ");
-    assert_eq!(read("impacts.csv").lines().count(), 1);
+    for name in ["impacts.csv", "contacts.csv", "forces.csv"] {
+        assert_eq!(read(name).lines().count(), 1, "{name} has a header");
+    }
     let recording: serde_json::Value = serde_json::from_str(&read("recording.json")).expect("JSON");
     assert_eq!(recording["frames"].as_array().map(Vec::len), Some(4));
     assert!(read("result.json").contains("\"status\":\"done\""));
-    for name in ["start.svg", "end.svg", "energy.svg", "events.svg"] {
+    assert_eq!(read("picture-0000.svg"), read("start.svg"));
+    assert_eq!(read("picture-0002.svg"), read("end.svg"));
+    for name in ["start.svg", "end.svg", "energy.svg", "events.svg", "picture-0001.svg"] {
         assert!(read(name).starts_with("<svg ") && read(name).ends_with("</svg>\n"), "{name}");
     }
     assert!(
@@ -259,7 +266,16 @@ fn a_run_that_stops_early_keeps_its_recording_and_exits_with_3() {
     assert!(message.contains("\"ball\" comes to rest on \"floor\""), "{message}");
     let impacts = std::fs::read_to_string(folder.path("out/impacts.csv")).expect("the recording is written");
     assert!(impacts.lines().count() > 15, "{impacts}");
-    for name in ["states.csv", "energy.csv", "recording.json", "result.json", "start.svg", "end.svg"] {
+    for name in [
+        "states.csv",
+        "energy.csv",
+        "contacts.csv",
+        "forces.csv",
+        "recording.json",
+        "result.json",
+        "start.svg",
+        "end.svg",
+    ] {
         assert!(Path::new(&folder.path("out")).join(name).exists(), "{name} is missing");
     }
 }

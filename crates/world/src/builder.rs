@@ -1,23 +1,25 @@
 //! Building a world in code: bodies, and what acts on them.
 
-use crate::force::{Attachment, ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
+use crate::connector::ConnectorSpec;
+use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::rigid_settings::rigid_settings;
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
-use crate::start::{StartParts, lift_overlaps};
+use crate::start::{StartParts, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, energy_of};
 use crate::world_error::WorldError;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
-use halfgap_collision::{Body, BodyId, BodyState, SearchSettings};
-use halfgap_geometry::{Aabb, Shape};
+use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
+use halfgap_geometry::{Aabb, Pose, Shape};
 use std::collections::BTreeSet;
 use std::slice::from_ref;
 use std::sync::Arc;
 
-/// Part of the smallest movable body's radius by which bodies may overlap at the start unless said otherwise.
-const DEFAULT_START_OVERLAP: f64 = 1e-6;
+/// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the start unless said
+/// otherwise.
+const DEFAULT_START_ERROR: f64 = 1e-6;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
 const CENTROID_ROUNDINGS: f64 = 16.0;
@@ -70,6 +72,7 @@ pub struct WorldBuilder {
     laws: Vec<FlightLaw>,
     gravity: Vec<DVec2>,
     forces: Vec<Arc<dyn ForceLaw>>,
+    connectors: Vec<ConnectorSpec>,
     excluded: Vec<(BodyId, BodyId)>,
 }
 
@@ -117,14 +120,24 @@ impl WorldBuilder {
         self.forces.push(law);
     }
 
+    /// Adds a connector. Bodies that a pin or slot joins do not collide with each other, unless it says so.
+    pub fn add_connector(&mut self, connector: ConnectorSpec) -> ConnectorId {
+        if connector.keeps_from_colliding() {
+            let [a, b] = connector.connector.bodies();
+            self.let_pass(a, b);
+        }
+        self.connectors.push(connector);
+        ConnectorId(u32::try_from(self.connectors.len() - 1).unwrap_or(u32::MAX))
+    }
+
     /// The point of a body at the given shape coordinates [m], or of the background at world coordinates.
     ///
     /// # Panics
     /// If no such body was added.
     #[must_use]
-    pub fn attachment(&self, body: BodyId, point: DVec2) -> Attachment {
+    pub fn anchor(&self, body: BodyId, point: DVec2) -> Anchor {
         let origin = if body.is_world() { DVec2::ZERO } else { center_of_mass(&self.bodies[body.index()]) };
-        Attachment { body, point: point - origin }
+        Anchor { body, point: point - origin }
     }
 
     /// Lets two bodies pass through each other.
@@ -132,50 +145,76 @@ impl WorldBuilder {
         self.excluded.push((a, b));
     }
 
-    /// Checks everything, lifts small overlaps, and builds the world.
+    /// Checks everything, aligns what is to be aligned, corrects small overlaps and errors, and builds the world.
     ///
     /// # Errors
-    /// Names that are not unique, numbers out of range, bodies that overlap: the error names the body and the number.
-    pub fn build(self) -> Result<World, WorldError> {
+    /// Names that are not unique, numbers out of range, bodies that overlap, connectors that are off: the error names the
+    /// body or the connector, and the number.
+    pub fn build(mut self) -> Result<World, WorldError> {
         self.check()?;
+        self.align();
         let scales = self.scales(&self.wrenches()?);
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
-        let mut warnings = Vec::new();
-        if self.settings.overrides.target_gap.is_none()
-            && scales.wanted_gap(self.settings.tolerance) < scales.smallest_gap()
-        {
-            warnings.push(format!(
-                "tolerance {} asks for a target gap of {:e} m, but coordinates of {} m allow no less than {:e} m",
-                self.settings.tolerance,
-                scales.wanted_gap(self.settings.tolerance),
-                scales.coordinate,
-                scales.smallest_gap()
-            ));
-        }
-        let allowed = self
-            .settings
-            .start_overlap
-            .unwrap_or(DEFAULT_START_OVERLAP * scales.smallest_radius.unwrap_or(scales.coordinate));
+        let warnings = self.gap_warning(&scales).into_iter().collect();
+        let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
+        let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
+        let rules = StartRules {
+            tolerances: &tolerances,
+            excluded: &self.excluded,
+            collisions: self.settings.collisions,
+            overlap: self.settings.start_overlap.unwrap_or(default_error),
+            connector_error: self.settings.start_connector_error.unwrap_or(default_error),
+            rounding: scales.smallest_gap(),
+        };
         let total = |bodies: &[StartParts]| {
             let state = |body: BodyId| bodies[body.index()].2;
             energy_of(&named, &self.forces, self.settings.start_time, state).total()
         };
         let given = total(&bodies);
-        let displacement = if self.settings.collisions {
-            lift_overlaps(&mut bodies, &named, &self.excluded, &tolerances, allowed)?
-        } else {
-            0.0
-        };
+        let displacement = correct_start(&mut bodies, &named, &connectors, &rules)?;
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
-        let settings = rigid_settings(&self.settings, &scales);
         let now = Time::from_seconds(self.settings.start_time);
-        let parts =
-            RigidParts { bodies, connectors: Vec::new(), laws: self.forces.clone(), excluded: self.excluded };
+        let settings = rigid_settings(&self.settings, &scales);
+        let parts = RigidParts {
+            bodies,
+            connectors: connectors.clone(),
+            laws: self.forces.clone(),
+            excluded: self.excluded,
+        };
         let system = RigidSystem::new(parts, settings, now).map_err(|source| WorldError::Start { source })?;
-        Ok(World::new(system, named, self.forces, now, warnings, start))
+        Ok(World::new(system, named, (self.forces, connectors), now, warnings, start))
+    }
+
+    /// What to say if the coordinates do not allow the gap that the tolerance asks for.
+    fn gap_warning(&self, scales: &Scales) -> Option<String> {
+        let tolerance = self.settings.tolerance;
+        let (wanted, smallest) = (scales.wanted_gap(tolerance), scales.smallest_gap());
+        let is_too_small = self.settings.overrides.target_gap.is_none() && wanted < smallest;
+        is_too_small.then(|| {
+            format!(
+                "tolerance {tolerance} asks for a target gap of {wanted:e} m, but coordinates of {} m allow no less than \
+                 {smallest:e} m",
+                scales.coordinate
+            )
+        })
+    }
+
+    /// Moves the bodies that connectors are to align, in the connectors' order.
+    fn align(&mut self) {
+        for spec in self.connectors.iter().filter(|spec| spec.align) {
+            let ends = spec.connector.bodies();
+            let pose =
+                |body: BodyId| self.bodies.get(body.index()).map_or(Pose::IDENTITY, |body| body.state.pose());
+            let can_move =
+                ends.map(|body| self.bodies.get(body.index()).is_some_and(|body| body.inertia.is_some()));
+            if let Some(alignment) = spec.connector.align(&pose(ends[0]), &pose(ends[1]), can_move) {
+                let moved = ends[usize::from(alignment.moves_b)];
+                self.bodies[moved.index()].state.position += alignment.shift;
+            }
+        }
     }
 
     fn check(&self) -> Result<(), WorldError> {
@@ -185,6 +224,12 @@ impl WorldBuilder {
                 return Err(WorldError::DoubleName { name: body.name.clone() });
             }
             check_body(body)?;
+        }
+        for (index, spec) in self.connectors.iter().enumerate() {
+            self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
+        }
+        for law in &self.forces {
+            self.check_bodies(law.bodies(), || format!("force \"{}\"", law.name()))?;
         }
         let positive = [
             ("tolerance", Some(self.settings.tolerance)),
@@ -201,16 +246,20 @@ impl WorldBuilder {
         Ok(())
     }
 
+    fn check_bodies(&self, bodies: &[BodyId], what: impl Fn() -> String) -> Result<(), WorldError> {
+        let count = self.bodies.len();
+        match bodies.iter().find(|body| !body.is_world() && body.index() >= count) {
+            Some(body) => Err(WorldError::NoSuchBody { what: what(), body: body.0, bodies: count }),
+            None => Ok(()),
+        }
+    }
+
     /// Forces and torques of all laws at the start.
     fn wrenches(&self) -> Result<Vec<Wrench>, WorldError> {
         let count = self.bodies.len();
         let moving: Vec<_> = self.bodies.iter().map(|body| Moving::from(&body.state)).collect();
         let now = Snapshot::new(self.settings.start_time, &moving);
         for law in &self.forces {
-            if let Some(body) = law.bodies().iter().find(|body| body.index() >= count) {
-                let law = law.name().to_owned();
-                return Err(WorldError::NoSuchBody { law, body: body.0, bodies: count });
-            }
             let own = wrenches_of(from_ref(law), &now, count);
             if let Some(bad) = own.iter().position(|sum| !(sum.force.is_finite() && sum.torque.is_finite())) {
                 let body = self.bodies[bad].name.clone();
@@ -222,6 +271,9 @@ impl WorldBuilder {
 
     fn scales(&self, wrenches: &[Wrench]) -> Scales {
         let mut scales = Scales::default();
+        for spec in &self.connectors {
+            scales.coordinate = scales.coordinate.max(coordinate_of(&spec.connector));
+        }
         for ((body, law), wrench) in self.bodies.iter().zip(&self.laws).zip(wrenches) {
             let shape = centered(body);
             let bounds: Aabb = shape.bounds_at(&body.state.pose());
@@ -239,6 +291,15 @@ impl WorldBuilder {
         }
         scales
     }
+}
+
+/// The largest world coordinate of a connector in size [m], where it has any.
+fn coordinate_of(connector: &Connector) -> f64 {
+    let (a, b) = connector.anchors();
+    let anchors = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
+    let anchor = anchors.map(|anchor| anchor.point.abs().max_element()).fold(0.0, f64::max);
+    let path = connector.path().map(|path| path.bounds());
+    path.map_or(anchor, |bounds| bounds.min.abs().max(bounds.max.abs()).max_element().max(anchor))
 }
 
 fn check_body(body: &BodySpec) -> Result<(), WorldError> {

@@ -30,10 +30,10 @@ mod build;
 mod builder;
 #[cfg(feature = "scene")]
 mod check;
+mod connector;
 mod event;
 pub mod force;
 mod ledger;
-mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
 #[cfg(feature = "scene")]
@@ -55,8 +55,13 @@ mod world_error;
 pub use builder::{BodySpec, WorldBuilder};
 #[cfg(feature = "scene")]
 pub use check::{CheckReport, check};
+pub use connector::ConnectorSpec;
 pub use event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
-pub use halfgap_collision::{BodyId, BodyState, Tolerances};
+pub use halfgap_collision::{
+    Anchor, BodyId, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, RailError, RailPath,
+    SlotFrame, Tolerances,
+};
+
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
 pub use ledger::{LawWork, Ledger};
@@ -70,4 +75,4 @@ pub use run_error::{RunError, Status};
 pub use scales::ToleranceOverrides;
 pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
-pub use world_error::WorldError;
+pub use world_error::{ConnectorName, WorldError};

@@ -7,9 +7,12 @@ use crate::run_error::RunError;
 use glam::DVec2;
 use halfgap_advance::rigid::{ImpactReport, RigidSystem};
 use halfgap_advance::{Time, advance_until};
-use halfgap_collision::{BodyId, BodyState, Tolerances};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
 use std::sync::Arc;
+
+/// What messages and recordings call the background.
+pub(crate) const BACKGROUND: &str = "world";
 
 /// Kinetic and potential energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,6 +78,7 @@ pub struct World {
     system: RigidSystem,
     bodies: Vec<Named>,
     forces: Vec<Arc<dyn ForceLaw>>,
+    connectors: Vec<Connector>,
     now: Time,
     warnings: Vec<String>,
     start: Start,
@@ -99,13 +103,13 @@ impl World {
     pub(crate) fn new(
         system: RigidSystem,
         bodies: Vec<Named>,
-        forces: Vec<Arc<dyn ForceLaw>>,
+        (forces, connectors): (Vec<Arc<dyn ForceLaw>>, Vec<Connector>),
         now: Time,
         warnings: Vec<String>,
         start: Start,
     ) -> Self {
         let told = Event::Impact(Impact::default());
-        Self { system, bodies, forces, now, warnings, start, told, impacts: 0.0 }
+        Self { system, bodies, forces, connectors, now, warnings, start, told, impacts: 0.0 }
     }
 
     /// The present time [s].
@@ -206,6 +210,26 @@ impl World {
         &self.forces
     }
 
+    /// The connectors, in the order in which they were added.
+    #[must_use]
+    pub fn connectors(&self) -> &[Connector] {
+        &self.connectors
+    }
+
+    /// How far off a connector is at the present time [m]; a rope that is slack, or a point far from its stop, is not.
+    ///
+    /// # Panics
+    /// If there is no such connector.
+    #[must_use]
+    pub fn connector_error(&self, connector: ConnectorId) -> f64 {
+        let connector = &self.connectors[connector.index()];
+        let moving = |body: BodyId| {
+            if body.is_world() { Moving::BACKGROUND } else { Moving::from(&self.state(body)) }
+        };
+        let [a, b] = connector.bodies().map(moving);
+        connector.error(&a, &b)
+    }
+
     /// The thresholds of touching, as derived from the tolerance or given.
     #[must_use]
     pub fn tolerances(&self) -> &Tolerances {
@@ -236,6 +260,7 @@ impl World {
             backups: counts.backups,
             contact_solves: counts.contact_solves,
             smallest_gap: counts.smallest_gap,
+            // WIRE: the largest over the run, from the system.
             largest_connector_error: None,
         }
     }

@@ -32,15 +32,41 @@ pub enum WorldError {
         /// What it is.
         value: f64,
     },
-    /// A force law names a body that is not there.
-    #[error("force \"{law}\" names body {body}, but there are {bodies} bodies")]
+    /// A force law or a connector names a body that is not there.
+    #[error("{what} names body {body}, but there are {bodies} bodies")]
     NoSuchBody {
-        /// What the law is called.
-        law: String,
+        /// What names it.
+        what: String,
         /// Index of the body.
         body: u32,
         /// How many bodies there are.
         bodies: usize,
+    },
+    /// A connector is off at the start by more than is allowed.
+    #[error("{connector} is off by {error} m at the start; at most {allowed} m are allowed")]
+    ConnectorError {
+        /// Which connector.
+        connector: ConnectorName,
+        /// How far [m].
+        error: f64,
+        /// How far would be allowed [m].
+        allowed: f64,
+    },
+    /// Connectors cannot all be put together at the start.
+    #[error("{connector} cannot be put together at the start: {error} m remain")]
+    CannotConnect {
+        /// The connector that is off most.
+        connector: ConnectorName,
+        /// How far [m].
+        error: f64,
+    },
+    /// Velocities at the start cannot be made to fit the connectors.
+    #[error("{connector} comes apart at {rate} m/s at the start, and cannot be kept from it")]
+    ConnectorComesApart {
+        /// The connector that comes apart fastest.
+        connector: ConnectorName,
+        /// How fast [m/s].
+        rate: f64,
     },
     /// A force law is not finite at the start.
     #[error("force \"{law}\" on body \"{body}\" is not finite at the start")]
@@ -82,4 +108,24 @@ pub enum WorldError {
         /// Why not.
         source: halfgap_advance::rigid::AdvanceError,
     },
+}
+
+/// A connector, as messages name it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConnectorName {
+    /// Its index.
+    pub index: usize,
+    /// Its kind, as in scene files.
+    pub kind: &'static str,
+    /// Name of body a.
+    pub first: String,
+    /// Name of body b.
+    pub second: String,
+}
+
+impl std::fmt::Display for ConnectorName {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { index, kind, first, second } = self;
+        write!(formatter, "connector {index} ({kind} of \"{first}\" and \"{second}\")")
+    }
 }

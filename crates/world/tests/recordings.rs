@@ -3,7 +3,10 @@
 
 use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{BodyId, BodyState, Energy, Frame, Impact, ImpactRow, Record, Recording, RunPlan, World, run};
+use halfgap::{
+    BodyId, BodyState, ContactChange, ContactEvent, ContactForce, ContactRecord, Energy, Frame, Impact,
+    ImpactRow, Record, Recording, RunPlan, World, run,
+};
 
 fn scene(duration: f64, run: &str, position: &str) -> Scene {
     let text = format!(
@@ -145,4 +148,92 @@ fn pictures_survive_a_million_impacts_and_broken_numbers() {
     assert_drawable(&scene_picture(&world, &recording, &recording.frames[0]));
     assert_drawable(&energy_picture(&recording));
     assert_drawable(&events_picture(&recording));
+}
+
+fn contact(connector: Option<u32>, normal: glam::DVec2, force: f64) -> ContactForce {
+    let normal_body = if connector.is_some() { BodyId::WORLD } else { BodyId(0) };
+    ContactForce { bodies: [BodyId(1), normal_body], connector, point: glam::DVec2::NEG_Y, normal, force }
+}
+
+/// A recording of one frame with a contact, and a pin whose two rows are one force.
+fn with_forces(world: &World) -> Recording {
+    let mut recording = Recording::new("Forces", world);
+    recording.frames.push(recording.frame_of(world));
+    recording.frames[0].forces = vec![
+        contact(None, glam::DVec2::Y, 5.0),
+        contact(Some(3), glam::DVec2::X, -6.0),
+        contact(Some(3), glam::DVec2::Y, 8.0),
+    ];
+    let event = ContactEvent { time: 0.5, contact: contact(None, glam::DVec2::Y, 2.5) };
+    recording.contacts.push(ContactRecord { change: ContactChange::Begins, event });
+    recording
+        .contacts
+        .push(ContactRecord { change: ContactChange::Ends, event: ContactEvent { time: 0.75, ..event } });
+    recording
+}
+
+#[test]
+fn forces_and_contacts_are_written_as_tables() {
+    let recording = with_forces(&world(&scene(1.0, "", "[0, 0]")));
+    let mut csv = Vec::new();
+    recording.write_forces_csv(&mut csv).expect("memory takes everything");
+    recording.write_contacts_csv(&mut csv).expect("memory takes everything");
+    insta::assert_snapshot!(String::from_utf8(csv).expect("text"), @r#"
+    time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]
+    0,disc,"rim, ""fixed""",,0,-1,0,1,5
+    0,disc,world,3,0,-1,1,0,-6
+    0,disc,world,3,0,-1,0,1,8
+    change,time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]
+    begins,0.5,disc,"rim, ""fixed""",,0,-1,0,1,2.5
+    ends,0.75,disc,"rim, ""fixed""",,0,-1,0,1,2.5
+    "#);
+}
+
+#[test]
+fn forces_contacts_and_the_ledger_are_written_as_json() {
+    let recording = with_forces(&world(&scene(1.0, "", "[0, 0]")));
+    let mut text = Vec::new();
+    recording.write_json(&mut text).expect("memory takes everything");
+    let json: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(json["frames"][0]["forces"][1]["force"], -6.0);
+    assert_eq!(json["frames"][0]["forces"][1]["connector"], 3);
+    assert_eq!(json["frames"][0]["forces"][0]["connector"], serde_json::Value::Null);
+    assert_eq!(json["contacts"][1]["change"], "ends");
+    assert_eq!(json["contacts"][1]["primary"], "disc");
+    assert_eq!(json["ledger"]["kinetic"], 0.0625);
+    assert_eq!(json["ledger"]["integration_error"], 0.0);
+}
+
+#[test]
+fn forces_are_drawn_as_arrows_and_the_rows_of_a_pin_as_one() {
+    let world = world(&scene(1.0, "", "[0, 0]"));
+    let recording = with_forces(&world);
+    let picture = scene_picture(&world, &recording, &recording.frames[0]);
+    assert_drawable(&picture);
+    // Two forces on the disc and the key; the fixed rim and the background get no arrows.
+    assert_eq!(picture.matches("stroke=\"none\"").count(), 3, "{picture}");
+    assert!(picture.contains(">5 N</text>"), "{picture}");
+    let mut broken = recording.clone();
+    broken.frames[0].forces[0].force = f64::NAN;
+    broken.frames[0].forces[1].force = f64::INFINITY;
+    assert_drawable(&scene_picture(&world, &broken, &broken.frames[0]));
+    broken.frames[0].forces.clear();
+    let bare = scene_picture(&world, &broken, &broken.frames[0]);
+    assert!(!bare.contains(" N</text>"), "no forces, no key");
+}
+
+#[test]
+fn the_ledger_books_impacts() {
+    // Elasticity 1/2 in a ring: each impact leaves a quarter of the energy.
+    let mut scene = scene(50.0, "", "[0, 0]");
+    scene.bodies[1].elasticity = 0.5;
+    let mut world = world(&scene);
+    let plan = RunPlan::of_scene(&scene, Record::Everything);
+    let report = run(&mut world, &plan, &mut |_| {});
+    let ledger = &report.recording.ledger;
+    assert_eq!(report.recording.impacts.len(), 2);
+    let booked: f64 = report.recording.impacts.iter().map(|impact| impact.energy_change).sum();
+    assert!(ledger.impacts < 0.0 && ledger.impacts == booked, "{ledger:?}");
+    assert!(ledger.integration_error().abs() < 1e-15, "{ledger:?}");
+    assert_eq!(ledger.start, 0.0625);
 }

@@ -119,7 +119,8 @@ impl RigidSystem {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
             let gap = fired.map(|(bodies, features)| self.gap_at(bodies, features, self.now).0);
-            self.now = self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
+            self.now =
+                self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
             self.remeasure(&mut work.region, self.now);
         }
         let is_storm = self.note_events(&work.region);

@@ -119,7 +119,8 @@ impl Dynamics<'_> {
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let at = 3 * (count + place);
             let state = &self.group.state;
-            let of_points = DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body);
+            let of_points =
+                DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body);
             speed = speed.max(of_points);
         }
         if speed > 0.0 { speed } else { control.speed }

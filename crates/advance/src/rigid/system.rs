@@ -333,11 +333,24 @@ impl EventDriven for RigidSystem {
         self.now = event.time;
         if std::env::var("HGTRACE").is_ok() {
             let what = if let Some(p) = event.source.0.checked_sub(self.first_pair_source()) {
-                format!("pair {:?} {:?} rules {:?}", self.pairs.get(PairId(p)).bodies, self.pairs.get(PairId(p)).prediction, self.pairs.rules(PairId(p)))
+                format!(
+                    "pair {:?} {:?} rules {:?}",
+                    self.pairs.get(PairId(p)).bodies,
+                    self.pairs.get(PairId(p)).prediction,
+                    self.pairs.rules(PairId(p))
+                )
             } else if event.source.0 >= self.count_u32() {
                 let g = self.group_of(BodyId(event.source.0 - self.count_u32()));
-                format!("group {:?} {:?} {:?} rows {}", g.map(|g| g.leader()), g.and_then(|g| g.event), g.map(|g| (g.span, g.next_step, &g.bodies)), g.map_or(0, |g| g.rows.len()))
-            } else { format!("box {:?}", event.source) };
+                format!(
+                    "group {:?} {:?} {:?} rows {}",
+                    g.map(|g| g.leader()),
+                    g.and_then(|g| g.event),
+                    g.map(|g| (g.span, g.next_step, &g.bodies)),
+                    g.map_or(0, |g| g.rows.len())
+                )
+            } else {
+                format!("box {:?}", event.source)
+            };
             eprintln!("{:.17} {what}", self.now.seconds());
         }
         let is_impact = self.handle(event.source)?;

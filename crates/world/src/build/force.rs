@@ -3,7 +3,7 @@
 use super::{body_id, find_body, mass};
 use crate::builder::WorldBuilder;
 use crate::force::{
-    Attachment, ConstantForce, Dashpot, ForceFrame, MutualGravity, RotatingForce, Spring, Turning,
+    Anchor, ConstantForce, Dashpot, ForceFrame, MutualGravity, RotatingForce, Spring, Turning,
 };
 use crate::scene::{
     self, BodyData, ConstantData, FieldPath, ForceData, MutualGravityData, PointData, RotatingData, Scene,
@@ -80,7 +80,7 @@ fn mutual_gravity(
 }
 
 fn add_spring(builder: &mut WorldBuilder, scene: &Scene, spring: &SpringData, field: &FieldPath) {
-    let ends = [&spring.a, &spring.b].map(|end| attachment(builder, scene, end));
+    let ends = [&spring.a, &spring.b].map(|end| anchor(builder, scene, end));
     if spring.stiffness > 0.0 {
         let law = Spring::new(field.to_string(), ends, spring.rest_length, spring.stiffness);
         builder.add_force(Arc::new(law));
@@ -99,7 +99,7 @@ fn constant_force(
 ) -> ConstantForce {
     let body = find_body(scene, &constant.body);
     let (frame, point) = match constant.frame {
-        scene::ForceFrame::Body => (ForceFrame::Body, builder.attachment(body, constant.point.into()).point),
+        scene::ForceFrame::Body => (ForceFrame::Body, builder.anchor(body, constant.point.into()).point),
         scene::ForceFrame::World => (ForceFrame::World, constant.point.into()),
     };
     ConstantForce::new(field.to_string(), body, frame, [point, constant.force.into()], constant.torque)
@@ -111,7 +111,7 @@ fn rotating_force(
     rotating: &RotatingData,
     field: &FieldPath,
 ) -> RotatingForce {
-    let at = builder.attachment(find_body(scene, &rotating.body), rotating.point.into());
+    let at = builder.anchor(find_body(scene, &rotating.body), rotating.point.into());
     let turning = Turning {
         magnitude: rotating.magnitude,
         rate: rotating.rate,
@@ -121,6 +121,6 @@ fn rotating_force(
     RotatingForce::new(field.to_string(), at, turning)
 }
 
-fn attachment(builder: &WorldBuilder, scene: &Scene, end: &PointData) -> Attachment {
-    builder.attachment(find_body(scene, &end.body), end.point.into())
+pub(super) fn anchor(builder: &WorldBuilder, scene: &Scene, end: &PointData) -> Anchor {
+    builder.anchor(find_body(scene, &end.body), end.point.into())
 }

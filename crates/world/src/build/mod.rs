@@ -1,5 +1,6 @@
 //! A world from a scene: bodies here, `settings`, `force` and `connector` beside.
 
+mod connector;
 mod force;
 mod settings;
 
@@ -33,6 +34,7 @@ fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
     for (index, force) in scene.forces.iter().enumerate() {
         force::add(&mut builder, scene, (index, force))?;
     }
+    connector::add_all(&mut builder, scene)?;
     for (index, body) in scene.bodies.iter().enumerate() {
         for other in
             scene.bodies.iter().enumerate().filter(|(_, other)| body.passes_through.contains(&other.name))
@@ -91,13 +93,16 @@ fn build_shape(shape: &ShapeData) -> Result<Shape, ShapeError> {
 }
 
 fn path_spec(path: &PathData) -> PathSpec {
-    let edge = |edge: &EdgeData| match edge {
+    PathSpec { start: path.start.into(), edges: path.edges.iter().map(edge_spec).collect() }
+}
+
+fn edge_spec(edge: &EdgeData) -> EdgeSpec {
+    match edge {
         EdgeData::Line(to) => EdgeSpec::Line { to: (*to).into() },
         EdgeData::Arc(arc) => {
             EdgeSpec::Arc { to: arc.to.into(), center: arc.center.into(), clockwise: arc.clockwise }
         }
-    };
-    PathSpec { start: path.start.into(), edges: path.edges.iter().map(edge).collect() }
+    }
 }
 
 fn body_id(index: usize) -> BodyId {
@@ -110,21 +115,26 @@ fn find_body(scene: &Scene, name: &str) -> BodyId {
     index.map_or(BodyId::WORLD, body_id)
 }
 
-/// Points the error at the body that it names.
+/// Points the error at the body or the connector that it names.
 fn located(error: WorldError, scene: &Scene) -> SceneError {
-    let named = match &error {
-        WorldError::DoubleName { name } => Some((name, "name")),
-        WorldError::BadNumber { body, .. } => Some((body, "name")),
-        WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
-            Some((second, "position"))
-        }
-        WorldError::BadForce { body, .. } => Some((body, "position")),
-        WorldError::BadSetting { .. } | WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
-    };
-    let place = named.and_then(|(name, field)| {
+    let body = |name: &String, field: &str| {
         let index = scene.bodies.iter().position(|body| body.name == *name)?;
         Some(FieldPath::top().field("body").element(index).field(field))
-    });
+    };
+    let place = match &error {
+        WorldError::DoubleName { name } => body(name, "name"),
+        WorldError::BadNumber { body: name, .. } => body(name, "name"),
+        WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
+            body(second, "position")
+        }
+        WorldError::BadForce { body: name, .. } => body(name, "position"),
+        WorldError::ConnectorError { connector, .. }
+        | WorldError::CannotConnect { connector, .. }
+        | WorldError::ConnectorComesApart { connector, .. } => {
+            Some(FieldPath::top().field("connector").element(connector.index).field(connector.kind))
+        }
+        WorldError::BadSetting { .. } | WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
+    };
     SceneError::new(place.unwrap_or_else(|| FieldPath::top().field("run")), error.to_string())
 }
 
@@ -224,5 +234,94 @@ mod tests {
             world(&forces).expect("a fine world").tolerances().velocity_tol
         };
         assert!((velocity_tol(40.0) / velocity_tol(10.0) - 2.0).abs() < 1e-12);
+    }
+
+    /// What the scene builds to although not all of it is simulated yet.
+    fn built(text: &str) -> Result<World, SceneError> {
+        let scene = Scene::parse(text, SceneFormat::Toml).unwrap_or_else(|error| panic!("{error}"));
+        collect(&scene)?.build().map_err(|error| located(error, &scene))
+    }
+
+    const CONNECTORS: &str = r#"
+        format = "halfgap-scene-1"
+        title = "Connectors"
+        run = { duration = 1.0 }
+
+        [[body]]
+        name = "bob"
+        shape = { disc = { radius = 0.5 } }
+        center_of_mass = [0.0, 0.25]
+        position = [0.0, 1.0]
+        mass = 2.0
+    "#;
+
+    #[test]
+    fn every_kind_of_connector_is_built_from_a_scene() {
+        let connectors = r#"
+            [[connector]]
+            pin = { a = { body = "world", point = [0, 0.75] }, b = { body = "bob", point = [0, 0] } }
+            [[connector]]
+            slot = { a = { body = "bob", point = [0, 0.25] }, b = { body = "world", point = [0, 9] }, normal = [3, 0], elasticity = 0.5 }
+            [[connector]]
+            rod = { a = { body = "bob", point = [0, 0.25] }, b = { body = "world", point = [3, 5] }, length = 5 }
+            [[connector]]
+            rope = { a = { body = "bob", point = [0, 0.25] }, b = { body = "world", point = [3, 5] }, length = 6 }
+            [[connector]]
+            rail = { a = { body = "bob", point = [0, 0.25] }, path = { points = [[0, 1], [1, 1], [1, 2], [0, 2]] }, closed = true }
+            [[connector]]
+            rail_stop = { a = { body = "bob", point = [0, 0.25] }, path = { points = [[0, 1], [1, 1], [1, 2], [0, 2]] }, at = 1, upper = true }"#;
+        let world = built(&format!("{CONNECTORS}{connectors}")).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(world.start_correction(), 0.0);
+        let elasticities: Vec<_> = world.connectors().iter().map(|one| one.elasticity).collect();
+        assert_eq!(elasticities, [0.0, 0.5, 0.0, 1.0, 0.0, 1.0]);
+        let paths: Vec<_> = world.connectors().iter().filter_map(|one| one.path()).collect();
+        assert!(std::sync::Arc::ptr_eq(paths[0], paths[1]) && paths[0].is_closed(), "one closed path");
+    }
+
+    #[test]
+    fn connectors_that_cannot_be_are_named_with_their_field() {
+        let message = |connector: &str| {
+            let text = format!("{CONNECTORS}[[connector]]\n{connector}");
+            built(&text).expect_err("it cannot be").to_string()
+        };
+        let pin =
+            "pin = { a = { body = \"bob\", point = [0, 0] }, b = { body = \"world\", point = [0, 0.5] } }";
+        assert_eq!(
+            message(pin),
+            "connector[0].pin: connector 0 (pin of \"bob\" and \"world\") is off by 0.25 m at the start; at most \
+             0.00000075 m are allowed"
+        );
+        let path = "path = { start = [0, 0], edges = [{ line = [2, 0] }] }";
+        let stop = format!(
+            "rail_stop = {{ a = {{ body = \"bob\", point = [0, 0] }}, {path}, at = 3, upper = true }}"
+        );
+        assert_eq!(
+            message(&stop),
+            "connector[0].rail_stop.at: a stop must lie on its rail, between 0 and 2 m, got 3 m"
+        );
+        let path = "path = { points = [[0, 0], [0, 0]] }";
+        let rail = format!("rail = {{ a = {{ body = \"bob\", point = [0, 0] }}, {path} }}");
+        assert_eq!(
+            message(&rail),
+            "connector[0].rail.path: point 1 of the rail coincides with the point before it"
+        );
+    }
+
+    #[test]
+    fn every_reference_scene_can_be_built() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/scenes");
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).expect("the reference scenes are there") {
+            let file = entry.expect("a readable entry").path();
+            let scene = Scene::read(&file).unwrap_or_else(|error| panic!("{error}"));
+            let builder = collect(&scene).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+            let world = builder.build().unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+            let off = (0..u32::try_from(scene.connectors.len()).unwrap_or(0))
+                .map(|index| world.connector_error(halfgap_collision::ConnectorId(index)))
+                .fold(0.0, f64::max);
+            assert!(off < 1e-12, "{}: a connector is off by {off} m", file.display());
+            count += 1;
+        }
+        assert!(count >= 88);
     }
 }

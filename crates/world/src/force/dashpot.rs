@@ -1,8 +1,8 @@
 //! Damping between two points, along the line between them.
 
-use super::attachment::{Attachment, Between, bodies_of};
+use super::anchor::{Between, bodies_of};
 use super::{ForceLaw, Snapshot, Wrenches};
-use halfgap_collision::BodyId;
+use halfgap_collision::{Anchor, BodyId};
 
 /// A force of -damping times the rate of the distance of two points [N], along the line between them.
 ///
@@ -10,7 +10,7 @@ use halfgap_collision::BodyId;
 #[derive(Clone, Debug)]
 pub struct Dashpot {
     name: String,
-    ends: [Attachment; 2],
+    ends: [Anchor; 2],
     damping: f64,
     bodies: Vec<BodyId>,
 }
@@ -18,7 +18,7 @@ pub struct Dashpot {
 impl Dashpot {
     /// The dashpot of a damping [N s/m] between two points.
     #[must_use]
-    pub fn new(name: impl Into<String>, ends: [Attachment; 2], damping: f64) -> Self {
+    pub fn new(name: impl Into<String>, ends: [Anchor; 2], damping: f64) -> Self {
         Self { name: name.into(), ends, damping, bodies: bodies_of(&ends) }
     }
 }
@@ -47,10 +47,10 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    fn ends() -> [Attachment; 2] {
+    fn ends() -> [Anchor; 2] {
         [
-            Attachment { body: BodyId(0), point: DVec2::new(0.3, -0.2) },
-            Attachment { body: BodyId(1), point: DVec2::new(-0.1, 0.7) },
+            Anchor { body: BodyId(0), point: DVec2::new(0.3, -0.2) },
+            Anchor { body: BodyId(1), point: DVec2::new(-0.1, 0.7) },
         ]
     }
 
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn only_the_rate_of_the_length_is_damped() {
         let mut states = states();
-        let center = |body| Attachment { body, point: DVec2::ZERO };
+        let center = |body| Anchor { body, point: DVec2::ZERO };
         let law = Dashpot::new("", [center(BodyId(0)), center(BodyId(1))], 2.0);
         states[0].position = DVec2::new(1.0, 0.0);
         states[1].position = DVec2::ZERO;

@@ -1,7 +1,7 @@
 //! Force laws: what acts on bodies beside uniform gravity and damping.
 //!
 //! Each law is a type of its own that implements [`ForceLaw`]: [`MutualGravity`], [`Spring`], [`Dashpot`],
-//! [`ConstantForce`], [`RotatingForce`], or yours. `attachment` is a point that moves with a body, `sum` adds up what
+//! [`ConstantForce`], [`RotatingForce`], or yours. `anchor` is points that move with bodies, `sum` adds up what
 //! several laws do.
 //!
 //! A law has a potential only if its forces are the gradient of one at all times. Mutual gravity and springs have; a
@@ -44,7 +44,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod attachment;
+mod anchor;
 mod constant;
 mod dashpot;
 #[cfg(test)]
@@ -54,11 +54,10 @@ mod rotating;
 mod spring;
 mod sum;
 
-pub use attachment::Attachment;
 pub use constant::{ConstantForce, ForceFrame};
 pub use dashpot::Dashpot;
 pub use halfgap_advance::rigid::{ForceLaw, Snapshot, Wrench, Wrenches};
-pub use halfgap_collision::Moving;
+pub use halfgap_collision::{Anchor, Moving};
 pub use mutual_gravity::MutualGravity;
 pub use rotating::{RotatingForce, Turning};
 pub use spring::Spring;

@@ -1,9 +1,8 @@
 //! A force of constant size whose direction turns.
 
-use super::attachment::Attachment;
 use super::{ForceLaw, Snapshot, Wrenches};
 use glam::DVec2;
-use halfgap_collision::BodyId;
+use halfgap_collision::{Anchor, BodyId};
 use halfgap_geometry::Rotation;
 
 /// A force of constant size at a point of a body, whose direction in the body's frame turns at a constant rate.
@@ -34,7 +33,7 @@ pub struct Turning {
 impl RotatingForce {
     /// The force that turns at a point of a body; on the background it does nothing.
     #[must_use]
-    pub fn new(name: impl Into<String>, at: Attachment, turning: Turning) -> Self {
+    pub fn new(name: impl Into<String>, at: Anchor, turning: Turning) -> Self {
         Self { name: name.into(), body: [at.body], point: at.point, turning }
     }
 }
@@ -69,7 +68,7 @@ mod tests {
 
     #[test]
     fn the_direction_turns_in_the_bodys_frame_from_its_phase() {
-        let at = Attachment { body: BodyId(0), point: DVec2::new(1.0, 0.0) };
+        let at = Anchor { body: BodyId(0), point: DVec2::new(1.0, 0.0) };
         let turning = Turning { magnitude: 2.0, rate: 0.5, phase: FRAC_PI_2, start: 10.0 };
         let law = RotatingForce::new("", at, turning);
         let mut states = states();

@@ -1,8 +1,8 @@
 //! An elastic spring between two points.
 
-use super::attachment::{Attachment, Between, bodies_of};
+use super::anchor::{Between, bodies_of};
 use super::{ForceLaw, Snapshot, Wrenches};
-use halfgap_collision::BodyId;
+use halfgap_collision::{Anchor, BodyId};
 
 /// A spring that pulls its two points together with stiffness (length - rest length) [N], or pushes them apart.
 ///
@@ -11,7 +11,7 @@ use halfgap_collision::BodyId;
 #[derive(Clone, Debug)]
 pub struct Spring {
     name: String,
-    ends: [Attachment; 2],
+    ends: [Anchor; 2],
     rest_length: f64,
     stiffness: f64,
     bodies: Vec<BodyId>,
@@ -20,7 +20,7 @@ pub struct Spring {
 impl Spring {
     /// The spring of a rest length [m] and a stiffness [N/m] between two points.
     #[must_use]
-    pub fn new(name: impl Into<String>, ends: [Attachment; 2], rest_length: f64, stiffness: f64) -> Self {
+    pub fn new(name: impl Into<String>, ends: [Anchor; 2], rest_length: f64, stiffness: f64) -> Self {
         Self { name: name.into(), ends, rest_length, stiffness, bodies: bodies_of(&ends) }
     }
 }
@@ -56,8 +56,8 @@ mod tests {
     use glam::DVec2;
 
     fn spring(rest_length: f64) -> Spring {
-        let a = Attachment { body: BodyId(0), point: DVec2::new(0.3, -0.2) };
-        let b = Attachment { body: BodyId(1), point: DVec2::new(-0.1, 0.7) };
+        let a = Anchor { body: BodyId(0), point: DVec2::new(0.3, -0.2) };
+        let b = Anchor { body: BodyId(1), point: DVec2::new(-0.1, 0.7) };
         Spring::new("spring", [a, b], rest_length, 4.0)
     }
 
@@ -66,7 +66,7 @@ mod tests {
         for rest_length in [0.0, 0.5, 20.0] {
             assert_gradient(&spring(rest_length), &states());
         }
-        let to_the_wall = Attachment { body: BodyId::WORLD, point: DVec2::new(3.0, 1.0) };
+        let to_the_wall = Anchor { body: BodyId::WORLD, point: DVec2::new(3.0, 1.0) };
         let wall = Spring::new("", [to_the_wall, spring(1.0).ends[1]], 1.0, 4.0);
         assert_gradient(&wall, &states());
     }
@@ -78,8 +78,8 @@ mod tests {
 
     #[test]
     fn a_stretched_spring_pulls_and_a_compressed_one_pushes() {
-        let wall = Attachment { body: BodyId::WORLD, point: DVec2::ZERO };
-        let center = Attachment { body: BodyId(0), point: DVec2::ZERO };
+        let wall = Anchor { body: BodyId::WORLD, point: DVec2::ZERO };
+        let center = Anchor { body: BodyId(0), point: DVec2::ZERO };
         let law = Spring::new("", [center, wall], 2.0, 10.0);
         let mut states = states();
         for (length, force) in [(3.0, -10.0), (1.5, 5.0), (2.0, 0.0)] {
@@ -90,8 +90,8 @@ mod tests {
 
     #[test]
     fn a_spring_without_length_exerts_no_force() {
-        let wall = Attachment { body: BodyId::WORLD, point: DVec2::new(1.0, 2.0) };
-        let center = Attachment { body: BodyId(0), point: DVec2::ZERO };
+        let wall = Anchor { body: BodyId::WORLD, point: DVec2::new(1.0, 2.0) };
+        let center = Anchor { body: BodyId(0), point: DVec2::ZERO };
         let mut states = states();
         states[0].position = wall.point;
         for rest_length in [0.0, 2.0] {
@@ -102,8 +102,8 @@ mod tests {
 
     #[test]
     fn it_names_each_body_once_and_never_the_background() {
-        let wall = Attachment { body: BodyId::WORLD, point: DVec2::ZERO };
-        let center = Attachment { body: BodyId(4), point: DVec2::ZERO };
+        let wall = Anchor { body: BodyId::WORLD, point: DVec2::ZERO };
+        let center = Anchor { body: BodyId(4), point: DVec2::ZERO };
         assert_eq!(Spring::new("", [center, wall], 0.0, 1.0).bodies(), [BodyId(4)]);
         assert_eq!(Spring::new("", [center, center], 0.0, 1.0).bodies(), [BodyId(4)]);
     }

@@ -1,5 +1,6 @@
-//! The scene at one time: bodies with their true arcs, trails of centres of mass, and a scale bar.
+//! The scene at one time: bodies with their true arcs, trails of centres of mass, forces, and a scale bar.
 
+use super::arrows::ForceScale;
 use super::color;
 use super::outline::path_data;
 use super::svg::{Svg, TextStyle, number};
@@ -20,7 +21,8 @@ const LONGEST_TRAIL: usize = 4000;
 /// The time in the title is rounded to this [s].
 const TITLE_TIME_STEP: f64 = 1e-3;
 
-/// Draws the bodies of a world as they are in a frame of its recording; the trails are those of the whole recording.
+/// Draws the bodies of a world as they are in a frame of its recording, and the forces of its contacts and connectors;
+/// the trails, and the scale of the forces, are those of the whole recording.
 #[must_use]
 pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> String {
     let view = View::of_box(shown_box(world, recording));
@@ -36,6 +38,10 @@ pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> Str
         draw_movable(&mut svg, world, body, (place, state), &view);
     }
     svg.close_group();
+    if let Some(forces) = ForceScale::of(recording) {
+        forces.draw(&mut svg, recording, frame, &view);
+        forces.draw_key(&mut svg, (view.page_width() - 20.0, view.page_height() - 0.45 * FOOT));
+    }
     draw_scale_bar(&mut svg, &view);
     svg.finish()
 }

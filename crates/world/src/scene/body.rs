@@ -5,7 +5,7 @@ use super::vector::Vector;
 use serde::Deserialize;
 
 /// The name by which points refer to the immovable background. No body may have it.
-pub const WORLD: &str = "world";
+pub const WORLD: &str = crate::world::BACKGROUND;
 
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq, Deserialize)]

@@ -1,0 +1,124 @@
+//! The connectors of a scene.
+
+use super::edge_spec;
+use super::force::anchor;
+use crate::builder::WorldBuilder;
+use crate::connector::ConnectorSpec;
+use crate::scene::{
+    self, ConnectorData, FieldPath, LengthData, NormalFrame, PointData, Scene, SceneError, SlotData,
+};
+use halfgap_collision::{Connector, ConnectorError, ConnectorKind, RailError, RailPath, SlotFrame};
+use std::sync::Arc;
+
+/// Elasticity of connectors that hold their points, unless said otherwise.
+const HOLDING_ELASTICITY: f64 = 0.0;
+/// Elasticity of connectors that only limit them, unless said otherwise.
+const LIMITING_ELASTICITY: f64 = 1.0;
+
+/// Adds all connectors; all bodies have been added before, in the order of the scene.
+pub(super) fn add_all(builder: &mut WorldBuilder, scene: &Scene) -> Result<(), SceneError> {
+    let mut paths = Paths { scene, made: Vec::new() };
+    for (index, data) in scene.connectors.iter().enumerate() {
+        let field = FieldPath::top().field("connector").element(index).field(data.key());
+        let kind = kind(builder, scene, data, &mut paths, &field)?;
+        let options = data.options();
+        let elasticity = options.elasticity.unwrap_or(match data {
+            ConnectorData::Rope(_) | ConnectorData::RailStop(_) => LIMITING_ELASTICITY,
+            _ => HOLDING_ELASTICITY,
+        });
+        let connector = Connector::new(kind, elasticity).map_err(|error| refused(&error, &field))?;
+        builder.add_connector(ConnectorSpec { connector, collide: options.collide, align: options.align });
+    }
+    Ok(())
+}
+
+fn kind<'a>(
+    builder: &WorldBuilder,
+    scene: &'a Scene,
+    data: &'a ConnectorData,
+    paths: &mut Paths<'a>,
+    field: &FieldPath,
+) -> Result<ConnectorKind, SceneError> {
+    let end = |point: &PointData| anchor(builder, scene, point);
+    let ends = |length: &LengthData| (end(&length.a), end(&length.b), length.length);
+    Ok(match data {
+        ConnectorData::Pin(pin) => ConnectorKind::Pin { a: end(&pin.a), b: end(&pin.b) },
+        ConnectorData::Slot(SlotData { a, b, normal, normal_frame, .. }) => ConnectorKind::Slot {
+            a: end(a),
+            b: end(b),
+            normal: (*normal).into(),
+            frame: match normal_frame {
+                NormalFrame::A => SlotFrame::A,
+                NormalFrame::B => SlotFrame::B,
+                NormalFrame::World => SlotFrame::World,
+            },
+        },
+        ConnectorData::Rod(data) => {
+            let (a, b, length) = ends(data);
+            ConnectorKind::Rod { a, b, length }
+        }
+        ConnectorData::Rope(data) => {
+            let (a, b, length) = ends(data);
+            ConnectorKind::Rope { a, b, length }
+        }
+        ConnectorData::Rail(rail) => {
+            ConnectorKind::Rail { a: end(&rail.a), path: paths.find(&rail.path, rail.closed, field)? }
+        }
+        ConnectorData::RailStop(stop) => {
+            let closed = paths.is_closed(&stop.path);
+            let path = paths.find(&stop.path, closed, field)?;
+            ConnectorKind::RailStop { a: end(&stop.a), path, at: stop.at, upper: stop.upper }
+        }
+    })
+}
+
+/// Paths of rails that have been made: a rail and its stops share one.
+struct Paths<'a> {
+    scene: &'a Scene,
+    made: Vec<(&'a scene::RailPath, bool, Arc<RailPath>)>,
+}
+
+impl<'a> Paths<'a> {
+    fn find(
+        &mut self,
+        data: &'a scene::RailPath,
+        closed: bool,
+        field: &FieldPath,
+    ) -> Result<Arc<RailPath>, SceneError> {
+        if let Some((.., path)) = self.made.iter().find(|made| made.0 == data && made.1 == closed) {
+            return Ok(path.clone());
+        }
+        let path = rail_path(data, closed);
+        let path = path.map_err(|error| SceneError::new(field.field("path"), error.to_string()))?;
+        let path = Arc::new(path);
+        self.made.push((data, closed, path.clone()));
+        Ok(path)
+    }
+
+    /// True if a rail has this path and says that it is closed: a stop does not repeat that.
+    fn is_closed(&self, data: &scene::RailPath) -> bool {
+        let closed = |one: &ConnectorData| matches!(one, ConnectorData::Rail(rail) if rail.closed && rail.path == *data);
+        self.scene.connectors.iter().any(closed)
+    }
+}
+
+fn rail_path(data: &scene::RailPath, closed: bool) -> Result<RailPath, RailError> {
+    if let Some(points) = &data.points {
+        let points: Vec<_> = points.iter().map(|&point| point.into()).collect();
+        return RailPath::through(&points, closed);
+    }
+    let edges: Vec<_> = data.edges.iter().flatten().map(edge_spec).collect();
+    RailPath::from_edges(data.start.unwrap_or_default().into(), &edges)
+}
+
+/// Points the error at the field that it is about.
+fn refused(error: &ConnectorError, field: &FieldPath) -> SceneError {
+    let field = match error {
+        ConnectorError::BadLength(_) => field.field("length"),
+        ConnectorError::BadNormal(..) => field.field("normal"),
+        ConnectorError::BadElasticity(_) => field.field("elasticity"),
+        ConnectorError::BadStop { .. } => field.field("at"),
+        _ => field.clone(),
+    };
+    SceneError::new(field, error.to_string())
+}

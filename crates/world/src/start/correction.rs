@@ -1,0 +1,127 @@
+//! Least corrections, weighted by mass, that satisfy rows: displacements for gaps, velocities for rates.
+
+use super::StartParts;
+use super::joined::{name_of, rows};
+use crate::world::Named;
+use crate::world_error::WorldError;
+use glam::DVec2;
+use halfgap_collision::{BodyId, Collision, Connector};
+use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Settings, Solution, Solver};
+
+/// Contradiction between dependent connectors, in units of the largest gap, that a round may leave to the next: gaps
+/// are curved, so those of a linkage with more bars than it needs agree only to second order.
+const INCONSISTENCY: f64 = 1e-2;
+/// A rate of so many machine epsilons of the velocities that make it up is zero.
+const RATE_ROUNDINGS: f64 = 64.0;
+
+/// One row of a correction: J over (A, B), and what it is to undo.
+struct Correction {
+    bodies: [BodyId; 2],
+    jacobian: [f64; 6],
+    offset: f64,
+    bilateral: bool,
+}
+
+/// Moves the bodies so that gaps and connectors come to fit, to first order; false if that cannot be done.
+pub(super) fn correct_positions(
+    bodies: &mut [StartParts],
+    records: &[Collision],
+    connectors: &[Connector],
+) -> bool {
+    let touching = records.iter().map(|record| {
+        let above = record.distance_to_target();
+        let accuracy = record.tolerances.accuracy;
+        Correction {
+            bodies: [record.parties.primary.body, record.parties.normal.body],
+            jacobian: record.motion.kinematics.jacobian,
+            // What lies in the zone already may move within it.
+            offset: if above < -accuracy { above } else { above + accuracy },
+            bilateral: false,
+        }
+    });
+    let joined = rows(bodies, connectors).map(|(_, connector, sample)| Correction {
+        bodies: connector.bodies(),
+        jacobian: sample.kinematics.jacobian,
+        offset: sample.gap,
+        bilateral: connector.is_bilateral(),
+    });
+    let corrections: Vec<_> = touching.chain(joined).collect();
+    let Some(changes) = least_changes(bodies, &corrections) else { return false };
+    for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
+        state.position += DVec2::new(change[0], change[1]);
+        state.angle += change[2];
+    }
+    true
+}
+
+/// Changes the velocities so that no bilateral connector comes apart.
+pub(super) fn correct_velocities(
+    bodies: &mut [StartParts],
+    named: &[Named],
+    connectors: &[Connector],
+) -> Result<(), WorldError> {
+    let bilateral = rows(bodies, connectors).filter(|(_, connector, _)| connector.is_bilateral());
+    let (mut corrections, mut worst) = (Vec::new(), None::<(usize, f64)>);
+    for (index, connector, sample) in bilateral {
+        let (jacobian, rate) = (sample.kinematics.jacobian, sample.kinematics.rate);
+        let ends = connector.bodies();
+        if rate.abs() > RATE_ROUNDINGS * f64::EPSILON * rate_size(bodies, ends, &jacobian)
+            && worst.is_none_or(|(_, largest)| rate.abs() > largest)
+        {
+            worst = Some((index, rate.abs()));
+        }
+        corrections.push(Correction { bodies: ends, jacobian, offset: rate, bilateral: true });
+    }
+    let Some((index, rate)) = worst else { return Ok(()) };
+    let changes = least_changes(bodies, &corrections).ok_or_else(|| {
+        let connector = name_of(index, named, connectors);
+        WorldError::ConnectorComesApart { connector, rate }
+    })?;
+    for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
+        state.velocity += DVec2::new(change[0], change[1]);
+        state.angular_velocity += change[2];
+    }
+    Ok(())
+}
+
+/// The sum of the sizes of the terms that make up a rate [m/s].
+fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
+    let sizes = ends.iter().zip(jacobian.chunks_exact(3)).map(|(body, part)| {
+        let Some((_, _, state)) = bodies.get(body.index()) else { return 0.0 };
+        let velocities = [state.velocity.x, state.velocity.y, state.angular_velocity];
+        part.iter().zip(velocities).map(|(entry, velocity)| (entry * velocity).abs()).sum()
+    });
+    sizes.sum()
+}
+
+/// The change of (x, y, angle) of each body, least in the mass metric, that undoes all rows; `None` if there is none.
+fn least_changes(bodies: &[StartParts], corrections: &[Correction]) -> Option<Vec<[f64; 3]>> {
+    let mut problem = Problem::new();
+    for (body, _, _) in bodies {
+        let inertia = Inertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment };
+        problem.add_body(inertia).ok()?;
+    }
+    let background = problem.add_body(Inertia { inverse_mass: 0.0, inverse_moment: 0.0 }).ok()?;
+    for Correction { bodies, jacobian: j, offset, bilateral } in corrections {
+        let [primary, normal] =
+            bodies.map(|body| if body.is_world() { background } else { halfgap_contact::BodyId(body.0) });
+        let row = Row::new(primary, [j[0], j[1], j[2]], *offset).against(normal, [j[3], j[4], j[5]]);
+        problem.add_row(&if *bilateral { row.bilateral() } else { row }).ok()?;
+    }
+    let mut settings = Settings::default();
+    settings.inconsistency = INCONSISTENCY;
+    let mut solution = Solution::new();
+    DualActiveSet::new(settings).ok()?.solve(&problem, &mut solution).ok()?;
+    let mut changes = vec![[0.0; 3]; bodies.len()];
+    for (Correction { bodies: ends, jacobian, .. }, &force) in corrections.iter().zip(&solution.force) {
+        for (end, part) in ends.iter().zip(jacobian.chunks_exact(3)) {
+            let Some((body, _, _)) = bodies.get(end.index()) else { continue };
+            let change = &mut changes[end.index()];
+            let inverse = [body.inverse_mass, body.inverse_mass, body.inverse_moment];
+            for (place, entry) in part.iter().enumerate() {
+                change[place] += entry * inverse[place] * force;
+            }
+        }
+    }
+    Some(changes)
+}

@@ -1,0 +1,74 @@
+//! How far off the connectors are at the start.
+
+use super::{StartParts, moving};
+use crate::connector::kind_name;
+use crate::world::{BACKGROUND, Named};
+use crate::world_error::{ConnectorName, WorldError};
+use halfgap_collision::{BodyId, Connector, ConnectorSample};
+
+/// A connector and how far off it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ConnectorOff {
+    index: usize,
+    /// How far [m].
+    pub(super) error: f64,
+}
+
+impl ConnectorOff {
+    pub(super) fn name(&self, named: &[Named], connectors: &[Connector]) -> ConnectorName {
+        name_of(self.index, named, connectors)
+    }
+}
+
+/// A connector as messages name it.
+pub(super) fn name_of(index: usize, named: &[Named], connectors: &[Connector]) -> ConnectorName {
+    let connector = &connectors[index];
+    let name = |body: BodyId| {
+        named.get(body.index()).map_or_else(|| BACKGROUND.to_owned(), |body| body.name.clone())
+    };
+    let [first, second] = connector.bodies().map(name);
+    ConnectorName { index, kind: kind_name(&connector.kind), first, second }
+}
+
+/// Refuses the first connector that is off by more than allowed [m].
+pub(super) fn require_small_errors(
+    bodies: &[StartParts],
+    named: &[Named],
+    connectors: &[Connector],
+    allowed: f64,
+) -> Result<(), WorldError> {
+    for (index, connector) in connectors.iter().enumerate() {
+        let error = error_of(bodies, connector);
+        if error > allowed || error.is_nan() {
+            let connector = name_of(index, named, connectors);
+            return Err(WorldError::ConnectorError { connector, error, allowed });
+        }
+    }
+    Ok(())
+}
+
+/// The connector that is off most.
+pub(super) fn worst_connector(bodies: &[StartParts], connectors: &[Connector]) -> Option<ConnectorOff> {
+    let off = connectors.iter().enumerate();
+    let off = off.map(|(index, connector)| ConnectorOff { index, error: error_of(bodies, connector) });
+    off.max_by(|p, q| p.error.total_cmp(&q.error))
+}
+
+fn error_of(bodies: &[StartParts], connector: &Connector) -> f64 {
+    let [a, b] = connector.bodies().map(|body| moving(bodies, body));
+    connector.error(&a, &b)
+}
+
+/// Every row of every connector that ties a movable body, with the connector's index.
+pub(super) fn rows<'a>(
+    bodies: &'a [StartParts],
+    connectors: &'a [Connector],
+) -> impl Iterator<Item = (usize, &'a Connector, ConnectorSample)> {
+    let is_fixed = |body: BodyId| body.is_world() || bodies[body.index()].0.is_fixed();
+    let movable =
+        connectors.iter().enumerate().filter(move |(_, one)| !one.bodies().into_iter().all(is_fixed));
+    movable.flat_map(|(index, connector)| {
+        let [a, b] = connector.bodies().map(|body| moving(bodies, body));
+        (0..connector.row_count()).map(move |row| (index, connector, connector.measure(row, &a, &b)))
+    })
+}

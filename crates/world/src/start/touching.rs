@@ -1,0 +1,74 @@
+//! Which bodies touch at the start, and how deep they overlap.
+
+use super::StartParts;
+use super::overlap::overlap_depth;
+use crate::world::Named;
+use crate::world_error::WorldError;
+use halfgap_collision::{BodyId, BroadPhase, Collision, Moment, Moving, Tolerances, detect_pair};
+
+/// Refuses overlaps deeper than allowed [m].
+pub(super) fn require_shallow(
+    bodies: &[StartParts],
+    named: &[Named],
+    pairs: &[(BodyId, BodyId)],
+    allowed: f64,
+) -> Result<(), WorldError> {
+    for &(a, b) in pairs {
+        let [(body_a, _, state_a), (body_b, _, state_b)] = [&bodies[a.index()], &bodies[b.index()]];
+        let depth = overlap_depth(&body_a.shape, &state_a.pose(), &body_b.shape, &state_b.pose());
+        if let Some(depth) = depth.filter(|depth| *depth > allowed) {
+            let (first, second) = (named[a.index()].name.clone(), named[b.index()].name.clone());
+            return Err(WorldError::Overlap { first, second, depth, allowed });
+        }
+    }
+    Ok(())
+}
+
+/// Pairs that may collide and whose boxes come within `skin` [m].
+pub(super) fn near_pairs(
+    bodies: &[StartParts],
+    excluded: &[(BodyId, BodyId)],
+    skin: f64,
+) -> Vec<(BodyId, BodyId)> {
+    let mut broad = BroadPhase::new();
+    let boxes: Vec<_> =
+        bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()).grown(skin)).collect();
+    let mut pairs = Vec::new();
+    for (index, bounds) in boxes.iter().enumerate() {
+        let body = BodyId(u32::try_from(index).unwrap_or(u32::MAX));
+        broad.visit_overlapping(bounds, &mut |other| {
+            let both_fixed = bodies[index].0.is_fixed() && bodies[other.index()].0.is_fixed();
+            let passes = excluded.iter().any(|&(a, b)| (a, b) == (other, body) || (a, b) == (body, other));
+            if !both_fixed && !passes {
+                pairs.push((other, body));
+            }
+        });
+        broad.set(body, *bounds);
+    }
+    pairs.sort_unstable();
+    pairs
+}
+
+/// Records of all places where bodies touch, overlaps up to `depth` [m] included.
+pub(super) fn touching(
+    bodies: &[StartParts],
+    pairs: &[(BodyId, BodyId)],
+    tolerances: &Tolerances,
+    depth: f64,
+) -> Vec<Collision> {
+    let moment = |id: BodyId| {
+        let (body, _, state) = &bodies[id.index()];
+        Moment { id, body, moving: Moving::from(state) }
+    };
+    let mut records = Vec::new();
+    for &(a, b) in pairs {
+        detect_pair(&moment(a), &moment(b), tolerances, depth, 0.0, &mut records);
+    }
+    records
+}
+
+pub(super) fn lowest_below_zone(records: &[Collision]) -> Option<&Collision> {
+    let too_near = |record: &&Collision| record.distance_to_target() < -record.tolerances.accuracy;
+    let by_gap = |p: &&Collision, q: &&Collision| p.distance_to_target().total_cmp(&q.distance_to_target());
+    records.iter().filter(too_near).min_by(by_gap)
+}

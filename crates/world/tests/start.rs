@@ -1,0 +1,181 @@
+//! What is done to a world before its start: connectors put together, velocities made to fit, gaps lifted.
+
+use halfgap::geometry::{DVec2, Shape};
+use halfgap::{
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, World,
+    WorldBuilder, WorldError, WorldSettings,
+};
+
+fn disc(name: &str, mass: f64, position: DVec2) -> BodySpec {
+    let state = BodyState { position, ..BodyState::default() };
+    BodySpec::movable(name, Shape::disc(0.5).expect("a fine radius"), mass, state)
+}
+
+fn center(body: BodyId) -> Anchor {
+    Anchor { body, point: DVec2::ZERO }
+}
+
+fn at(x: f64, y: f64) -> Anchor {
+    Anchor { body: BodyId::WORLD, point: DVec2::new(x, y) }
+}
+
+fn spec(kind: ConnectorKind) -> ConnectorSpec {
+    ConnectorSpec::new(Connector::new(kind, 0.0).expect("a fine connector"))
+}
+
+fn pin(a: Anchor, b: Anchor) -> ConnectorSpec {
+    spec(ConnectorKind::Pin { a, b })
+}
+
+fn rod(a: Anchor, b: Anchor, length: f64) -> ConnectorSpec {
+    spec(ConnectorKind::Rod { a, b, length })
+}
+
+fn build(builder: WorldBuilder) -> World {
+    builder.build().unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn largest_error(world: &World, connectors: &[ConnectorId]) -> f64 {
+    connectors.iter().map(|&one| world.connector_error(one)).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_pin_that_is_a_little_off_is_put_together_by_the_lighter_body() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let light = builder.add(disc("light", 1.0, DVec2::ZERO));
+    let heavy = builder.add(disc("heavy", 3.0, DVec2::new(0.0, 4e-7)));
+    let joint = builder.add_connector(pin(center(light), center(heavy)));
+    let world = build(builder);
+    assert!((world.state(light).position.y - 3e-7).abs() < 1e-20, "{}", world.state(light).position);
+    assert!((world.state(heavy).position.y - 3e-7).abs() < 1e-20);
+    assert!((world.start_correction() - 3e-7).abs() < 1e-20);
+    assert!(world.connector_error(joint) < 1e-20);
+}
+
+#[test]
+fn what_fits_is_not_moved_by_a_bit() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let place = DVec2::new(0.1, 0.7);
+    let bob = builder.add(disc("bob", 1.0, place));
+    builder.add_connector(rod(at(0.4, 1.1), center(bob), 0.5));
+    let world = build(builder);
+    assert_eq!((world.state(bob).position, world.start_correction()), (place, 0.0));
+}
+
+#[test]
+fn larger_errors_are_refused_by_name() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let bob = builder.add(disc("bob", 1.0, DVec2::new(0.0, 2.0)));
+    builder.add_connector(rod(at(0.0, 0.0), center(bob), 2.0));
+    builder.add_connector(rod(at(0.0, 4.0), center(bob), 1.875));
+    let error = builder.clone().build().expect_err("an eighth of a metre is too much");
+    assert_eq!(
+        error.to_string(),
+        "connector 1 (rod of \"world\" and \"bob\") is off by 0.125 m at the start; at most 0.0000005 m are allowed"
+    );
+    let error = {
+        let mut builder =
+            WorldBuilder::new(WorldSettings { start_connector_error: Some(0.2), ..WorldSettings::default() });
+        let bob = builder.add(disc("bob", 1.0, DVec2::new(0.0, 2.0)));
+        builder.add_connector(rod(at(0.0, 0.0), center(bob), 2.0));
+        builder.add_connector(rod(at(0.0, 4.0), center(bob), 1.875));
+        builder.build().expect_err("two rods cannot span 4 m with 3.875 m")
+    };
+    assert!(matches!(error, WorldError::CannotConnect { .. }), "{error}");
+}
+
+#[test]
+fn a_linkage_with_more_bars_than_it_needs_is_put_together() {
+    // Three parallel cranks carry one plate: any two would do, and all three are off by a little.
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let state = BodyState {
+        position: DVec2::new(0.6, 0.8) + DVec2::new(3e-7, -2e-7),
+        angle: 1e-7,
+        ..BodyState::default()
+    };
+    let plate =
+        builder.add(BodySpec::movable("plate", Shape::block(4.0, 0.5).expect("fine sides"), 2.0, state));
+    let joints: Vec<_> = [-1.5, 0.0, 1.5]
+        .into_iter()
+        .map(|x| {
+            builder.add_connector(rod(at(x, 0.0), Anchor { body: plate, point: DVec2::new(x, 0.0) }, 1.0))
+        })
+        .collect();
+    let world = build(builder);
+    assert!(largest_error(&world, &joints) < 1e-14, "{}", largest_error(&world, &joints));
+    assert!(world.start_correction() > 0.0 && world.start_correction() < 1e-6);
+}
+
+#[test]
+fn velocities_are_made_to_fit_and_the_loss_is_booked() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let state =
+        BodyState { position: DVec2::new(2.0, 0.0), velocity: DVec2::new(3.0, 4.0), ..BodyState::default() };
+    let bob = builder.add(BodySpec::movable("bob", Shape::disc(0.5).expect("fine"), 2.0, state));
+    builder.add_gravity(bob, DVec2::new(0.0, -10.0));
+    builder.add_connector(rod(at(0.0, 0.0), center(bob), 2.0));
+    let world = build(builder);
+    assert!(
+        (world.state(bob).velocity - DVec2::new(0.0, 4.0)).length() < 1e-15,
+        "{}",
+        world.state(bob).velocity
+    );
+    let ledger = world.ledger();
+    assert!((ledger.start_correction + 9.0).abs() < 1e-14, "{ledger:?}");
+    assert!((ledger.start - 16.0).abs() < 1e-14 && ledger.integration_error() == 0.0, "{ledger:?}");
+}
+
+#[test]
+fn gaps_are_lifted_without_taking_connectors_apart() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let floor = Shape::block(10.0, 1.0).expect("fine sides");
+    builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+    // Exactly on the floor, and hung on a rod that slants: it must move to the side to get up.
+    let ball = builder.add(disc("ball", 1.0, DVec2::new(0.0, 0.5)));
+    let joint = builder.add_connector(rod(at(3.0, 4.5), center(ball), 5.0));
+    let world = build(builder);
+    let tolerances = *world.tolerances();
+    let gap = world.state(ball).position.y - 0.5;
+    assert!((gap - tolerances.target_gap).abs() <= tolerances.accuracy, "{gap}");
+    assert!(world.connector_error(joint) < 1e-14);
+    assert!(world.state(ball).position.x < -0.5 * gap);
+}
+
+#[test]
+fn joined_bodies_overlap_freely_unless_they_are_to_collide() {
+    let world = |collide: bool| {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let a = builder.add(disc("a", 1.0, DVec2::ZERO));
+        let b = builder.add(disc("b", 1.0, DVec2::new(0.3, 0.0)));
+        let joint = pin(Anchor { body: a, point: DVec2::new(0.3, 0.0) }, center(b));
+        builder.add_connector(ConnectorSpec { collide, ..joint });
+        builder.build()
+    };
+    assert!(world(false).is_ok());
+    assert!(matches!(world(true), Err(WorldError::Overlap { .. })));
+}
+
+#[test]
+fn aligned_bodies_are_moved_one_after_another() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let links: Vec<_> =
+        (0..3).map(|link| builder.add(disc(&format!("{link}"), 1.0, DVec2::new(5.0, 5.0)))).collect();
+    let aligned = |connector: ConnectorSpec| ConnectorSpec { align: true, ..connector };
+    let rim = |body, x| Anchor { body, point: DVec2::new(x, 0.0) };
+    builder.add_connector(aligned(pin(at(1.0, 1.0), rim(links[0], -1.0))));
+    builder.add_connector(aligned(pin(rim(links[0], 1.0), rim(links[1], -1.0))));
+    // The background cannot be moved, so body a is.
+    builder.add_connector(aligned(pin(rim(links[2], -1.0), at(8.0, 2.0))));
+    let world = build(builder);
+    let places: Vec<_> = links.iter().map(|&link| world.state(link).position).collect();
+    assert_eq!(places, [DVec2::new(2.0, 1.0), DVec2::new(4.0, 1.0), DVec2::new(9.0, 2.0)]);
+}
+
+#[test]
+fn what_names_no_body_is_refused() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let bob = builder.add(disc("bob", 1.0, DVec2::ZERO));
+    builder.add_connector(pin(center(bob), center(BodyId(7))));
+    let error = builder.build().expect_err("there is no body 7");
+    assert_eq!(error.to_string(), "connector 0 names body 7, but there are 1 bodies");
+}
