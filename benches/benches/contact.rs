@@ -86,8 +86,11 @@ fn measure_held_rows() {
     }
 }
 
-/// A pyramid of blocks, each on two corners of each block below: number of blocks, sides and coefficients of the rows.
-fn pyramid(layers: u32) -> (usize, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>) {
+/// Number of bodies, sides and coefficients of the rows.
+type Scene = (usize, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>);
+
+/// A pyramid of blocks, each on two corners of each block below.
+fn pyramid(layers: u32) -> Scene {
     let (mut sides, mut coefficients) = (Vec::new(), Vec::new());
     let mut below = 0;
     let mut count = 0;
