@@ -7,14 +7,22 @@
 //! * next: cold and warm with the next step's right-hand side, warm from the answer of this step and with its factor;
 //! * J: the same with every coefficient of J changed by up to 1e-3 of itself, so that no factor can be reused;
 //! * clarabel: velocity form, building the solver and solving, tolerances 1e-12.
+//!
+//! Then, with `-- held` or without a filter, the parts of `HeldRows` on chains and pyramids; with `-- impact` or without a
+//! filter, impacts by each law, rows given anew. Each time is the least mean of some batches.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on should stop")]
 
+use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT};
-use halfgap_contact::{Auto, ContactFile, Problem, RowsField, Solution, Solver, WarmStart};
+use halfgap_collision::BodyId as WorldBody;
+use halfgap_contact::{
+    Auto, CollisionRow, ContactFile, HeldRows, Impact, ImpactLaw, ImpactOrder, Inertia, Problem, RowsField,
+    Solution, Solver, WarmStart,
+};
 
 /// Time spent on each problem [s], and the most solves of one kind.
 const BUDGET: f64 = 0.3;
@@ -41,6 +49,161 @@ fn main() {
     for (name, file) in &cases {
         println!("{}", measure(name, file));
     }
+    if filter.is_empty() || filter == "held" {
+        measure_held_rows();
+    }
+    if filter.is_empty() || filter == "impact" {
+        measure_impacts();
+    }
+}
+
+/// Bodies all alike: 1.25 kg, a third of a kg m².
+const BLOCK: Inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+
+/// Prints the table of held rows.
+fn measure_held_rows() {
+    println!("\n| rows held | n | dependent | factorize | solve | respond |\n|---|---|---|---|---|---|");
+    for rows in 1..=3 {
+        let sides: Vec<_> = (0..rows).map(|row| [Some(0), (row % 2 == 1).then_some(1)]).collect();
+        let row = |row: usize| {
+            let (sin, cos) = (row as f64).sin_cos();
+            [cos, sin, 0.3 * row as f64 - 0.4, -cos, -sin, 0.2]
+        };
+        measure_held("two bodies", 2, &sides, &(0..rows).map(row).collect::<Vec<_>>());
+    }
+    for links in [5_u32, 20, 100] {
+        let sides: Vec<_> = (0..2 * links).map(|row| [Some(row / 2), (row / 2).checked_sub(1)]).collect();
+        let row = |row: u32| {
+            let (sin, cos) = (0.1 * f64::from(row / 2)).sin_cos();
+            let across = [1.0, 0.0, -0.5 * sin, -1.0, 0.0, -0.5 * sin];
+            if row.is_multiple_of(2) { across } else { [0.0, 1.0, 0.5 * cos, 0.0, -1.0, 0.5 * cos] }
+        };
+        measure_held("chain of pins", links as usize, &sides, &(0..2 * links).map(row).collect::<Vec<_>>());
+    }
+    for layers in [5, 10] {
+        let (blocks, sides, coefficients) = pyramid(layers);
+        measure_held("pyramid", blocks, &sides, &coefficients);
+    }
+}
+
+/// Number of bodies, sides and coefficients of the rows.
+type Scene = (usize, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>);
+
+/// A pyramid of blocks, each on two corners of each block below.
+fn pyramid(layers: u32) -> Scene {
+    let (mut sides, mut coefficients) = (Vec::new(), Vec::new());
+    let mut below = 0;
+    let mut count = 0;
+    for layer in 0..layers {
+        for block in count..count + layers - layer {
+            if layer == 0 {
+                sides.extend([[Some(block), None]; 2]);
+                coefficients.extend([-0.5, 0.5].map(|arm| [0.0, 1.0, arm, 0.0, 0.0, 0.0]));
+                continue;
+            }
+            let left = below + block - count;
+            for (other, lower, upper) in
+                [(left, 0.0, -0.5), (left, 0.5, 0.0), (left + 1, -0.5, 0.0), (left + 1, 0.0, 0.5)]
+            {
+                sides.push([Some(block), Some(other)]);
+                coefficients.push([0.0, 1.0, upper, 0.0, -1.0, -lower]);
+            }
+        }
+        below = count;
+        count += layers - layer;
+    }
+    (count as usize, sides, coefficients)
+}
+
+fn measure_held(name: &str, bodies: usize, sides: &[[Option<u32>; 2]], coefficients: &[[f64; 6]]) {
+    let n = sides.len();
+    let mut held = HeldRows::default();
+    held.set_structure(&vec![BLOCK; bodies], sides);
+    let dependent = held.factorize(coefficients);
+    let offset: Vec<f64> = (0..n).map(|row| (row % 3) as f64 - 9.81).collect();
+    let (mut force, mut change) = (vec![0.0; n], vec![[0.0; 3]; bodies]);
+    let factorize = least_mean(|| {
+        black_box(held.factorize(black_box(coefficients)));
+    });
+    let solve = least_mean(|| held.solve(black_box(&offset), black_box(&mut force)));
+    let respond = least_mean(|| held.respond(black_box(&force), black_box(&mut change)));
+    println!("| {name} | {n} | {dependent} | {factorize:.3} | {solve:.3} | {respond:.3} |");
+}
+
+/// Prints the table of impacts.
+fn measure_impacts() {
+    println!("\n| impact | n | law | time | solves |\n|---|---|---|---|---|");
+    let cases = [
+        ("ball on a floor", vec![corner(0.0)]),
+        ("block landing flat", [-0.5, 0.5].map(corner).to_vec()),
+        ("block on three points", [-0.5, 0.0, 0.5].map(corner).to_vec()),
+        ("21 discs in a row", discs(21, false)),
+        ("2 discs in a tight box", discs(2, true)),
+        ("20 discs in a tight box", discs(20, true)),
+        ("chain of 20 pins, struck", struck_chain(20)),
+    ];
+    for (name, rows) in &cases {
+        for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid, ImpactLaw::SerialSeparate] {
+            let mut impact = Impact::new();
+            let time = least_mean(|| {
+                impact.set_rows(rows.iter().copied());
+                law.resolve(&mut impact, ImpactOrder::Fastest, 0).unwrap();
+            });
+            println!("| {name} | {} | {law:?} | {time:.2} | {} |", rows.len(), impact.solves());
+        }
+    }
+}
+
+fn impact_row(bodies: [WorldBody; 2], jacobian: [f64; 6], rate: f64, bilateral: bool) -> CollisionRow {
+    let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    let inertia = bodies.map(|body| if body.is_world() { fixed } else { BLOCK });
+    CollisionRow::new(bodies, jacobian, inertia, rate, 1.0, 1e-9, bilateral)
+}
+
+/// A corner that comes down on a floor.
+fn corner(arm: f64) -> CollisionRow {
+    impact_row([WorldBody(0), WorldBody::WORLD], [0.0, 1.0, arm, 0.0, -1.0, -arm], -1.0, false)
+}
+
+/// Touching discs in a row, the first of which moves; between two walls if so wished.
+fn discs(count: u32, walls: bool) -> Vec<CollisionRow> {
+    let along = [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+    let speed = |disc: u32| if disc == 1 { -1.0 } else { 0.0 };
+    let touch = |disc: u32| impact_row([WorldBody(disc - 1), WorldBody(disc)], along, speed(disc), false);
+    let mut rows: Vec<_> = (1..count).map(touch).collect();
+    if walls {
+        let wall = WorldBody::WORLD;
+        rows.push(impact_row([WorldBody(count - 1), wall], along, 0.0, false));
+        rows.push(impact_row([WorldBody(0), wall], along.map(|x| -x), 1.0, false));
+    }
+    rows
+}
+
+/// A chain of rods in a line, struck across at its end.
+fn struck_chain(links: u32) -> Vec<CollisionRow> {
+    let mut rows = Vec::new();
+    for link in 0..links {
+        let before = link.checked_sub(1).map_or(WorldBody::WORLD, WorldBody);
+        let sides = [WorldBody(link), before];
+        rows.push(impact_row(sides, [1.0, 0.0, 0.0, -1.0, 0.0, 0.0], 0.0, true));
+        rows.push(impact_row(sides, [0.0, 1.0, -0.5, 0.0, -1.0, -0.5], 0.0, true));
+    }
+    let across = [0.0, 1.0, 0.0, 0.0, -1.0, -0.5];
+    rows.push(impact_row([WorldBody(links), WorldBody(links - 1)], across, -1.0, false));
+    rows
+}
+
+/// Microseconds that `work` takes: the least mean of some batches.
+fn least_mean(mut work: impl FnMut()) -> f64 {
+    let begin = Instant::now();
+    work();
+    let batch = (2e-3 / begin.elapsed().as_secs_f64()).clamp(1.0, 1e5) as usize;
+    let mean = |_| {
+        let begin = Instant::now();
+        (0..batch).for_each(|_| work());
+        begin.elapsed().as_secs_f64() * 1e6 / batch as f64
+    };
+    (0..25).map(mean).fold(f64::INFINITY, f64::min)
 }
 
 /// One line of the table.
