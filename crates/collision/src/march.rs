@@ -278,11 +278,12 @@ impl Look {
         self.height < -depth
     }
 
-    /// At or below the target, closing, and within both features.
+    /// At or below the target, within both features, and not opening. A rate that is only rounding does not open: what
+    /// rests there must be told, or the march would crawl along it.
     fn is_closing(&self, depth: f64) -> bool {
         !self.is_behind(depth)
             && self.value <= self.value_rounding
-            && self.rate < -self.rate_rounding
+            && self.rate <= self.rate_rounding
             && self.outside_for.is_none()
     }
 
