@@ -29,6 +29,23 @@ pub fn detect_pair(
     found: &mut Vec<Collision>,
 ) {
     let first = found.len();
+    detect_features_of_pair(a, b, tolerances, depth, time, found);
+    if found.len() > first + 1 {
+        let mut fresh = found.split_off(first);
+        merge_collisions(&mut fresh);
+        found.append(&mut fresh);
+    }
+}
+
+/// As [`detect_pair`], but a place found by several pairs of features is recorded for each of them.
+pub fn detect_features_of_pair(
+    a: &Moment<'_>,
+    b: &Moment<'_>,
+    tolerances: &Tolerances,
+    depth: f64,
+    time: f64,
+    found: &mut Vec<Collision>,
+) {
     let distance = tolerances.distance_tol().max(depth);
     a.body.shape.tree().visit_near_pairs(
         &a.moving.pose,
@@ -39,11 +56,6 @@ pub fn detect_pair(
             found.extend(detect_features([a, b], [feature_a, feature_b], tolerances, depth, time));
         },
     );
-    if found.len() > first + 1 {
-        let mut fresh = found.split_off(first);
-        merge_collisions(&mut fresh);
-        found.append(&mut fresh);
-    }
 }
 
 fn detect_features(

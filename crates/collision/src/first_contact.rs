@@ -92,8 +92,16 @@ pub fn search_step<A: Motion, B: Motion>(
     tolerances: &Tolerances,
     settings: &SearchSettings,
 ) -> Search {
-    let search = PairSearch { a, b, tolerances, settings };
-    search.directly(from, span).unwrap_or_else(|| search.by_windows(from, span))
+    PairSearch { a, b, tolerances, settings, rules: &[] }.step(from, span)
+}
+
+/// How one pair of features is searched that is not to be searched like all others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeatureRule {
+    /// Feature of the first and of the second shape.
+    pub features: [FeatureId; 2],
+    /// Gap [m] at which the pair fires in place of its target gap; `None` if it is not searched at all.
+    pub target: Option<f64>,
 }
 
 /// [`first_contact`] of two discs about their centres of mass, given as motion, offset [s] and radius [m], without a look
@@ -116,11 +124,19 @@ pub fn disc_contact<A: Motion, B: Motion>(
     }))
 }
 
-struct PairSearch<'a, A, B> {
-    a: &'a MovingShape<'a, A>,
-    b: &'a MovingShape<'a, B>,
-    tolerances: &'a Tolerances,
-    settings: &'a SearchSettings,
+/// A search for the first contact of two shapes, with rules for some of their feature pairs.
+#[derive(Clone, Copy, Debug)]
+pub struct PairSearch<'a, A, B> {
+    /// The first shape.
+    pub a: &'a MovingShape<'a, A>,
+    /// The second shape.
+    pub b: &'a MovingShape<'a, B>,
+    /// When a pair counts as touching.
+    pub tolerances: &'a Tolerances,
+    /// Limits of the search.
+    pub settings: &'a SearchSettings,
+    /// Feature pairs that are searched otherwise: contacts that are held already, or have just opened.
+    pub rules: &'a [FeatureRule],
 }
 
 /// The earliest contact so far, and how far everything has been searched.
@@ -153,6 +169,12 @@ impl Progress {
 }
 
 impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
+    /// Goes on from a time [s] before which there is known to be no contact; see [`search_step`].
+    #[must_use]
+    pub fn step(&self, from: f64, span: f64) -> Search {
+        self.directly(from, span).unwrap_or_else(|| self.by_windows(from, span))
+    }
+
     /// At least one: every call makes progress.
     fn march_steps(&self) -> u32 {
         self.settings.march_steps.max(1)
@@ -169,7 +191,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             for (index_b, b) in features_b.iter().enumerate() {
                 let Some(kind) = pair_kind(a, b) else { continue };
                 let ids = [feature_id(index_a), feature_id(index_b)];
-                let pair = self.pair(kind, a, b);
+                let Some(pair) = self.pair(kind, ids, a, b) else { continue };
                 if let Some(contact) =
                     self.closed_form(&pair, ids, from)?.filter(|found| found.time < progress.clear)
                 {
@@ -201,15 +223,18 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         contact_is_within((pair.feature_a, &pose_a), (pair.feature_b, &pose_b), pair.kind)
     }
 
-    fn pair<'p>(&self, kind: PairKind, a: &'p Feature, b: &'p Feature) -> Pair<'p> {
+    /// The pair as it is to be searched; `None` if it is not.
+    fn pair<'p>(
+        &self,
+        kind: PairKind,
+        ids: [FeatureId; 2],
+        a: &'p Feature,
+        b: &'p Feature,
+    ) -> Option<Pair<'p>> {
         let tolerances = pair_tolerances(a, b, self.tolerances);
-        Pair {
-            kind,
-            feature_a: a,
-            feature_b: b,
-            target: tolerances.target_gap,
-            depth: tolerances.distance_tol(),
-        }
+        let rule = self.rules.iter().find(|rule| rule.features == ids);
+        let target = rule.map_or(Some(tolerances.target_gap), |rule| rule.target)?;
+        Some(Pair { kind, feature_a: a, feature_b: b, target, depth: tolerances.distance_tol() })
     }
 
     fn by_windows(&self, from: f64, span: f64) -> Search {
@@ -309,9 +334,9 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             reach,
             &mut |a, b| {
                 let (feature_a, feature_b) = (self.a.shape.feature(a), self.b.shape.feature(b));
-                if let Some(kind) = pair_kind(feature_a, feature_b) {
+                let Some(kind) = pair_kind(feature_a, feature_b) else { return };
+                if let Some(pair) = self.pair(kind, [a, b], feature_a, feature_b) {
                     tried += 1;
-                    let pair = self.pair(kind, feature_a, feature_b);
                     self.try_pair(&window, &pair, [a, b], start, &mut progress);
                 }
             },

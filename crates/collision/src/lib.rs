@@ -41,10 +41,11 @@ pub use connector::{
     Alignment, Anchor, Connector, ConnectorError, ConnectorId, ConnectorKind, ConnectorSample, RailError,
     RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, rope_contact,
 };
-pub use detect::{Moment, detect_pair};
+pub use detect::{Moment, detect_features_of_pair, detect_pair};
 pub use estimate::{EstimatePoint, estimate_target_time};
 pub use first_contact::{
-    FirstContact, MovingShape, Search, SearchSettings, disc_contact, first_contact, search_step,
+    FeatureRule, FirstContact, MovingShape, PairSearch, Search, SearchSettings, disc_contact, first_contact,
+    search_step,
 };
 pub use flight::Flight;
 pub use kinematics::{Arms, GapKinematics, Spin};

@@ -42,8 +42,8 @@ fn lean(a: &Collision, b: &Collision) -> f64 {
     2.0 * a.tolerances.accuracy.max(b.tolerances.accuracy) / curved.fold(f64::INFINITY, f64::min)
 }
 
-/// Drops records that are the same physical collision as a more exact one: edge-edge wins over vertex-edge over
-/// corner-corner, then the lesser distance, then the earlier place in the list. Keeps the order.
+/// Drops records that are the same physical collision as a more exact one: the one within its edges wins, then edge-edge
+/// over vertex-edge over corner-corner, then the lesser distance, then the earlier place in the list. Keeps the order.
 pub fn merge_collisions(records: &mut Vec<Collision>) {
     let mut kept = 0;
     for index in 0..records.len() {
@@ -61,7 +61,8 @@ pub fn merge_collisions(records: &mut Vec<Collision>) {
 }
 
 fn is_better(candidate: &Collision, other: &Collision) -> bool {
+    let by_place = other.geometry.outside.total_cmp(&candidate.geometry.outside);
     let by_detector = candidate.parties.detector.cmp(&other.parties.detector);
     let by_distance = other.geometry.distance.total_cmp(&candidate.geometry.distance);
-    by_detector.then(by_distance) == Ordering::Greater
+    by_place.then(by_detector).then(by_distance) == Ordering::Greater
 }

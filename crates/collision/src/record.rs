@@ -99,6 +99,8 @@ pub struct ContactGeometry {
     pub normal_rate: DVec2,
     /// Distance [m] along the normal; negative for penetration.
     pub distance: f64,
+    /// Distance [m] by which the impact lies beyond the ends of its edges; 0 within them. A vertex has no ends.
+    pub outside: f64,
     /// Signed radius of curvature of the primary body at the impact [m]; `None` where it is straight.
     pub radius_primary: Option<f64>,
     /// Signed radius of curvature of the normal body at the impact [m]; `None` where it is straight.
@@ -361,6 +363,13 @@ impl Collision {
     }
 }
 
+/// By how much a contact lies beyond the ends of its line, or of its arcs.
+fn outside(sample: &GapSample, radii: [Option<f64>; 2]) -> f64 {
+    let excess = [sample.excess_primary, sample.excess_normal];
+    let beyond = |side: usize| excess[side] * radii[side].map_or(0.0, f64::abs);
+    sample.overrun.max(beyond(0)).max(beyond(1))
+}
+
 fn describe(
     sample: &GapSample,
     radii: [Option<f64>; 2],
@@ -375,6 +384,7 @@ fn describe(
         normal_is_fixed: false,
         normal_rate: kinematics.normal_rate,
         distance: sample.gap,
+        outside: outside(sample, radii),
         radius_primary: radii[0],
         radius_normal: radii[1],
         impact_arm_primary: sample.point_primary - primary.pose.position,
@@ -399,6 +409,7 @@ fn describe_connector(
         normal_is_fixed: connector.has_fixed_normal(),
         normal_rate: sample.kinematics.normal_rate,
         distance: sample.gap,
+        outside: 0.0,
         radius_primary,
         radius_normal,
         impact_arm_primary: primary,

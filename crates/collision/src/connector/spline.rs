@@ -103,10 +103,9 @@ fn span_count(cubic: &Cubic) -> Option<u32> {
         for part in 0..count {
             let from = width * f64::from(part);
             let second = cubic.largest_second(from, from + width);
-            // The speed changes by at most half of this from the middle of the span.
-            let slow = cubic.speed(from + 0.5 * width);
-            slowest = f64::min(slowest, slow);
-            largest_turn = f64::max(largest_turn, second * width / slow);
+            let speed = cubic.speed(from + 0.5 * width);
+            slowest = f64::min(slowest, speed);
+            largest_turn = f64::max(largest_turn, second * width / speed);
         }
         if slowest < SLOWEST {
             return None;

@@ -1,0 +1,214 @@
+//! Connectors as a whole: what they refuse, how far off they are, how they are aligned, their records.
+
+use glam::DVec2;
+use halfgap_collision::{
+    Anchor, BodyId, Collision, Connector, ConnectorError, ConnectorId, ConnectorKind, Detector, Moving,
+    RailPath, SlotFrame, Tolerances, Zone, merge_collisions,
+};
+use halfgap_geometry::{EdgeSpec, Pose};
+use std::sync::Arc;
+
+const TOLERANCES: Tolerances = Tolerances { target_gap: 0.5e-3, accuracy: 0.3e-3, velocity_tol: 0.01 };
+
+fn anchor(body: u32, x: f64, y: f64) -> Anchor {
+    Anchor { body: BodyId(body), point: DVec2::new(x, y) }
+}
+
+fn still(x: f64, y: f64, angle: f64) -> Moving {
+    Moving { pose: Pose::new(DVec2::new(x, y), angle), ..Moving::BACKGROUND }
+}
+
+fn fine(kind: ConnectorKind) -> Connector {
+    Connector::new(kind, 0.25).expect("a fine connector")
+}
+
+/// A half circle of radius 2 m over the origin, from right to left.
+fn arch() -> Arc<RailPath> {
+    let edges = [EdgeSpec::Arc { to: DVec2::new(-2.0, 0.0), center: DVec2::ZERO, clockwise: false }];
+    Arc::new(RailPath::from_edges(DVec2::new(2.0, 0.0), &edges).expect("a fine arch"))
+}
+
+fn two_body_kinds() -> Vec<ConnectorKind> {
+    let (a, b) = (anchor(0, 0.3, -0.2), anchor(1, -0.4, 0.1));
+    let normal = DVec2::new(0.6, 0.8);
+    vec![
+        ConnectorKind::Pin { a, b },
+        ConnectorKind::Slot { a, b, normal, frame: SlotFrame::A },
+        ConnectorKind::Slot { a, b, normal, frame: SlotFrame::B },
+        ConnectorKind::Slot { a, b, normal, frame: SlotFrame::World },
+        ConnectorKind::Rod { a, b, length: 1.5 },
+        ConnectorKind::Rope { a, b, length: 0.7 },
+    ]
+}
+
+fn rail_kinds() -> Vec<ConnectorKind> {
+    let a = anchor(0, 0.3, -0.2);
+    vec![
+        ConnectorKind::Rail { a, path: arch() },
+        ConnectorKind::RailStop { a, path: arch(), at: 5.0, upper: false },
+        ConnectorKind::RailStop { a, path: arch(), at: 0.5, upper: true },
+    ]
+}
+
+#[test]
+fn aligned_connectors_are_satisfied() {
+    let (a, b) = (still(0.2, 1.1, 0.4), still(-1.0, 0.3, -2.0));
+    let moved = |body: &Moving, shift: DVec2| Moving {
+        pose: Pose { position: body.pose.position + shift, ..body.pose },
+        ..*body
+    };
+    for kind in two_body_kinds() {
+        let connector = fine(kind);
+        assert!(connector.error(&a, &b) > 0.1, "{connector:?}");
+        for can_move in [[true, true], [false, true], [true, false]] {
+            let found = connector.align(&a.pose, &b.pose, can_move).expect("one may move");
+            assert_eq!(found.moves_b, can_move[1]);
+            let (a, b) =
+                if found.moves_b { (a, moved(&b, found.shift)) } else { (moved(&a, found.shift), b) };
+            assert!(connector.error(&a, &b) < 1e-15, "{connector:?}: {}", connector.error(&a, &b));
+        }
+        assert_eq!(connector.align(&a.pose, &b.pose, [false, false]), None);
+    }
+    for kind in rail_kinds() {
+        let connector = fine(kind);
+        assert!(connector.error(&a, &Moving::BACKGROUND) > 0.1, "{connector:?}");
+        let found = connector.align(&a.pose, &Pose::IDENTITY, [true, true]).expect("a may move");
+        assert!(!found.moves_b);
+        let error = connector.error(&moved(&a, found.shift), &Moving::BACKGROUND);
+        assert!(error < 1e-15 * 4.0, "{connector:?}: {error}");
+        assert_eq!(connector.align(&a.pose, &Pose::IDENTITY, [false, true]), None);
+    }
+}
+
+#[test]
+fn what_is_satisfied_is_not_moved() {
+    let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
+    let rope = fine(ConnectorKind::Rope { a, b, length: 2.0 });
+    let near = [still(0.5, 0.0, 0.0), still(0.0, 1.0, 0.0)];
+    let found = rope.align(&near[0].pose, &near[1].pose, [true, true]).expect("both may move");
+    assert_eq!((found.shift, rope.error(&near[0], &near[1])), (DVec2::ZERO, 0.0));
+    let stop = fine(ConnectorKind::RailStop { a, path: arch(), at: 1.0, upper: false });
+    let top = still(0.0, 2.0, 0.0);
+    let found = stop.align(&top.pose, &Pose::IDENTITY, [true, true]).expect("a may move");
+    assert_eq!((found.shift, stop.error(&top, &Moving::BACKGROUND)), (DVec2::ZERO, 0.0));
+}
+
+#[test]
+fn a_stop_counts_what_is_left_of_the_rail() {
+    let (a, quarter) = (anchor(0, 0.0, 0.0), std::f64::consts::PI);
+    let top = still(0.0, 2.0, 0.0);
+    let gap = |path: &Arc<RailPath>, at, upper, body: &Moving| {
+        let stop = fine(ConnectorKind::RailStop { a, path: path.clone(), at, upper });
+        stop.measure(0, body, &Moving::BACKGROUND).gap
+    };
+    assert!((gap(&arch(), 1.0, false, &top) - (quarter - 1.0)).abs() < 1e-15);
+    assert!((gap(&arch(), 4.0, true, &top) - (4.0 - quarter)).abs() < 1e-15);
+    assert!((gap(&arch(), 3.0, true, &top) - (3.0 - quarter)).abs() < 1e-15);
+    // Beyond the end the rail goes on straight down.
+    assert!((gap(&arch(), 0.0, false, &still(2.0, -0.3, 0.0)) + 0.3).abs() < 1e-15);
+    // On a closed rail little beyond the seam is beyond it, far beyond it is before it.
+    let start = DVec2::new(2.0, 0.0);
+    let circle = [EdgeSpec::Arc { to: start, center: DVec2::ZERO, clockwise: false }];
+    let circle = Arc::new(RailPath::from_edges(start, &circle).expect("a fine circle"));
+    let at_angle = |angle: f64| still(2.0 * angle.cos(), 2.0 * angle.sin(), 0.0);
+    assert!((gap(&circle, 0.0, false, &at_angle(-0.1)) + 0.2).abs() < 1e-14);
+    assert!((gap(&circle, 0.0, false, &at_angle(-1.0)) - (4.0 * quarter - 2.0)).abs() < 1e-14);
+    assert!((gap(&circle, 4.0 * quarter, true, &at_angle(0.1)) + 0.2).abs() < 1e-14);
+    assert!((gap(&circle, 6.0, true, &at_angle(1.0)) - 4.0).abs() < 1e-14);
+}
+
+#[test]
+fn what_is_no_connector_is_refused() {
+    let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
+    let refused = |kind| Connector::new(kind, 0.5).expect_err("no connector");
+    assert_eq!(refused(ConnectorKind::Pin { a, b: a }), ConnectorError::SameBody);
+    let nowhere = anchor(1, f64::NAN, 0.0);
+    assert_eq!(refused(ConnectorKind::Pin { a, b: nowhere }), ConnectorError::NotFinite);
+    assert_eq!(refused(ConnectorKind::Rod { a, b, length: 0.0 }), ConnectorError::BadLength(0.0));
+    assert_eq!(refused(ConnectorKind::Rope { a, b, length: -1.0 }), ConnectorError::BadLength(-1.0));
+    let slot = |normal| ConnectorKind::Slot { a, b, normal, frame: SlotFrame::World };
+    assert_eq!(refused(slot(DVec2::ZERO)), ConnectorError::BadNormal(0.0, 0.0));
+    assert_eq!(refused(slot(DVec2::new(0.0, f64::INFINITY))), ConnectorError::BadNormal(0.0, f64::INFINITY));
+    let stop = ConnectorKind::RailStop { a, path: arch(), at: 7.0, upper: true };
+    assert!(matches!(refused(stop), ConnectorError::BadStop { at: 7.0, .. }));
+    let world = Anchor { body: BodyId::WORLD, point: DVec2::ZERO };
+    assert_eq!(refused(ConnectorKind::Rail { a: world, path: arch() }), ConnectorError::SameBody);
+    let pin = ConnectorKind::Pin { a, b };
+    assert_eq!(Connector::new(pin.clone(), 1.5), Err(ConnectorError::BadElasticity(1.5)));
+    assert!(Connector::new(pin, f64::NAN).is_err());
+    // A direction of any length becomes a unit vector.
+    for size in [1e-200, 1.0, 1e200] {
+        let connector = fine(slot(DVec2::new(3.0, 4.0) * size));
+        let ConnectorKind::Slot { normal, .. } = connector.kind else { panic!("it is a slot") };
+        assert!((normal - DVec2::new(0.6, 0.8)).length() < 1e-15);
+    }
+}
+
+#[test]
+fn a_connector_has_a_record_for_every_row() {
+    let a = Moving { velocity: DVec2::new(1.0, 2.0), angular_velocity: 3.0, ..still(0.2, 1.1, 0.4) };
+    let b = Moving { velocity: DVec2::new(-1.0, 0.5), angular_velocity: -2.0, ..still(-1.0, 0.3, -2.0) };
+    let id = ConnectorId(7);
+    for kind in two_body_kinds().into_iter().chain(rail_kinds()) {
+        let connector = fine(kind);
+        let b = if connector.path().is_some() { Moving::BACKGROUND } else { b };
+        let mut records = Vec::new();
+        for row in 0..connector.row_count() {
+            let sample = connector.measure(row, &a, &b);
+            let index = row as u32;
+            let record = Collision::of_connector(id, index, &connector, &sample, [&a, &b], &TOLERANCES, 2.0);
+            assert_eq!(record.parties.detector, Detector::Connector { id, row: index });
+            assert_eq!([record.parties.primary.body, record.parties.normal.body], connector.bodies());
+            assert_eq!(record.parties.primary.feature(), None);
+            assert_eq!(record.parties.bilateral, connector.is_bilateral());
+            assert_eq!((record.response.elasticity, record.updated), (0.25, 2.0));
+            assert_eq!(record.tolerances, Tolerances { target_gap: 0.0, ..TOLERANCES });
+            assert_eq!((record.geometry.distance, record.distance_to_target()), (sample.gap, sample.gap));
+            assert_eq!(record.motion.normal_velocity, sample.kinematics.rate);
+            assert_eq!(record.is_contact(), connector.is_bilateral());
+            // All of these are far beyond their limit.
+            assert_eq!(record.is_illegal(), !connector.is_bilateral());
+            let radius = record.geometry.radius_normal;
+            match connector.kind {
+                ConnectorKind::Rod { length, .. } => assert_eq!(radius, Some(length)),
+                ConnectorKind::Rope { length, .. } => assert_eq!(radius, Some(-length)),
+                // Seen from its left, an arch to the left is hollow.
+                ConnectorKind::Rail { .. } => assert_eq!(radius, Some(-2.0)),
+                _ => {}
+            }
+            records.push(record);
+        }
+        // Neither rows of one connector nor those of two are ever one collision.
+        records.extend(records.clone());
+        merge_collisions(&mut records);
+        assert_eq!(records.len(), 2 * connector.row_count());
+    }
+}
+
+#[test]
+fn a_record_of_a_connector_can_be_updated() {
+    let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
+    let rope = fine(ConnectorKind::Rope { a, b, length: 2.0 });
+    let other = still(0.0, 0.0, 0.0);
+    let fall = |y: f64| Moving { velocity: DVec2::new(0.0, -1.0), ..still(0.0, y, 0.0) };
+    let measured = |y: f64| rope.measure(0, &fall(y), &other);
+    let late = fall(-2.1);
+    let sample = measured(-2.1);
+    let mut record =
+        Collision::of_connector(ConnectorId(0), 0, &rope, &sample, [&late, &other], &TOLERANCES, 1.0);
+    record.note_detection().expect("the first note");
+    assert!(record.is_illegal() && record.must_handle);
+    let early = fall(-1.9);
+    record.update_connector(&rope, &measured(-1.9), [&early, &other], 0.8);
+    assert!(!record.is_illegal() && record.must_handle && record.updated == 0.8);
+    let estimate = record.estimate().expect("it goes taut in between");
+    assert!((estimate - 0.9).abs() < 1e-14, "{estimate}");
+    // Within the accuracy of its length a rope is taut, not overstretched.
+    for (y, zone) in [(-1.99, Zone::OutOfRange), (-1.9999, Zone::Target), (-2.0001, Zone::Target)] {
+        record.update_connector(&rope, &measured(y), [&fall(y), &other], 0.9);
+        assert_eq!(record.zone(), zone);
+        assert_eq!(record.is_touching(), zone == Zone::Target);
+    }
+    record.update_connector(&rope, &measured(-2.001), [&fall(-2.001), &other], 0.9);
+    assert_eq!(record.zone(), Zone::Penetrating);
+}
