@@ -1,11 +1,11 @@
 //! A world: named bodies, what acts on them, and the clock.
 
-use crate::event::{ContactForce, Event, Impact, ImpactRow};
+use crate::event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::ledger::{LawWork, Ledger};
 use crate::run_error::RunError;
 use glam::DVec2;
-use halfgap_advance::rigid::{ImpactReport, RigidSystem};
+use halfgap_advance::rigid::{ImpactReport, RigidSystem, RowForce};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
@@ -84,8 +84,6 @@ pub struct World {
     start: Start,
     /// The last impact told, always of that kind: its buffers are used again and again.
     told: Event,
-    /// Sum of the energy changes of all impacts told [J].
-    impacts: f64,
 }
 
 /// What was done to the bodies before the start.
@@ -109,7 +107,7 @@ impl World {
         start: Start,
     ) -> Self {
         let told = Event::Impact(Impact::default());
-        Self { system, bodies, forces, connectors, now, warnings, start, told, impacts: 0.0 }
+        Self { system, bodies, forces, connectors, now, warnings, start, told }
     }
 
     /// The present time [s].
@@ -183,25 +181,25 @@ impl World {
     /// Where the energy went since the start.
     #[must_use]
     pub fn ledger(&self) -> Ledger {
-        // WIRE: captures, projections, damping and the work of the laws without a potential, from the system.
-        let laws = std::iter::empty::<LawWork>();
+        let books = self.system.ledger_at(self.now);
+        let laws = self.forces.iter().zip(&books.laws).enumerate();
+        let laws = laws.filter(|(index, _)| !self.system.has_potential(*index));
         Ledger {
             now: self.energy(),
             start: self.start.energy,
             start_correction: self.start.energy_change,
-            impacts: self.impacts,
-            captures: 0.0,
-            projections: 0.0,
-            damping: 0.0,
-            laws: laws.collect(),
+            impacts: books.impacts,
+            captures: books.captures,
+            projections: books.projections,
+            damping: books.damping,
+            laws: laws.map(|(_, (law, &work))| LawWork { law: law.name().to_owned(), work }).collect(),
         }
     }
 
     /// The forces of all contacts and connectors at the present time.
     #[must_use]
     pub fn contact_forces(&self) -> Vec<ContactForce> {
-        // WIRE: the forces of the rows, from the system.
-        Vec::new()
+        self.system.row_forces(self.now).iter().map(contact_force).collect()
     }
 
     /// The force laws, in the order in which they were added.
@@ -255,13 +253,12 @@ impl World {
         let counts = self.system.counts();
         Statistics {
             steps: counts.segments,
-            evaluations: 0,
+            evaluations: counts.evaluations,
             impacts: counts.impacts,
             backups: counts.backups,
             contact_solves: counts.contact_solves,
             smallest_gap: counts.smallest_gap,
-            // WIRE: the largest over the run, from the system.
-            largest_connector_error: None,
+            largest_connector_error: counts.largest_connector_error,
         }
     }
 
@@ -273,13 +270,16 @@ impl World {
     /// Something that cannot be simulated happens; the world stays at the time of that event.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let until = Time::from_seconds(time);
-        let (system, told, impacts) = (&mut self.system, &mut self.told, &mut self.impacts);
-        let outcome = advance_until(system, until, |system, _| {
-            // WIRE: contacts that begin and end, told as they are reported.
-            let report = system.last_impact();
-            *impacts += report.energy_change;
-            write_impact(told, report);
-            on_event(told);
+        let (system, told) = (&mut self.system, &mut self.told);
+        let outcome = advance_until(system, until, |system, handled| {
+            if handled.impact {
+                write_impact(told, system.last_impact());
+                on_event(told);
+            }
+            let changes = system.contact_changes();
+            let told_of = |row| ContactEvent { time: changes.time.seconds(), contact: contact_force(row) };
+            changes.end.iter().for_each(|row| on_event(&Event::ContactEnds(told_of(row))));
+            changes.begin.iter().for_each(|row| on_event(&Event::ContactBegins(told_of(row))));
         });
         match outcome {
             Ok(()) => {
@@ -291,6 +291,16 @@ impl World {
                 Err(RunError::new(error, |body| self.name(body).to_owned()))
             }
         }
+    }
+}
+
+fn contact_force(row: &RowForce) -> ContactForce {
+    ContactForce {
+        bodies: row.bodies,
+        connector: row.connector.map(|id| id.0),
+        point: row.point,
+        normal: row.normal,
+        force: row.force,
     }
 }
 

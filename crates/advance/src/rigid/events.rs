@@ -143,6 +143,7 @@ impl RigidSystem {
         let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now);
         self.stage = stage;
         outcome?;
+        self.note_begins(&work.region, &work.settling);
         self.set_rules(&work.region, &work.settling);
         self.regroup(&work.region, &work.settling)?;
         for &body in &work.region.bodies {

@@ -151,6 +151,10 @@ impl RigidSystem {
     fn dissolve(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         self.book_works(&group);
+        if group.rows.iter().any(|row| !row.bilateral) {
+            self.with_group(&mut group, |dynamics, _| dynamics.evaluate_end());
+            self.note_ends(&group);
+        }
         for &body in &group.bodies {
             self.groups.leader_of[body.index()] = None;
             self.groups.step_of[body.index()] = group.next_step;
@@ -162,13 +166,13 @@ impl RigidSystem {
     }
 
     fn book_works(&mut self, group: &Group) {
+        if group.rows.iter().any(|row| row.bilateral) {
+            self.counts.note_connector_error(group.largest_error);
+        }
         self.ledger.projections += group.projected;
         let first = 2 * group.velocities();
         for (&work, &value) in group.works.iter().zip(&group.end_state[first..]) {
-            match work {
-                Work::Law(law) => self.ledger.laws[law] += value,
-                Work::Damping => self.ledger.damping += value,
-            }
+            self.ledger.book(work, value);
         }
     }
 
@@ -280,6 +284,7 @@ impl RigidSystem {
         group.end_state.clear();
         group.end_state.resize(dimension, 0.0);
         for place in 0..count {
+            self.restart_flight(group.bodies[place], self.now);
             let state = self.flyer(group.bodies[place]).state_at(self.now);
             set_body_state(&mut group.end_state, count, place, &state);
         }
@@ -314,6 +319,7 @@ impl RigidSystem {
             dynamics.evaluate_end();
             dynamics.make_dense(tools.stepper);
             dynamics.group.event = dynamics.find_event();
+            dynamics.note_middle_error();
             Ok(())
         });
         self.counts.segments += 1;
@@ -357,9 +363,8 @@ impl Dynamics<'_> {
             return;
         }
         let before = self.end_energy();
-        let error = self.project_end(tools.settings.steps.length);
+        self.project_end(tools.settings.steps.length);
         self.group.projected += self.end_energy() - before;
-        self.group.largest_error = self.group.largest_error.max(error);
     }
 
     fn end_energy(&mut self) -> f64 {

@@ -83,6 +83,7 @@ impl RigidSystem {
 
     fn apply_impulses(&mut self, region: &mut Region, impact: &Impact, time: Time) {
         for &body in &region.bodies {
+            self.restart_flight(body, time);
             let (mut velocity, mut spin) = (DVec2::ZERO, 0.0);
             for (row, &impulse) in impact.rows().iter().zip(impact.impulses()) {
                 let sides = row.bodies.iter().enumerate();

@@ -8,7 +8,7 @@
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact; `events` handles what comes true: `region` collects the bodies that touch, `groups` cuts and makes groups,
 //! `impacts` applies impulses, `settle` finds what is held, `storms` ends what does not end by itself. `ledger` keeps the
-//! energy's books, and `system` ties all to the event loop.
+//! energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod boxes;
 mod connectors;
@@ -26,6 +26,7 @@ mod pairs;
 mod path;
 mod predictions;
 mod region;
+mod report;
 mod rows;
 mod segment;
 mod settle;
@@ -39,5 +40,6 @@ pub use flyer::{FlightLaw, Flyer};
 pub use impacts::{ImpactReport, RowReport};
 pub use law::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use ledger::Ledger;
+pub use report::{ContactChanges, RowForce};
 pub use segment::StepControl;
-pub use system::{Counts, RigidParts, RigidSettings, RigidSystem};
+pub use system::{Counts, Handled, RigidParts, RigidSettings, RigidSystem};

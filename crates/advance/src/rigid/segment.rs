@@ -148,14 +148,10 @@ impl Dynamics<'_> {
     }
 
     /// Moves the end state onto the held rows, by the least displacement and the least change of velocities in the metric
-    /// of the masses; each row to the gap at which it formed. Returns the largest gap error met [m].
-    pub(crate) fn project_end(&mut self, length: f64) -> f64 {
-        if self.group.rows.is_empty() {
-            return 0.0;
-        }
+    /// of the masses; each row to the gap at which it formed.
+    pub(crate) fn project_end(&mut self, length: f64) {
         let mut end = std::mem::take(&mut self.group.end_state);
         let velocities = self.group.velocities();
-        let mut largest = 0.0f64;
         let mut rates = std::mem::take(&mut self.stage.rates);
         for round in 0..PROJECTIONS {
             self.stage.load(&self.group.bodies, &end);
@@ -168,7 +164,6 @@ impl Dynamics<'_> {
             });
             let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
             self.stage.offsets = offsets;
-            largest = largest.max(error);
             self.respond();
             add_changes(&mut end[..velocities], &self.stage.changes);
             // Newton's method squares the relative error.
@@ -182,7 +177,6 @@ impl Dynamics<'_> {
         add_changes(&mut end[velocities..2 * velocities], &self.stage.changes);
         self.stage.rates = rates;
         self.group.end_state = end;
-        largest
     }
 
     /// Evaluates the rates and the forces of the rows at the end.

@@ -14,6 +14,7 @@ use super::impacts::ImpactReport;
 use super::law::{ForceLaw, Snapshot};
 use super::ledger::Ledger;
 use super::pairs::{PairId, Pairs, Prediction};
+use super::report::ContactChanges;
 use super::rows::Mechanism;
 use super::segment::StepControl;
 use super::storms::Recent;
@@ -73,14 +74,27 @@ pub struct Counts {
     pub storms: u64,
     /// Smallest gap [m] seen.
     pub smallest_gap: Option<f64>,
-    /// Largest error of a held gap [m] seen.
-    pub largest_row_error: Option<f64>,
+    /// Largest error of a connector's gap [m] seen.
+    pub largest_connector_error: Option<f64>,
 }
 
 impl Counts {
     pub(crate) fn note_gap(&mut self, gap: f64) {
         self.smallest_gap = Some(self.smallest_gap.map_or(gap, |least| least.min(gap)));
     }
+
+    pub(crate) fn note_connector_error(&mut self, error: f64) {
+        self.largest_connector_error = Some(self.largest_connector_error.map_or(error, |most| most.max(error)));
+    }
+}
+
+/// An event that was handled: an impact, or contacts that begin or end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handled {
+    /// When.
+    pub time: Time,
+    /// True for an impact, of which [`RigidSystem::last_impact`] tells; [`RigidSystem::contact_changes`] tells of the rest.
+    pub impact: bool,
 }
 
 /// What a system is made of.
@@ -126,6 +140,7 @@ pub struct RigidSystem {
     pub(crate) stepper: Stepper,
     pub(crate) scales: Vec<f64>,
     pub(crate) last_impact: ImpactReport,
+    pub(crate) changes: ContactChanges,
     pub(crate) touched: Vec<PairId>,
     pub(crate) neighbours: Vec<BodyId>,
 }
@@ -178,6 +193,7 @@ impl RigidSystem {
             stepper: Stepper::new(settings.method),
             scales: Vec::new(),
             last_impact: ImpactReport::default(),
+            changes: ContactChanges::default(),
             touched: Vec::new(),
             neighbours: Vec::new(),
         };
@@ -226,6 +242,15 @@ impl RigidSystem {
     #[must_use]
     pub fn now(&self) -> Time {
         self.now
+    }
+
+    /// False for a force law that has no potential, whose work is in the ledger.
+    ///
+    /// # Panics
+    /// If there is no such law.
+    #[must_use]
+    pub fn has_potential(&self, law: usize) -> bool {
+        self.has_potential[law]
     }
 
     /// The force laws.
@@ -319,41 +344,20 @@ fn index_by_body(bodies: usize, lists: impl Iterator<Item = Vec<BodyId>>) -> Vec
 }
 
 impl EventDriven for RigidSystem {
-    /// The time of an impact; [`RigidSystem::last_impact`] tells the rest.
-    type Report = Time;
+    type Report = Handled;
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
         self.queue.first().map(|entry| entry.time)
     }
 
-    fn handle_next(&mut self) -> Result<Option<Time>, AdvanceError> {
+    fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
         let Some(event) = self.queue.first() else { return Ok(None) };
         self.counts.events += 1;
         self.now = event.time;
-        if std::env::var("HGTRACE").is_ok() {
-            let what = if let Some(p) = event.source.0.checked_sub(self.first_pair_source()) {
-                format!(
-                    "pair {:?} {:?} rules {:?}",
-                    self.pairs.get(PairId(p)).bodies,
-                    self.pairs.get(PairId(p)).prediction,
-                    self.pairs.rules(PairId(p))
-                )
-            } else if event.source.0 >= self.count_u32() {
-                let g = self.group_of(BodyId(event.source.0 - self.count_u32()));
-                format!(
-                    "group {:?} {:?} {:?} rows {}",
-                    g.map(|g| g.leader()),
-                    g.and_then(|g| g.event),
-                    g.map(|g| (g.span, g.next_step, &g.bodies)),
-                    g.map_or(0, |g| g.rows.len())
-                )
-            } else {
-                format!("box {:?}", event.source)
-            };
-            eprintln!("{:.17} {what}", self.now.seconds());
-        }
-        let is_impact = self.handle(event.source)?;
-        Ok(is_impact.then_some(self.now))
+        self.changes.clear(event.time);
+        let impact = self.handle(event.source)?;
+        self.changes.time = self.now;
+        Ok((impact || !self.changes.is_empty()).then_some(Handled { time: self.now, impact }))
     }
 }

@@ -78,6 +78,19 @@ impl Dynamics<'_> {
         self.stage.trial = trial;
     }
 
+    /// Notes how far off bilateral rows are in the middle of the segment, where dense output is least exact.
+    pub(crate) fn note_middle_error(&mut self) {
+        self.group.largest_error = 0.0;
+        if !self.group.rows.iter().any(|row| row.bilateral) {
+            return;
+        }
+        self.place_at(0.5 * self.group.span);
+        for row in self.group.rows.iter().filter(|row| row.bilateral) {
+            let moment = self.physics.mechanism.measure(row, &self.stage.movings);
+            self.group.largest_error = self.group.largest_error.max((moment.gap - row.gap).abs());
+        }
+    }
+
     /// Forces of the rows at an offset [s] of the segment, left in the stage.
     pub(crate) fn evaluate_at(&mut self, offset: f64) {
         self.place_at(offset);

@@ -1,0 +1,207 @@
+//! What the outside may ask for: forces of rows, contacts that begin and end, the energy's books at any time.
+
+use super::dynamics::Dynamics;
+use super::group::{Group, Work};
+use super::ledger::Ledger;
+use super::region::Region;
+use super::rows::{HeldRow, RowSource, moving_of};
+use super::settle::Settling;
+use super::system::RigidSystem;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Detector, Moving};
+use halfgap_geometry::FeatureId;
+
+/// The force of one row: a contact, or one direction of a connector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowForce {
+    /// The primary and the normal body.
+    pub bodies: [BodyId; 2],
+    /// The connector; `None` for bodies that touch.
+    pub connector: Option<ConnectorId>,
+    /// The features that touch; `None` in a connector.
+    pub features: Option<[FeatureId; 2]>,
+    /// Where the force acts on the primary body [m].
+    pub point: DVec2,
+    /// Unit normal, towards the primary body.
+    pub normal: DVec2,
+    /// Force on the primary body along the normal [N].
+    pub force: f64,
+}
+
+impl RowForce {
+    fn is_same(&self, other: &RowForce) -> bool {
+        self.bodies == other.bodies && self.connector == other.connector && self.features == other.features
+    }
+}
+
+/// Contacts that begin and end in one event.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactChanges {
+    /// When.
+    pub time: Time,
+    /// What is held from now on.
+    pub begin: Vec<RowForce>,
+    /// What is held no longer, with its last force.
+    pub end: Vec<RowForce>,
+}
+
+impl ContactChanges {
+    /// True if nothing begins or ends.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.begin.is_empty() && self.end.is_empty()
+    }
+
+    pub(crate) fn clear(&mut self, time: Time) {
+        self.time = time;
+        self.begin.clear();
+        self.end.clear();
+    }
+
+    /// Drops what ends only to begin at once.
+    fn drop_continued(&mut self) {
+        let begin = &mut self.begin;
+        self.end.retain(|old| match begin.iter().position(|new| new.is_same(old)) {
+            Some(place) => {
+                _ = begin.remove(place);
+                false
+            }
+            None => true,
+        });
+    }
+}
+
+impl RigidSystem {
+    /// What began and ended in the last event.
+    #[must_use]
+    pub fn contact_changes(&self) -> &ContactChanges {
+        &self.changes
+    }
+
+    /// The forces of all held rows at a time of the present segments.
+    #[must_use]
+    pub fn row_forces(&self, time: Time) -> Vec<RowForce> {
+        let mut stage = self.stage.clone();
+        let mut found = Vec::new();
+        for group in self.groups.by_leader.iter().flatten() {
+            let (start, mut group) = (group.start, group.clone());
+            let mut dynamics =
+                Dynamics { physics: self.physics(), group: &mut group, stage: &mut stage, start };
+            dynamics.evaluate_at(time.since(start));
+            let rows = group.rows.iter().zip(&stage.forces);
+            found.extend(rows.map(|(row, &force)| self.row_force(row, &stage.movings, force)));
+        }
+        found
+    }
+
+    fn row_force(&self, row: &HeldRow, movings: &[Moving], force: f64) -> RowForce {
+        let (point, normal) = self.mechanism().locate(row, movings);
+        let (connector, features) = match row.source {
+            RowSource::Connector(id, _) => (Some(id), None),
+            RowSource::Contact(features) => (None, Some(features)),
+        };
+        RowForce { bodies: row.bodies, connector, features, point, normal, force }
+    }
+
+    /// Notes the unilateral rows of a group that is cut, with their forces at the cut.
+    pub(crate) fn note_ends(&mut self, group: &Group) {
+        for (row, &force) in group.rows.iter().zip(&group.end_forces).filter(|(row, _)| !row.bilateral) {
+            let told = self.row_force(row, &self.stage.movings, force);
+            self.changes.end.push(told);
+        }
+    }
+
+    /// Notes the unilateral rows that are held from now on.
+    pub(crate) fn note_begins(&mut self, region: &Region, settling: &Settling) {
+        for (index, row) in settling.held.iter().filter(|(_, row)| !row.bilateral) {
+            let told = told_of(&region.records[*index], row);
+            self.changes.begin.push(told);
+        }
+        self.changes.drop_continued();
+    }
+
+    /// The energy's books at a time of the present segments.
+    #[must_use]
+    pub fn ledger_at(&self, time: Time) -> Ledger {
+        let mut ledger = self.ledger.clone();
+        for group in self.groups.by_leader.iter().flatten() {
+            let offset = time.since(group.start);
+            for (&work, path) in group.works.iter().zip(&group.work_paths[3 * group.bodies.len()..]) {
+                ledger.book(work, path.value_at(offset));
+            }
+        }
+        for body in self.bodies() {
+            ledger.damping += self.damping_loss(body, time);
+        }
+        ledger
+    }
+
+    /// Energy [J] that damping took from a body in flight since the start of its segment.
+    fn damping_loss(&self, body: BodyId, time: Time) -> f64 {
+        let flyer = self.flyer(body);
+        let Some(start) = flyer.flight_start().filter(|_| flyer.law().is_damped()) else { return 0.0 };
+        let inertia = flyer.body();
+        let energy = |state: &BodyState| {
+            let spin = state.angular_velocity;
+            0.5 * state.velocity.length_squared() / inertia.inverse_mass
+                + 0.5 * spin * spin / inertia.inverse_moment
+                - flyer.law().acceleration.dot(state.position) / inertia.inverse_mass
+        };
+        energy(&flyer.state_at(time)) - energy(start)
+    }
+
+    /// Books what damping took from a body in flight, which starts another segment at a time.
+    pub(crate) fn restart_flight(&mut self, body: BodyId, time: Time) {
+        if self.flyer(body).law().is_damped() {
+            self.ledger.damping += self.damping_loss(body, time);
+            let state = self.flyer(body).state_at(time);
+            self.flyers[body.index()].fly_from(time, state);
+        }
+    }
+}
+
+impl Ledger {
+    pub(crate) fn book(&mut self, work: Work, value: f64) {
+        match work {
+            Work::Law(law) => self.laws[law] += value,
+            Work::Damping => self.damping += value,
+        }
+    }
+}
+
+fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
+    let connector = match record.parties.detector {
+        Detector::Connector { id, .. } => Some(id),
+        _ => None,
+    };
+    let features = match row.source {
+        RowSource::Contact(features) => Some(features),
+        RowSource::Connector(..) => None,
+    };
+    RowForce {
+        bodies: row.bodies,
+        connector,
+        features,
+        point: record.geometry.point_primary,
+        normal: record.geometry.normal,
+        force: record.response.force.unwrap_or(0.0),
+    }
+}
+
+impl super::rows::Mechanism<'_> {
+    /// Where a row's force acts on its primary body [m], and its normal.
+    fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, index) => {
+                let sample = self.connectors[id.index()].measure_near(index, &a, &b, row.hint.as_ref());
+                (sample.point_a, sample.normal)
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [&a, &b]);
+                (sample.point_primary, sample.normal)
+            }
+        }
+    }
+}
