@@ -1,8 +1,8 @@
 //! Impacts: closing rows in, impulses along their normals out.
 //!
 //! With the Delassus matrix A = J M^-1 J^T (n, n) [1/kg] the rates b [m/s] of the rows become A j + b by impulses j >= 0
-//! [N s]. An impact law says which impulses: each row that closes faster than its `velocity_tol` is to open again at its
-//! elasticity times that speed, a slower one is to stop. Bilateral rows (connectors) have impulses of either sign and end
+//! [N s]. An impact law says which impulses: each row that closes faster than its `velocity_tol`, when it is solved or when
+//! the impact began, is to open again at its elasticity times that speed, a slower one is to stop. Bilateral rows (connectors) have impulses of either sign and end
 //! at rest.
 //!
 //! Energy never grows. Impulses j that take the rates from b to b' change it by sum j (b + b')/2: a row that closes at

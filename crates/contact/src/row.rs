@@ -54,6 +54,11 @@ impl CollisionRow {
         Self { bodies, jacobian, response, elasticity, velocity_tol, bilateral, rate }
     }
 
+    /// True if its elasticity acts when it closes at a speed [m/s], now or at the start of the impact.
+    pub(crate) fn rebounds_at(&self, speed: f64) -> bool {
+        speed.max(-self.rate) > self.velocity_tol
+    }
+
     /// Change of this row's rate [m/s] by a unit impulse [N s] along another row: an entry of the Delassus matrix
     /// J M^-1 J^T [1/kg].
     #[must_use]

@@ -116,15 +116,20 @@ impl RigidSystem {
         }
     }
 
-    /// Adds the records of two bodies in the target zone or nearer; true if there are any.
+    /// Adds the records of two bodies in the target zone or nearer, or at rest within `distance_tol`; true if there are any.
     fn touch(&self, region: &mut Region, [first, second]: &[Moment<'_>; 2], time: Time) -> bool {
         let tolerances = &self.settings.tolerances;
         let mut fresh = std::mem::take(&mut region.fresh);
         fresh.clear();
         let depth = tolerances.distance_tol();
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
-        // Farther than the target zone a row fires in its own time.
-        fresh.retain(|record| record.zone() >= Zone::Target);
+        // Farther than the target zone a row fires in its own time, unless it rests there.
+        let rest = self.rest_speed();
+        fresh.retain(|record| match record.zone() {
+            Zone::OutOfRange => false,
+            Zone::BeyondTarget => record.motion.normal_velocity.abs() <= rest,
+            Zone::Target | Zone::Near | Zone::Penetrating => true,
+        });
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
         if fresh.len() > 1 {
             merge_collisions(&mut fresh);

@@ -75,7 +75,12 @@ impl Mechanism<'_> {
         }
     }
 
-    pub(crate) fn sample(&self, bodies: [BodyId; 2], features: [FeatureId; 2], movings: [&Moving; 2]) -> GapSample {
+    pub(crate) fn sample(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> GapSample {
         let [a, b] = [0, 1].map(|side: usize| self.shape(bodies[side]).feature(features[side]));
         GapSample::measure(a, &movings[0].pose, b, &movings[1].pose)
             .expect("a contact was made from features that touch")

@@ -84,7 +84,8 @@ impl Counts {
     }
 
     pub(crate) fn note_connector_error(&mut self, error: f64) {
-        self.largest_connector_error = Some(self.largest_connector_error.map_or(error, |most| most.max(error)));
+        self.largest_connector_error =
+            Some(self.largest_connector_error.map_or(error, |most| most.max(error)));
     }
 }
 

@@ -19,6 +19,9 @@ pub(super) enum Grouping {
     Closing,
 }
 
+/// Rows that close as fast as the fastest but for this part of it are one: rounding does not decide between them.
+const TIE: f64 = 1e-9;
+
 impl Impact {
     /// Rounds until no row is violated, or patience ends.
     pub(super) fn solve_serially(
@@ -45,7 +48,10 @@ impl Impact {
     fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
         let violated = || (0..self.rows.len()).filter(|&row| self.is_violated(row, small));
         match shuffle {
-            None => violated().min_by(|&p, &q| self.violation(q).total_cmp(&self.violation(p))),
+            None => {
+                let most = violated().map(|row| self.violation(row)).fold(0.0, f64::max);
+                violated().filter(|&row| self.violation(row) >= (1.0 - TIE) * most).last()
+            }
             Some(shuffle) => {
                 let count = violated().count();
                 if count == 0 { None } else { violated().nth(shuffle.below(count)) }
@@ -57,7 +63,12 @@ impl Impact {
     /// others it could add energy to them.
     fn rebound_alone(&self, row: usize) -> f64 {
         let row_data = &self.rows[row];
-        if self.violation(row) > row_data.velocity_tol { -row_data.elasticity * self.rates[row] } else { 0.0 }
+        let violation = self.violation(row);
+        if violation > 0.0 && row_data.rebounds_at(violation) {
+            -row_data.elasticity * self.rates[row]
+        } else {
+            0.0
+        }
     }
 
     /// Solves a focus with the rows that join it, and says how many they are.

@@ -96,7 +96,7 @@ impl Impact {
         let rows = self.rows.iter().zip(&self.rates);
         self.scratch.targets.clear();
         self.scratch.targets.extend(rows.map(|(row, &rate)| {
-            let rebounds = !row.bilateral && -rate > row.velocity_tol;
+            let rebounds = !row.bilateral && rate < 0.0 && row.rebounds_at(-rate);
             if rebounds { row.elasticity * -rate } else { 0.0 }
         }));
     }
