@@ -16,6 +16,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 /// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates that are only
 /// rounding pass.
 const SINK_SHARE: f64 = 1.0 / 8.0;
+/// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
+const SEAM_SHARE: f64 = 1.0 / 32.0;
 /// An event's time is corrected while the gap is off by more than this part of the accuracy.
 const TIME_SHARE: f64 = 1e-2;
 
@@ -37,7 +39,9 @@ impl RigidSystem {
         let mut work = std::mem::take(&mut self.work);
         work.seeds.clear();
         work.seeds.extend(self.bodies());
+        work.region.at_start = true;
         self.collect_region(&mut work.region, &work.seeds, self.now);
+        work.region.at_start = false;
         let outcome = self.go_on(&mut work);
         self.work = work;
         outcome
@@ -179,6 +183,7 @@ impl RigidSystem {
         }
         let sink = self.sink();
         let rest = self.rest_speed();
+        self.set_halos(region);
         for touch in &region.touches {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
             let is_held = settling.held.iter().any(|(_, row)| match row.source {
@@ -192,9 +197,32 @@ impl RigidSystem {
                 Some(touch.skipped())
             } else {
                 let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
-                (rate <= rest).then(|| touch.lowered_to(gap.min(self.settings.tolerances.target_gap) - sink))
+                (rate <= rest)
+                    .then(|| touch.lowered_to((gap - sink).min(self.settings.tolerances.target_gap)))
             };
             self.pairs.rules_mut(pair).extend(rule);
+        }
+    }
+
+    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
+    ///
+    /// So a body that slides along at less than its target does not run against the seam of the next floor.
+    fn set_halos(&mut self, region: &Region) {
+        let target = self.settings.tolerances.target_gap;
+        for &body in &region.bodies {
+            self.halos[body.index()] = target;
+        }
+        let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
+        let least = target - self.settings.tolerances.accuracy;
+        for touch in &region.touches {
+            let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
+            if rate > self.rest_speed() {
+                continue;
+            }
+            for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
+                let halo = &mut self.halos[body.index()];
+                *halo = halo.min((gap - seam).max(least));
+            }
         }
     }
 

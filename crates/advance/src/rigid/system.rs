@@ -128,6 +128,8 @@ pub struct RigidSystem {
     pub(crate) rooms: Vec<Room>,
     /// Until when each body surely stays in its box; `None` for ever.
     pub(crate) stays: Vec<Option<Time>>,
+    /// Gap [m] at which each body fires.
+    pub(crate) halos: Vec<f64>,
     pub(crate) broad: BroadPhase,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
@@ -167,6 +169,7 @@ impl RigidSystem {
             pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
             rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
             stays: vec![None; count],
+            halos: vec![settings.tolerances.target_gap; count],
             broad: BroadPhase::new(),
             excluded,
             queue: EventQueue::new(),
