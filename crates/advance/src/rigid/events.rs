@@ -41,8 +41,8 @@ impl RigidSystem {
         work.seeds.extend(self.bodies());
         work.region.at_start = true;
         self.collect_region(&mut work.region, &work.seeds, self.now);
-        work.region.at_start = false;
         let outcome = self.go_on(&mut work);
+        work.region.at_start = false;
         self.work = work;
         outcome
     }

@@ -130,8 +130,8 @@ impl RigidSystem {
         fresh.retain(|record| match record.zone() {
             Zone::OutOfRange => false,
             Zone::BeyondTarget => {
-                let stays = region.at_start || self.is_held_contact(record, [first.id, second.id]);
-                stays && record.motion.normal_velocity.abs() <= rest
+                let at_rest = record.motion.normal_velocity.abs() <= rest;
+                region.at_start || (at_rest && self.is_held_contact(record, [first.id, second.id]))
             }
             Zone::Target | Zone::Near | Zone::Penetrating => true,
         });
