@@ -36,14 +36,14 @@ pub(crate) struct EventWork {
 impl RigidSystem {
     /// Finds what is held at the start, where nothing has happened yet.
     pub(crate) fn establish(&mut self) -> Result<(), AdvanceError> {
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.bodies());
         work.region.at_start = true;
         self.collect_region(&mut work.region, &work.seeds, self.now);
         let outcome = self.go_on(&mut work);
         work.region.at_start = false;
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 
@@ -55,19 +55,22 @@ impl RigidSystem {
     ) -> Result<bool, AdvanceError> {
         let bodies = self.pairs.get(pair).bodies;
         self.note_repeat(pair)?;
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(bodies);
         let outcome = self.handle_impact(&mut work, Some((bodies, features)));
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 
     /// A group's segment ends, or something ends it early.
     pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
-        let mut work = std::mem::take(&mut self.work);
+        if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
+            return self.extend_naturally(leader);
+        }
+        let mut work = self.work.take().unwrap_or_default();
         let outcome = self.handle_group_with(leader, &mut work);
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 
@@ -75,7 +78,7 @@ impl RigidSystem {
         let Some(group) = self.group_of(leader) else { return Ok(()) };
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
-        let Some((_, end)) = group.event else { return self.extend_naturally(leader, &work.seeds) };
+        let Some((_, end)) = group.event else { return Ok(()) };
         let changed = match end {
             SegmentEnd::Change(row) => Some(group.rows[row].source),
             SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
@@ -91,23 +94,27 @@ impl RigidSystem {
         self.handle_change(work)
     }
 
-    fn extend_naturally(&mut self, leader: BodyId, bodies: &[BodyId]) -> Result<(), AdvanceError> {
+    fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         self.continue_group(leader)?;
-        for &body in bodies {
+        let mut bodies = std::mem::take(&mut self.extended);
+        bodies.clear();
+        bodies.extend(self.group_of(leader).into_iter().flat_map(|group| &group.bodies));
+        for &body in &bodies {
             self.renew_stay(body);
         }
-        self.predict_all_of(bodies, false);
-        self.search_ropes_on(bodies);
+        self.predict_all_of(&bodies, false);
+        self.search_ropes_on(&bodies);
+        self.extended = bodies;
         Ok(())
     }
 
     /// A rope goes taut; true if there was an impact.
     pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.connector(id).bodies());
         let outcome = self.handle_impact(&mut work, None);
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 

@@ -138,7 +138,10 @@ pub struct RigidSystem {
     pub(crate) groups: Groups,
     pub(crate) recent: Vec<Recent>,
     pub(crate) ledger: Ledger,
-    pub(crate) work: EventWork,
+    /// Taken out while an event is handled.
+    pub(crate) work: Option<Box<EventWork>>,
+    /// Bodies of the group that was extended last.
+    pub(crate) extended: Vec<BodyId>,
     pub(crate) stage: Stage,
     pub(crate) stepper: Stepper,
     pub(crate) scales: Vec<f64>,
@@ -192,7 +195,8 @@ impl RigidSystem {
             connectors,
             laws,
             flyers,
-            work: EventWork::default(),
+            work: None,
+            extended: Vec::new(),
             stage: Stage::new(movings),
             stepper: Stepper::new(settings.method),
             scales: Vec::new(),
