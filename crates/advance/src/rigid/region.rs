@@ -125,16 +125,7 @@ impl RigidSystem {
         fresh.clear();
         let depth = tolerances.distance_tol().max(self.settings.search.depth);
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
-        // Farther than the target zone a row fires in its own time, unless it was held there already, or from the start.
-        let rest = self.rest_speed();
-        fresh.retain(|record| match record.zone() {
-            Zone::OutOfRange => false,
-            Zone::BeyondTarget => {
-                let at_rest = record.motion.normal_velocity.abs() <= rest;
-                region.at_start || (at_rest && self.is_held_contact(record, [first.id, second.id]))
-            }
-            Zone::Target | Zone::Near | Zone::Penetrating => true,
-        });
+        fresh.retain(|record| self.counts_as_touching(record, [first.id, second.id], region.at_start));
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
         if fresh.len() > 1 {
             merge_collisions(&mut fresh);
@@ -143,6 +134,19 @@ impl RigidSystem {
         region.fresh = fresh;
         let last = region.records.last();
         last.is_some_and(|record| record.involves_body(first.id) && record.involves_body(second.id))
+    }
+
+    /// True if a record takes part in an event: what is at its target or nearer, what closes within the target zone, and what
+    /// was held already, or from the start. Other rows have room, and fire in their own time if they come to close.
+    fn counts_as_touching(&self, record: &Collision, bodies: [BodyId; 2], at_start: bool) -> bool {
+        let (rest, rate) = (self.rest_speed(), record.motion.normal_velocity);
+        if record.zone() == Zone::OutOfRange {
+            return false;
+        }
+        record.distance_to_target() <= self.sink()
+            || (record.zone() >= Zone::Target && rate < -rest)
+            || at_start
+            || (rate.abs() <= rest && self.is_held_contact(record, bodies))
     }
 
     /// True if a contact is held now: the search leaves it alone.
