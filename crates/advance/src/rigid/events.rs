@@ -16,6 +16,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 /// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates that are only
 /// rounding pass.
 const SINK_SHARE: f64 = 1.0 / 8.0;
+/// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
+const SEAM_SHARE: f64 = 1.0 / 32.0;
 /// An event's time is corrected while the gap is off by more than this part of the accuracy.
 const TIME_SHARE: f64 = 1e-2;
 
@@ -34,12 +36,14 @@ pub(crate) struct EventWork {
 impl RigidSystem {
     /// Finds what is held at the start, where nothing has happened yet.
     pub(crate) fn establish(&mut self) -> Result<(), AdvanceError> {
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.bodies());
+        work.region.at_start = true;
         self.collect_region(&mut work.region, &work.seeds, self.now);
         let outcome = self.go_on(&mut work);
-        self.work = work;
+        work.region.at_start = false;
+        self.work = Some(work);
         outcome
     }
 
@@ -51,19 +55,22 @@ impl RigidSystem {
     ) -> Result<bool, AdvanceError> {
         let bodies = self.pairs.get(pair).bodies;
         self.note_repeat(pair)?;
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(bodies);
         let outcome = self.handle_impact(&mut work, Some((bodies, features)));
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 
     /// A group's segment ends, or something ends it early.
     pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
-        let mut work = std::mem::take(&mut self.work);
+        if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
+            return self.extend_naturally(leader);
+        }
+        let mut work = self.work.take().unwrap_or_default();
         let outcome = self.handle_group_with(leader, &mut work);
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 
@@ -71,7 +78,7 @@ impl RigidSystem {
         let Some(group) = self.group_of(leader) else { return Ok(()) };
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
-        let Some((_, end)) = group.event else { return self.extend_naturally(leader, &work.seeds) };
+        let Some((_, end)) = group.event else { return Ok(()) };
         let changed = match end {
             SegmentEnd::Change(row) => Some(group.rows[row].source),
             SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
@@ -87,23 +94,27 @@ impl RigidSystem {
         self.handle_change(work)
     }
 
-    fn extend_naturally(&mut self, leader: BodyId, bodies: &[BodyId]) -> Result<(), AdvanceError> {
+    fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         self.continue_group(leader)?;
-        for &body in bodies {
+        let mut bodies = std::mem::take(&mut self.extended);
+        bodies.clear();
+        bodies.extend(self.group_of(leader).into_iter().flat_map(|group| &group.bodies));
+        for &body in &bodies {
             self.renew_stay(body);
         }
-        self.predict_all_of(bodies, false);
-        self.search_ropes_on(bodies);
+        self.predict_all_of(&bodies, false);
+        self.search_ropes_on(&bodies);
+        self.extended = bodies;
         Ok(())
     }
 
     /// A rope goes taut; true if there was an impact.
     pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.connector(id).bodies());
         let outcome = self.handle_impact(&mut work, None);
-        self.work = work;
+        self.work = Some(work);
         outcome
     }
 
@@ -179,6 +190,7 @@ impl RigidSystem {
         }
         let sink = self.sink();
         let rest = self.rest_speed();
+        self.set_halos(region);
         for touch in &region.touches {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
             let is_held = settling.held.iter().any(|(_, row)| match row.source {
@@ -192,9 +204,32 @@ impl RigidSystem {
                 Some(touch.skipped())
             } else {
                 let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
-                (rate <= rest).then(|| touch.lowered_to(gap.min(self.settings.tolerances.target_gap) - sink))
+                (rate <= rest)
+                    .then(|| touch.lowered_to((gap - sink).min(self.settings.tolerances.target_gap)))
             };
             self.pairs.rules_mut(pair).extend(rule);
+        }
+    }
+
+    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
+    ///
+    /// So a body that slides along at less than its target does not run against the seam of the next floor.
+    fn set_halos(&mut self, region: &Region) {
+        let target = self.settings.tolerances.target_gap;
+        for &body in &region.bodies {
+            self.halos[body.index()] = target;
+        }
+        let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
+        let least = target - self.settings.tolerances.accuracy;
+        for touch in &region.touches {
+            let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
+            if rate > self.rest_speed() {
+                continue;
+            }
+            for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
+                let halo = &mut self.halos[body.index()];
+                *halo = halo.min((gap - seam).max(least));
+            }
         }
     }
 

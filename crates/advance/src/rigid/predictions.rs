@@ -5,7 +5,9 @@ use super::path::Path;
 use super::system::RigidSystem;
 use crate::queue::SourceId;
 use crate::time::Time;
-use halfgap_collision::{BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, disc_contact};
+use halfgap_collision::{
+    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, Tolerances, disc_contact,
+};
 use halfgap_geometry::GapSample;
 
 /// One search looks at most this far ahead [s], then goes on: bounds over the span stay finite.
@@ -148,33 +150,35 @@ impl RigidSystem {
         let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
+        let target_gap = self.halos[a.index()].min(self.halos[b.index()]);
+        let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
             let path_a: Path<'_> = flyer_a.path();
             let path_b: Path<'_> = flyer_b.path();
             let side_a = MovingShape { shape: shapes[0], motion: &path_a, offset: offset_a };
             let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
-            return self.search_shapes(&side_a, &side_b, rules, span);
+            return self.search_shapes(&side_a, &side_b, (rules, &tolerances), span);
         };
         if let (Some(radius_a), Some(radius_b), true) = (flyer_a.disc(), flyer_b.disc(), rules.is_empty()) {
             let (side_a, side_b) = ((flight_a, offset_a, radius_a), (flight_b, offset_b, radius_b));
-            if let Some(found) = disc_contact(side_a, side_b, span, &self.settings.tolerances) {
+            if let Some(found) = disc_contact(side_a, side_b, span, &tolerances) {
                 return found;
             }
         }
         let side_a = MovingShape { shape: shapes[0], motion: flight_a, offset: offset_a };
         let side_b = MovingShape { shape: shapes[1], motion: flight_b, offset: offset_b };
-        self.search_shapes(&side_a, &side_b, rules, span)
+        self.search_shapes(&side_a, &side_b, (rules, &tolerances), span)
     }
 
     fn search_shapes<A: Motion, B: Motion>(
         &self,
         a: &MovingShape<'_, A>,
         b: &MovingShape<'_, B>,
-        rules: &[FeatureRule],
+        (rules, tolerances): (&[FeatureRule], &Tolerances),
         span: f64,
     ) -> Search {
-        let (tolerances, settings) = (&self.settings.tolerances, &self.settings.search);
+        let settings = &self.settings.search;
         PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
     }
 

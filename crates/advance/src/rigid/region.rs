@@ -26,6 +26,8 @@ pub(crate) struct Region {
     pub(crate) touches: Vec<Touch>,
     /// Leaders of the groups that they belong to.
     pub(crate) groups: Vec<BodyId>,
+    /// Nothing has happened yet: what rests within `distance_tol` counts as touching.
+    pub(crate) at_start: bool,
     fresh: Vec<Collision>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
@@ -116,18 +118,21 @@ impl RigidSystem {
         }
     }
 
-    /// Adds the records of two bodies in the target zone or nearer, or at rest within `distance_tol`; true if there are any.
+    /// Adds the records of two bodies in the target zone or nearer, or held farther away; true if there are any.
     fn touch(&self, region: &mut Region, [first, second]: &[Moment<'_>; 2], time: Time) -> bool {
         let tolerances = &self.settings.tolerances;
         let mut fresh = std::mem::take(&mut region.fresh);
         fresh.clear();
         let depth = tolerances.distance_tol();
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
-        // Farther than the target zone a row fires in its own time, unless it rests there.
+        // Farther than the target zone a row fires in its own time, unless it was held there already, or from the start.
         let rest = self.rest_speed();
         fresh.retain(|record| match record.zone() {
             Zone::OutOfRange => false,
-            Zone::BeyondTarget => record.motion.normal_velocity.abs() <= rest,
+            Zone::BeyondTarget => {
+                let at_rest = record.motion.normal_velocity.abs() <= rest;
+                region.at_start || (at_rest && self.is_held_contact(record, [first.id, second.id]))
+            }
             Zone::Target | Zone::Near | Zone::Penetrating => true,
         });
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
@@ -138,6 +143,15 @@ impl RigidSystem {
         region.fresh = fresh;
         let last = region.records.last();
         last.is_some_and(|record| record.involves_body(first.id) && record.involves_body(second.id))
+    }
+
+    /// True if a contact is held now: the search leaves it alone.
+    fn is_held_contact(&self, record: &Collision, bodies: [BodyId; 2]) -> bool {
+        let (Some(touch), Some(pair)) = (touch_of(record, bodies), self.pairs.between(bodies[0], bodies[1]))
+        else {
+            return false;
+        };
+        self.pairs.rules(pair).contains(&touch.skipped())
     }
 
     /// Brings the records to the bodies' present motion at a time.

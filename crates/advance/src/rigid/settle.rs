@@ -65,7 +65,8 @@ impl RigidSystem {
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
         settling.candidates.clear();
-        let rest = self.rest_speed();
+        // At the start nothing closes yet: what touches slowly is in contact.
+        let rest = if region.at_start { self.settings.tolerances.velocity_tol } else { self.rest_speed() };
         let is_candidate = |record: &Collision| {
             let at_rest = record.motion.normal_velocity.abs() <= rest;
             record.parties.bilateral || (at_rest && self.holds(record))

@@ -128,6 +128,8 @@ pub struct RigidSystem {
     pub(crate) rooms: Vec<Room>,
     /// Until when each body surely stays in its box; `None` for ever.
     pub(crate) stays: Vec<Option<Time>>,
+    /// Gap [m] at which each body fires.
+    pub(crate) halos: Vec<f64>,
     pub(crate) broad: BroadPhase,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
@@ -136,7 +138,10 @@ pub struct RigidSystem {
     pub(crate) groups: Groups,
     pub(crate) recent: Vec<Recent>,
     pub(crate) ledger: Ledger,
-    pub(crate) work: EventWork,
+    /// Taken out while an event is handled.
+    pub(crate) work: Option<Box<EventWork>>,
+    /// Bodies of the group that was extended last.
+    pub(crate) extended: Vec<BodyId>,
     pub(crate) stage: Stage,
     pub(crate) stepper: Stepper,
     pub(crate) scales: Vec<f64>,
@@ -167,6 +172,7 @@ impl RigidSystem {
             pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
             rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
             stays: vec![None; count],
+            halos: vec![settings.tolerances.target_gap; count],
             broad: BroadPhase::new(),
             excluded,
             queue: EventQueue::new(),
@@ -189,7 +195,8 @@ impl RigidSystem {
             connectors,
             laws,
             flyers,
-            work: EventWork::default(),
+            work: None,
+            extended: Vec::new(),
             stage: Stage::new(movings),
             stepper: Stepper::new(settings.method),
             scales: Vec::new(),
