@@ -1,5 +1,7 @@
 //! Scenarios that cross the layers of halfgap, and the scenes that they run.
 
+pub mod mechanism;
+
 use halfgap::scene::Scene;
 use halfgap::{CheckReport, World, check};
 use std::path::{Path, PathBuf};

@@ -23,7 +23,9 @@ fn on_floor(body: &str) -> String {
 /// Runs to the given time and returns that of the last event.
 fn last_event(world: &mut World, until: f64) -> f64 {
     let mut last = 0.0;
-    world.advance_to(until, &mut |event: &Event| last = event.time()).unwrap_or_else(|error| panic!("{error}"));
+    world
+        .advance_to(until, &mut |event: &Event| last = event.time())
+        .unwrap_or_else(|error| panic!("{error}"));
     last
 }
 
@@ -45,8 +47,9 @@ fn a_body_that_starts_at_rest_on_the_floor_stays_there() {
         let body = world.find("body").expect("it is there");
         let before = world.state(body);
         world.advance_to(1e3, &mut |_| {}).unwrap_or_else(|error| panic!("{shape}: {error}"));
-        let moved = (world.state(body).position - before.position).length();
-        assert!(moved < 1e-12, "{shape}: moved by {moved} m");
+        // Nothing holds it along the floor: an angle of one rounding error is a slope.
+        let moved = world.state(body).position - before.position;
+        assert!(moved.y.abs() < 1e-14 && moved.x.abs() < 1e-9, "{shape}: moved by {moved}");
         assert!(world.state(body).angle.abs() < 1e-12, "{shape}: turned by {}", world.state(body).angle);
         let weight: f64 = world.contact_forces().iter().map(|row| row.force).sum();
         assert!((weight - 10.0).abs() < 1e-11, "{shape}: {weight} N");
@@ -56,12 +59,17 @@ fn a_body_that_starts_at_rest_on_the_floor_stays_there() {
 #[test]
 fn a_bouncing_ball_rests_when_the_geometric_series_ends() {
     for (elasticity, rest) in [(0.5, 1.5), (0.9, 9.5), (0.98, 49.5)] {
-        let body = format!("shape = {{ disc = {{ radius = 0.5 }} }}\nposition = [0.0, 1.75]\nelasticity = {elasticity}");
+        let body = format!(
+            "shape = {{ disc = {{ radius = 0.5 }} }}\nposition = [0.0, 1.75]\nelasticity = {elasticity}"
+        );
         let mut world = world_of(&on_floor(&body));
         // A drop of 0.5 s, then bounces of 1, e, e^2, ... s.
         let last = last_event(&mut world, 60.0);
         let speed = world.tolerances().velocity_tol;
-        assert!((last - rest).abs() < 10.0 * speed / (1.0 - elasticity), "e = {elasticity}: at {last} s, not {rest} s");
+        assert!(
+            (last - rest).abs() < 10.0 * speed / (1.0 - elasticity),
+            "e = {elasticity}: at {last} s, not {rest} s"
+        );
         assert!(world.statistics().impacts > 20, "{} impacts", world.statistics().impacts);
         let ledger = world.ledger();
         assert!(ledger.integration_error().abs() < 1e-12 * ledger.start, "{ledger:?}");

@@ -86,7 +86,9 @@ fn a_ball_dropped_on_a_floor_bounces_as_the_parabolas_say() {
     let rest = (2.0f64 / 9.81).sqrt() * 1.8 / 0.2;
     let mut last = 0.0;
     world.advance_to(10.0, &mut |event| last = event.time()).expect("it comes to rest");
-    assert!((last - rest).abs() < 1e-7, "at rest at {last} s, not at {rest} s");
+    // Bounces slower than the velocity tolerance are left out, which would have taken this long.
+    let unresolved = 2.0 * world.tolerances().velocity_tol / (9.81 * 0.2);
+    assert!(unresolved < 1e-5 && (last - rest).abs() < unresolved, "at rest at {last} s, not at {rest} s");
     let state = world.state(ball);
     assert!((state.position.y - 0.5 - world.tolerances().target_gap).abs() < 1e-12, "{state:?}");
     let forces = world.contact_forces();

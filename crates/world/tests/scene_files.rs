@@ -172,7 +172,8 @@ fn json_messages_have_lines_too() {
 
 #[test]
 fn what_is_not_simulated_yet_is_refused_by_name() {
-    let source = SceneSource::new(GOOD.replacen("mass = 1.0", "mass = 1.0\nfriction = 0.3", 1), SceneFormat::Toml);
+    let source =
+        SceneSource::new(GOOD.replacen("mass = 1.0", "mass = 1.0\nfriction = 0.3", 1), SceneFormat::Toml);
     let scene = source.parse().expect("a valid scene");
     let refusal = source.locate(scene.check_supported().expect_err("not supported")).to_string();
     insta::assert_snapshot!(refusal, @"line 17: body[1].friction: friction is not supported yet");
