@@ -10,8 +10,10 @@ use halfgap_geometry::{Pose, Rotation};
 
 /// Below this value of k t the functions p1 and p2 are summed as series, above in closed form.
 const SERIES_BELOW: f64 = 0.5;
-/// Terms of these series: enough for full precision below `SERIES_BELOW`.
+/// Terms of these series: enough for full precision below `SERIES_BELOW`, and below `SMALL`.
 const SERIES_TERMS: i32 = 16;
+const SMALL: f64 = 1.0 / 64.0;
+const SMALL_TERMS: i32 = 8;
 
 /// The motion of a body on which only uniform forces and linear damping act; also that of a fixed body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +79,20 @@ impl Flight {
         self.velocity_at(offset).length().max(last.length())
     }
 
+    /// Position and velocity of the centre of mass, for less than one by one.
+    #[inline]
+    fn center_at(&self, t: f64) -> (DVec2, DVec2) {
+        if self.linear_rate == 0.0 {
+            return (self.position_at(t), self.velocity_at(t));
+        }
+        // e^-z = 1 - z p1.
+        let z = self.linear_rate * t;
+        let decay = Decay::new(z);
+        let (v, a) = (self.start.velocity, self.acceleration);
+        let position = self.start.position + (v * decay.p1 + a * (t * decay.p2)) * t;
+        (position, v * (1.0 - z * decay.p1) + a * (t * decay.p1))
+    }
+
     fn position_at(&self, t: f64) -> DVec2 {
         if self.linear_rate == 0.0 {
             return self.start.position + (self.start.velocity + self.acceleration * (0.5 * t)) * t;
@@ -125,9 +141,10 @@ impl Motion for Flight {
         } else {
             Rotation::from_angle(self.angle_at(offset))
         };
+        let (position, velocity) = self.center_at(offset);
         Moving {
-            pose: Pose { position: self.position_at(offset), rotation },
-            velocity: self.velocity_at(offset),
+            pose: Pose { position, rotation },
+            velocity,
             angular_velocity: self.angular_velocity_at(offset),
         }
     }
@@ -173,7 +190,8 @@ impl Decay {
             return Self { p1, p2: (1.0 - p1) / z };
         }
         // p2(z) = sum of (-z)^n / (n + 2)!, by Horner's rule from the last term; p1 = 1 - z p2.
-        let p2 = (0..SERIES_TERMS).rev().fold(1.0, |sum, n| 1.0 - sum * z / f64::from(n + 3)) / 2.0;
+        let terms = if z < SMALL { SMALL_TERMS } else { SERIES_TERMS };
+        let p2 = (0..terms).rev().fold(1.0, |sum, n| 1.0 - sum * z / f64::from(n + 3)) / 2.0;
         Self { p1: 1.0 - z * p2, p2 }
     }
 }
@@ -184,7 +202,7 @@ mod tests {
 
     #[test]
     fn the_series_of_damping_meet_the_closed_forms() {
-        for z in [SERIES_BELOW, 0.4999999, 0.1, 1e-3] {
+        for z in [SERIES_BELOW, 0.4999999, 0.1, SMALL, 0.999 * SMALL, 1e-3] {
             let series = Decay::new(z);
             let p1 = -(-z).exp_m1() / z;
             assert!((series.p1 - p1).abs() < 1e-15, "p1({z})");

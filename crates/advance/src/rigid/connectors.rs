@@ -7,8 +7,8 @@ use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, Collision, Connector, ConnectorId, ConnectorKind, Detector, Flight, RailHint, Rope, RopeSearch,
-    rope_contact,
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, Detector, Flight, Motion, MotionBounds,
+    RailHint, Rope, RopeSearch, rope_contact,
 };
 
 /// What is known of a connector beside its parts.
@@ -173,7 +173,6 @@ impl RigidSystem {
             self.queue.clear(source);
             return;
         }
-        let span = until.since(from).min(LONGEST_SPAN);
         let rope = Rope { length: rope.length + state.slack, ..*rope };
         let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
         let path = |body: BodyId| {
@@ -184,6 +183,10 @@ impl RigidSystem {
             }
         };
         let ((path_a, offset_a), (path_b, offset_b)) = (path(a), path(b));
+        // Bounds over much longer than the ends need to move by the rope's length would say little.
+        let wait =
+            crossing_time(&rope, &path_a.bounds(offset_a, offset_a), &path_b.bounds(offset_b, offset_b));
+        let span = until.since(from).min(wait);
         let found =
             rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search);
         let (clear, taut) = match found {
@@ -206,6 +209,16 @@ impl RigidSystem {
         }
         false
     }
+}
+
+/// About the time [s] in which the ends of a rope, as they move now, go as far as it is long.
+fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
+    let turning = a.angular_speed * rope.point_a.length() + b.angular_speed * rope.point_b.length();
+    let speed = a.velocity.largest_difference(&b.velocity) + turning;
+    let acceleration = a.acceleration.largest_difference(&b.acceleration);
+    let by_speed = if speed > 0.0 { rope.length / speed } else { LONGEST_SPAN };
+    let by_acceleration = if acceleration > 0.0 { (rope.length / acceleration).sqrt() } else { LONGEST_SPAN };
+    by_speed.min(by_acceleration).min(LONGEST_SPAN)
 }
 
 /// The rope of a connector, if it is one.

@@ -22,6 +22,9 @@ pub(crate) fn node(index: usize, span: f64) -> f64 {
 ///
 /// A function that starts below zero must rise first. The answer lies behind the fall: there `f` is negative.
 pub(crate) fn first_fall(values: &[f64; NODES], span: f64, mut f: impl FnMut(f64) -> f64) -> Option<f64> {
+    if values.iter().any(|value| value.is_infinite()) {
+        return None;
+    }
     for index in 0..NODES - 1 {
         let (from, to) = (node(index, span), node(index + 1, span));
         if values[index] < 0.0 {

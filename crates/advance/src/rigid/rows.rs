@@ -86,6 +86,16 @@ impl Mechanism<'_> {
             .expect("a contact was made from features that touch")
     }
 
+    /// True if a row may run off its features or its piece of a rail.
+    pub(crate) fn can_change(&self, row: &HeldRow) -> bool {
+        match row.source {
+            RowSource::Contact(_) => true,
+            RowSource::Connector(id, _) => {
+                self.connectors[id.index()].path().is_some_and(|path| !path.knots().is_empty())
+            }
+        }
+    }
+
     /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
     /// rows that cannot.
     pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {

@@ -7,6 +7,7 @@ use super::crossing::{NODES, first_fall, node};
 use super::dynamics::Dynamics;
 use super::group::SegmentEnd;
 use super::law::Snapshot;
+use super::rows::HeldRow;
 use crate::ode::Ode;
 use glam::DVec2;
 
@@ -35,14 +36,15 @@ impl Dynamics<'_> {
             }
             self.stage.samples = samples;
         }
-        for row in 0..self.group.rows.len() {
-            let Some(values) = self.sample(|this| this.room(row)) else { continue };
-            let fall = first_fall(&values, self.group.span, |offset| {
+        let rooms = self.sample_rooms();
+        for (row, values) in rooms.iter().enumerate() {
+            let fall = first_fall(values, self.group.span, |offset| {
                 self.place_at(offset);
-                self.room(row).unwrap_or(f64::INFINITY)
+                self.room(row)
             });
             offer(fall, SegmentEnd::Change(row));
         }
+        self.stage.samples = rooms;
         for place in 0..self.group.laws.len() {
             let law = self.group.laws[place];
             for index in 0..self.physics.laws[law].switches() {
@@ -127,18 +129,27 @@ impl Dynamics<'_> {
         samples
     }
 
-    /// A function of the bodies' places at the nodes, if it has a value.
-    fn sample(&mut self, f: impl Fn(&Self) -> Option<f64>) -> Option<[f64; NODES]> {
-        let mut values = [0.0; NODES];
-        for (index, value) in values.iter_mut().enumerate() {
-            self.place_at(node(index, self.group.span));
-            *value = f(self)?;
+    /// How far all rows are at the nodes from running off their features; nothing if none can.
+    fn sample_rooms(&mut self) -> Vec<[f64; NODES]> {
+        let mut samples = std::mem::take(&mut self.stage.samples);
+        samples.clear();
+        let can_change = |row: &HeldRow| self.physics.mechanism.can_change(row);
+        if !self.group.rows.iter().any(can_change) {
+            return samples;
         }
-        Some(values)
+        samples.resize(self.group.rows.len(), [0.0; NODES]);
+        for index in 0..NODES {
+            self.place_at(node(index, self.group.span));
+            for (row, sample) in samples.iter_mut().enumerate() {
+                sample[index] = self.room(row);
+            }
+        }
+        samples
     }
 
-    fn room(&self, row: usize) -> Option<f64> {
-        self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings)
+    /// How far a row is from running off its features, without end for one that cannot.
+    fn room(&self, row: usize) -> f64 {
+        self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
     fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {

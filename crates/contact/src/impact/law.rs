@@ -2,7 +2,7 @@
 
 use super::Impact;
 use super::many_rows::NEARLY;
-use super::patience::{Patience, RICOCHET};
+use super::patience::{Patience, QUIET, RICOCHET};
 use super::serial::Grouping;
 use super::shuffle::Shuffle;
 use crate::check::Residuals;
@@ -100,7 +100,7 @@ impl ImpactLaw {
             ImpactOrder::Fastest => None,
             ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, random)),
         };
-        let mut patience = Patience::new(impact.rows.len(), small);
+        let mut patience = Patience::new(impact.rows.len(), small.max(impact.quiet_speed()));
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }
@@ -134,6 +134,12 @@ impl Impact {
         let small = self.begin()?;
         self.solve_all_inelastic(small)?;
         self.finish(small)
+    }
+
+    /// Speed [m/s] below which ricochets end in any case.
+    fn quiet_speed(&self) -> f64 {
+        let slowest = self.rows.iter().map(|row| row.velocity_tol).fold(f64::INFINITY, f64::min);
+        QUIET * slowest
     }
 
     /// Finds which rates are rounding, and whether a row is violated that moves nothing.

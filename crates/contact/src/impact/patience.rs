@@ -7,6 +7,8 @@
 
 /// Part of the impact's fastest rate below which a row is done.
 pub(super) const RICOCHET: f64 = 1e-12;
+/// Part of `velocity_tol`, the speed below which elasticity does not act, at which a ricochet is over.
+pub(super) const QUIET: f64 = 1e-3;
 /// Rows solved in one stage, per row of the impact.
 const ROWS_PER_STAGE: usize = 20;
 /// Factor of what counts as closing, from one stage to the next.
