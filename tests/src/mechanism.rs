@@ -41,6 +41,18 @@ impl Workshop {
         self.spec(BodySpec { elasticity: 0.0, ..BodySpec::movable(name, shape, mass, state) })
     }
 
+    /// A movable body of the given mass [kg] and elasticity.
+    pub fn settler(
+        &mut self,
+        name: &str,
+        shape: Shape,
+        mass: f64,
+        state: BodyState,
+        elasticity: f64,
+    ) -> BodyId {
+        self.spec(BodySpec { elasticity, ..BodySpec::movable(name, shape, mass, state) })
+    }
+
     fn spec(&mut self, spec: BodySpec) -> BodyId {
         let body = self.builder.add(spec);
         self.builder.add_gravity(body, self.gravity);
