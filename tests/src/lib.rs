@@ -1,7 +1,9 @@
 //! Scenarios that cross the layers of halfgap, and the scenes that they run.
 
+pub mod mechanism;
+
 use halfgap::scene::Scene;
-use halfgap::{CheckReport, RunError, World, check};
+use halfgap::{CheckReport, World, check};
 use std::path::{Path, PathBuf};
 
 /// Path of a file below the repository's `tests/data`.
@@ -43,11 +45,16 @@ pub fn check_at(scene: &Scene, tolerance: Option<f64>) -> CheckReport {
     check(&mut world, &scene)
 }
 
-/// Advances a world to a time and returns why it stopped early.
+/// Names of all reference scenes, sorted.
 ///
 /// # Panics
-/// If it does not stop: the test fails.
+/// If their folder cannot be read: the test fails.
 #[must_use]
-pub fn stop_before(world: &mut World, time: f64) -> RunError {
-    world.advance_to(time, &mut |_| {}).expect_err("it stops early")
+pub fn reference_scene_names() -> Vec<String> {
+    let entries = std::fs::read_dir(data("scenes")).expect("the reference scenes are there");
+    let name = |path: PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let mut names: Vec<String> =
+        entries.filter_map(|entry| name(entry.expect("a readable entry").path())).collect();
+    names.sort();
+    names
 }

@@ -1,23 +1,41 @@
-//! The reference scenes that free flight and impacts can reach.
+//! The reference scenes, each at the tolerance and with the settings that it gives.
 
-use halfgap_tests::{check_at, reference_scene};
+use halfgap_tests::{check_at, reference_scene, reference_scene_names};
 
-/// Scenes without contacts, connectors and forces other than gravity and damping.
-const SCENES: [&str; 6] = [
-    "exact__ball_bounce",
-    "exact__two_discs_e1",
-    "speed__ball_vs_wall_0",
-    "speed__ball_vs_wall_1",
-    "circle_straight__ball_block_collide",
-    "straight_straight__corner_collision",
+/// Scenes that are not reached yet. A scene that is comes off the list, which is checked too.
+const NOT_YET: [&str; 11] = [
+    "apps__chain",
+    "do_nothing__do_nothing_grinder_test1",
+    "extra__two_blocks_2_joints",
+    "multiple_collision__test7_0_simultaneous",
+    "multiple_collision__test7_1_hybrid",
+    "rope__double_rope_spin_test",
+    "straight_straight__one_block1",
+    "straight_straight__six_blocks_1",
+    "straight_straight__six_blocks_11",
+    "straight_straight__six_blocks_8",
+    "straight_straight__six_blocks_settle2",
 ];
 
+/// Everything but friction is simulated.
+fn has_friction(name: &str) -> bool {
+    reference_scene(name).bodies.iter().any(|body| body.friction > 0.0)
+}
+
 #[test]
-fn reference_scenes_of_flight_and_impacts_are_reached() {
-    for name in SCENES {
+fn every_scene_without_friction_is_reached_but_for_those_listed() {
+    let names: Vec<String> = reference_scene_names().into_iter().filter(|name| !has_friction(name)).collect();
+    assert!(names.len() >= 84, "{} scenes", names.len());
+    let mut wrong = Vec::new();
+    for name in &names {
+        let started = std::time::Instant::now();
         let report = check_at(&reference_scene(name), None);
-        assert!(report.ok, "{name}: {:?}", report.why);
+        println!("{name}: {:?} {:.2} s", report.ok, started.elapsed().as_secs_f64());
+        if report.ok == NOT_YET.contains(&name.as_str()) {
+            wrong.push((name, report.ok, report.why));
+        }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]

@@ -232,40 +232,41 @@ fn the_scenes_to_look_at_can_be_read_and_run() {
     assert!(count >= 6);
 }
 
-/// A ball that loses half of its speed at each bounce, and so comes to rest.
-const COMES_TO_REST: &str = r#"format = "halfgap-scene-1"
-title = "Comes to rest"
-run = { duration = 10.0 }
-force = [{ gravity = { acceleration = [0.0, -10.0] } }]
+/// Two discs that pass through each other fall together from rest: forces grow beyond all bounds where they meet.
+const FALLS_TOGETHER: &str = r#"format = "halfgap-scene-1"
+title = "Falls together"
+run = { duration = 10.0, collisions = false }
+force = [{ mutual_gravity = { strength = 1.0 } }]
 
 [[body]]
-name = "floor"
-fixed = true
-shape = { block = { width = 20.0, height = 1.0 } }
-position = [0.0, -0.5]
-
-[[body]]
-name = "ball"
-shape = { disc = { radius = 0.5 } }
+name = "left"
+shape = { disc = { radius = 0.1 } }
 mass = 1.0
-position = [0.0, 1.75]
-elasticity = 0.5
+position = [-0.5, 0.0]
+
+[[body]]
+name = "right"
+shape = { disc = { radius = 0.1 } }
+mass = 1.0
+position = [0.5, 0.0]
 "#;
 
 #[test]
 fn a_run_that_stops_early_keeps_its_recording_and_exits_with_3() {
     let folder = Folder::new("stops-early");
-    let scene = folder.write("rest.toml", COMES_TO_REST);
+    let scene = folder.write("fall.toml", FALLS_TOGETHER);
     let output = halfgap(&["run", &scene, "--json", "--out", &folder.path("out")]);
     assert_eq!(output.status.code(), Some(3));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     assert_eq!(json["status"], "stuck");
+    // Half of the period of an ellipse without width: pi/2 sqrt(d^3/(2 k (m1 + m2))).
+    let meeting = std::f64::consts::FRAC_PI_4;
     let stopped = json["time"].as_f64().expect("a time");
-    assert!((stopped - 1.5).abs() < 1e-4, "stopped at {stopped} s");
+    assert!((stopped - meeting).abs() < 1e-6, "stopped at {stopped} s, not at {meeting} s");
     let message = folder.plain(&output.stderr);
-    assert!(message.contains("\"ball\" comes to rest on \"floor\""), "{message}");
-    let impacts = std::fs::read_to_string(folder.path("out/impacts.csv")).expect("the recording is written");
-    assert!(impacts.lines().count() > 15, "{impacts}");
+    assert!(message.contains("mutual_gravity"), "{message}");
+    let states = std::fs::read_to_string(folder.path("out/states.csv")).expect("the recording is written");
+    assert!(states.lines().count() > 60, "{states}");
     for name in [
         "states.csv",
         "energy.csv",

@@ -172,21 +172,31 @@ fn json_messages_have_lines_too() {
 
 #[test]
 fn what_is_not_simulated_yet_is_refused_by_name() {
-    let refused = |from: &str, to: &str| {
-        let source = SceneSource::new(GOOD.replacen(from, to, 1), SceneFormat::Toml);
-        let scene = source.parse().expect("a valid scene");
-        source.locate(scene.check_supported().expect_err("not supported")).to_string()
-    };
-    insta::assert_snapshot!(refused("mass = 1.0", "mass = 1.0\nfriction = 0.3"), @"line 17: body[1].friction: friction is not supported yet");
-    insta::assert_snapshot!(refused("duration = 2.0", "duration = 2.0\nintegrator = \"rk4\""), @r#"line 6: run.integrator: integrators other than "dop853" are not supported yet"#);
-    insta::assert_snapshot!(refused("duration = 2.0", "duration = 2.0\nstabilization = \"velocity\""), @r#"line 6: run.stabilization: stabilization other than "projection" is not supported yet"#);
-    insta::assert_snapshot!(refused("gravity = { acceleration = [0.0, -9.81] }", "mutual_gravity = { strength = 1 }"), @"line 21: force[0].mutual_gravity: this force is not supported yet");
-    let rod = "[[connector]]\nrod = { a = { body = \"world\", point = [0, 2] }, b = { body = \"ball\", point = [0, 0] }, length = 1 }\n[[force]]";
-    insta::assert_snapshot!(refused("[[force]]", rod), @"line 21: connector[0].rod: connectors are not supported yet");
-    Scene::parse(GOOD, SceneFormat::Toml)
-        .expect("a good scene")
-        .check_supported()
-        .expect("gravity is simulated");
+    let source =
+        SceneSource::new(GOOD.replacen("mass = 1.0", "mass = 1.0\nfriction = 0.3", 1), SceneFormat::Toml);
+    let scene = source.parse().expect("a valid scene");
+    let refusal = source.locate(scene.check_supported().expect_err("not supported")).to_string();
+    insta::assert_snapshot!(refusal, @"line 17: body[1].friction: friction is not supported yet");
+}
+
+#[test]
+fn all_else_in_the_format_is_simulated() {
+    let spring = "spring = { a = { body = \"world\", point = [0, 2] }, b = { body = \"ball\", point = [0, 0] }, rest_length = 1, stiffness = 1, damping = 1 }";
+    let rod = "[[connector]]\nrod = { a = { body = \"world\", point = [0, 1] }, b = { body = \"ball\", point = [0, 0] }, length = 1 }\n[[force]]";
+    for (from, to) in [
+        ("duration = 2.0", "duration = 2.0\nintegrator = \"rk4\""),
+        ("duration = 2.0", "duration = 2.0\nintegrator = \"euler\""),
+        ("duration = 2.0", "duration = 2.0\nstabilization = \"velocity\""),
+        ("gravity = { acceleration = [0.0, -9.81] }", "mutual_gravity = { strength = 1 }"),
+        ("gravity = { acceleration = [0.0, -9.81] }", spring),
+        ("[[force]]", rod),
+    ] {
+        assert!(GOOD.contains(from));
+        let scene = Scene::parse(&GOOD.replacen(from, to, 1), SceneFormat::Toml).expect("a valid scene");
+        scene.check_supported().unwrap_or_else(|error| panic!("{to}: {error}"));
+        let mut world = halfgap::World::from_scene(&scene).unwrap_or_else(|error| panic!("{to}: {error}"));
+        world.advance_to(0.1, &mut |_| {}).unwrap_or_else(|error| panic!("{to}: {error}"));
+    }
 }
 
 #[test]

@@ -53,13 +53,16 @@ fn a_pin_that_is_a_little_off_is_put_together_by_the_lighter_body() {
 }
 
 #[test]
-fn what_fits_is_not_moved_by_a_bit() {
+fn what_fits_is_not_moved() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let place = DVec2::new(0.1, 0.7);
     let bob = builder.add(disc("bob", 1.0, place));
     builder.add_connector(rod(at(0.4, 1.1), center(bob), 0.5));
     let world = build(builder);
-    assert_eq!((world.state(bob).position, world.start_correction()), (place, 0.0));
+    assert_eq!(world.start_correction(), 0.0);
+    // The state is read from a segment, which has the rounding of its motion.
+    let off = (world.state(bob).position - place).length();
+    assert!(off < 1e-15, "off by {off} m");
 }
 
 #[test]
@@ -122,7 +125,7 @@ fn velocities_are_made_to_fit_and_the_loss_is_booked() {
     );
     let ledger = world.ledger();
     assert!((ledger.start_correction + 9.0).abs() < 1e-14, "{ledger:?}");
-    assert!((ledger.start - 16.0).abs() < 1e-14 && ledger.integration_error() == 0.0, "{ledger:?}");
+    assert!((ledger.start - 16.0).abs() < 1e-14 && ledger.integration_error().abs() < 1e-13, "{ledger:?}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::group::Stop;
 use super::path::Path;
 use super::region::Region;
-use super::rows::RowSource;
+use super::rows::{RowSource, knot_rooms};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
@@ -112,16 +112,13 @@ impl RigidSystem {
         let (Some(path), (anchor, _)) = (connector.path(), connector.anchors()) else { return };
         let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
         let place = path.nearest(point, self.connector_states[id.index()].hint.as_ref());
-        let nearest = path
-            .knots()
-            .iter()
-            .filter(|knot| knot.before == place.piece() || knot.after == place.piece())
-            .min_by(|p, q| {
-                let off = |arc: f64| (arc - place.arc_length).abs();
-                off(p.arc_length).total_cmp(&off(q.arc_length))
-            });
-        let Some(knot) = nearest else { return };
-        let hint = path.hint_past(knot, knot.before == place.piece()).staying();
+        let ends = path.knots().iter().flat_map(|knot| {
+            let [before, after] = knot_rooms(path, knot, &place);
+            [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
+        });
+        let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
+        let Some((_, knot, forward)) = nearest else { return };
+        let hint = path.hint_past(knot, forward).staying();
         self.connector_states[id.index()].hint = Some(hint);
     }
 

@@ -2,14 +2,18 @@
 //!
 //! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them shows
 //! whether the function may dip below zero in between, and a sample there tells. The bracket is closed by the Illinois
-//! variant of false position, which keeps it (M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11, 1971).
+//! variant of false position, which keeps it (M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11, 1971), and
+//! by bisection where that is slow: some functions have a kink where they fall.
 
 /// Samples along a segment: both ends and three places between, equally far apart.
 pub(crate) const NODES: usize = 5;
 /// Places between two nodes at which the quartic is looked at.
 const LOOKS: usize = 4;
 /// Cap on the steps that close a bracket.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 200;
+/// Every so many steps a bracket that is not this many times shorter is bisected.
+const PATIENCE: usize = 3;
+const GAIN: f64 = 8.0;
 /// A bracket is closed when it is this part of the segment.
 const CLOSED: f64 = 1e-14;
 
@@ -70,12 +74,18 @@ fn close(above: (f64, f64), below: (f64, f64), span: f64, mut f: impl FnMut(f64)
     let ((mut a, mut fa), (mut b, mut fb)) = (above, below);
     // The value at b, halved whenever b has stayed: the Illinois rule.
     let mut last_side = 0;
-    for _ in 0..MOST_STEPS {
+    let mut length = b - a;
+    for step in 1..=MOST_STEPS {
         if (b - a).abs() <= CLOSED * span {
             break;
         }
         let guess = b - fb * (b - a) / (fb - fa);
-        let inside = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
+        let is_review = step % PATIENCE == 0;
+        let is_slow = is_review && GAIN * (b - a) > length;
+        if is_review {
+            length = b - a;
+        }
+        let inside = if guess > a && guess < b && !is_slow { guess } else { 0.5 * (a + b) };
         if inside <= a || inside >= b {
             break;
         }
@@ -110,6 +120,12 @@ mod tests {
     fn a_fall_is_found_from_behind() {
         let fall = sampled(2.0, |t| 1.0 - t * t).expect("it falls at 1");
         assert!((fall - 1.0).abs() < 1e-12 && fall >= 1.0);
+    }
+
+    #[test]
+    fn a_fall_from_a_flat_edge_is_found() {
+        let fall = sampled(2.0, |t| 1e-16 - (t - 1.3).max(0.0)).expect("it falls at 1.3");
+        assert!((fall - 1.3).abs() < 1e-13 && fall >= 1.3, "{fall}");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::segment::StepFailure;
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, ConnectorId, RailHint};
 
 /// All groups, found by their bodies, and what their stepping needs.
 #[derive(Clone, Debug, Default)]
@@ -326,7 +326,36 @@ impl RigidSystem {
         std::mem::swap(&mut group_mut.rates, &mut group_mut.end_rates);
         std::mem::swap(&mut group_mut.forces, &mut group_mut.end_forces);
         group_mut.state[first_work..].fill(0.0);
+        self.renew_hints(&mut group);
         self.extend_group(group)
+    }
+
+    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by what is near.
+    fn renew_hints(&mut self, group: &mut Group) {
+        let count = group.bodies.len();
+        let Group { bodies, state, rows, stops, .. } = group;
+        let renew = |id: ConnectorId, hint: &mut Option<RailHint>| {
+            let connector = self.connector(id);
+            let (anchor, _) = connector.anchors();
+            let (Some(path), Ok(place)) = (connector.path(), bodies.binary_search(&anchor.body)) else {
+                return;
+            };
+            let point = body_state(state, count, place).pose().point_to_world(anchor.point);
+            *hint = Some(path.nearest(point, hint.as_ref()).hint().staying());
+        };
+        stops.iter_mut().for_each(|stop| renew(stop.id, &mut stop.hint));
+        for row in rows.iter_mut() {
+            if let RowSource::Connector(id, _) = row.source {
+                renew(id, &mut row.hint);
+            }
+        }
+        let hints = rows.iter().filter_map(|row| match row.source {
+            RowSource::Connector(id, _) => Some((id, row.hint?)),
+            RowSource::Contact(_) => None,
+        });
+        for (id, hint) in hints {
+            self.connector_states[id.index()].hint = Some(hint);
+        }
     }
 
     /// Extends a group by a segment and puts it back.

@@ -3,7 +3,8 @@
 use super::flyer::Flyer;
 use glam::DVec2;
 use halfgap_collision::{
-    BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailPath, Tolerances,
+    BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailKnot, RailPath, RailPlace,
+    Tolerances,
 };
 use halfgap_geometry::{FeatureId, GapSample, Shape};
 
@@ -121,17 +122,15 @@ impl Mechanism<'_> {
 /// Distance [m] along a rail to the nearer end of the piece on which a point is.
 fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
     let place = path.nearest(point, hint);
-    let ends = path.knots().iter().flat_map(|knot| {
-        let before = (knot.before == place.piece()).then_some(knot.arc_length - place.arc_length);
-        let after = (knot.after == place.piece()).then_some(place.arc_length - knot.arc_length);
-        [before, after]
-    });
-    // On a closed path the joint at its start is at both of its ends.
-    let wrapped = |room: f64| if path.is_closed() { wrap(room, path.length()) } else { room };
-    ends.flatten().map(wrapped).min_by(f64::total_cmp)
+    let rooms = path.knots().iter().flat_map(|knot| knot_rooms(path, knot, &place));
+    rooms.flatten().min_by(f64::total_cmp)
 }
 
-/// A difference of arc lengths on a closed path, between minus a half and a half of its length.
-fn wrap(difference: f64, length: f64) -> f64 {
-    difference - length * (difference / length).round()
+/// Distance [m] along a rail to a joint at the end and to one at the start of the piece on which a place is, if it is one.
+pub(crate) fn knot_rooms(path: &RailPath, knot: &RailKnot, place: &RailPlace) -> [Option<f64>; 2] {
+    // On a closed path the joint at its start is at both of its ends.
+    let end = if path.is_closed() && knot.arc_length == 0.0 { path.length() } else { knot.arc_length };
+    let before = (knot.before == place.piece()).then_some(end - place.arc_length);
+    let after = (knot.after == place.piece()).then_some(place.arc_length - knot.arc_length);
+    [before, after]
 }

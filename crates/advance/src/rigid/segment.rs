@@ -26,6 +26,8 @@ const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
 const PROJECTIONS: usize = 5;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
+/// Part of the accuracy by which rounding may move a body along a step.
+const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 
 /// Why a group could not be stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +59,7 @@ impl Dynamics<'_> {
         scales: &mut Vec<f64>,
     ) -> Result<(), StepFailure> {
         self.set_scales(control, scales);
-        let limit = control.largest_step.unwrap_or(f64::INFINITY);
+        let limit = control.largest_step.unwrap_or(f64::INFINITY).min(self.longest_sound_step());
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);
@@ -105,6 +107,13 @@ impl Dynamics<'_> {
         }
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
         self.group.span = offset;
+    }
+
+    /// The longest step [s] over which the rounding of accelerations, which grows with its square, does not matter: no
+    /// error estimate ends the steps of a group at rest.
+    fn longest_sound_step(&self) -> f64 {
+        let rounding = f64::EPSILON * self.group.free_acceleration;
+        (2.0 * ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / rounding).sqrt()
     }
 
     fn reach(&self, body: BodyId) -> f64 {

@@ -1,7 +1,8 @@
 //! Scenes of the tests: bodies in a square box of four walls.
 
 use glam::DVec2;
-use halfgap_advance::rigid::{AdvanceError, FlightLaw, RigidSettings, RigidSystem};
+use halfgap_advance::ode::Method;
+use halfgap_advance::rigid::{AdvanceError, FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
@@ -18,6 +19,12 @@ pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     order: ImpactOrder::Fastest,
     collisions: true,
     search: SearchSettings { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4 },
+    method: Method::Dop853,
+    steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
+    projection: true,
+    extra: None,
+    contact_forces: true,
+    resolution_time: 1e-10,
 };
 
 /// SplitMix64: the same scenes on every machine.
@@ -105,8 +112,12 @@ pub(crate) fn discs_in_a_box(count: usize, random: &mut Random) -> Vec<Parts> {
     crowd(&shapes, 1.0, random)
 }
 
-pub(crate) fn system(parts: Vec<Parts>) -> RigidSystem {
-    RigidSystem::new(parts, &[], SETTINGS, Time::ZERO)
+pub(crate) fn system(bodies: Vec<Parts>) -> RigidSystem {
+    system_of(RigidParts { bodies, ..RigidParts::default() }, Time::ZERO)
+}
+
+pub(crate) fn system_of(parts: RigidParts, start: Time) -> RigidSystem {
+    RigidSystem::new(parts, SETTINGS, start).expect("forces at the start can be found")
 }
 
 pub(crate) fn advance(system: &mut RigidSystem, until: f64) -> Result<(), AdvanceError> {

@@ -3,7 +3,7 @@
 use crate::box_of_bodies::*;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::RigidSystem;
+use halfgap_advance::rigid::{RigidParts, RigidSystem};
 use halfgap_collision::BodyState;
 use halfgap_geometry::Shape;
 
@@ -73,7 +73,8 @@ fn a_late_clock_changes_nothing_but_the_clock() {
     let parts = || discs_in_a_box(9, &mut Random(3));
     let offset = 1024.0;
     let mut early = system(parts());
-    let mut late = RigidSystem::new(parts(), &[], SETTINGS, Time::from_seconds(offset));
+    let mut late =
+        system_of(RigidParts { bodies: parts(), ..RigidParts::default() }, Time::from_seconds(offset));
     advance(&mut early, 4.0).expect("single impacts");
     advance(&mut late, offset + 4.0).expect("single impacts");
     assert_eq!(early.counts().impacts, late.counts().impacts);

@@ -5,4 +5,4 @@ mod determinism;
 mod energy;
 mod limits;
 mod no_overlap;
-mod refusals;
+mod rest;

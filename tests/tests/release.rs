@@ -1,0 +1,187 @@
+//! Capture and release: contacts begin and end where theory says, and change from edge to edge on the way.
+
+use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
+use halfgap::{BodySpec, ToleranceOverrides};
+use halfgap::{BodyState, Event, World, WorldBuilder, WorldSettings};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
+
+fn ends(world: &mut World, until: f64) -> Vec<(f64, DVec2)> {
+    let mut ends = Vec::new();
+    world
+        .advance_to(until, &mut |event| {
+            if let Event::ContactEnds(end) = event {
+                ends.push((end.time, end.contact.normal));
+            }
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    ends
+}
+
+#[test]
+fn a_disc_leaves_a_circle_where_the_cosine_is_two_thirds_of_its_height() {
+    for (tolerance, error) in [(1e-8, 1e-6), (1e-11, 1e-9)] {
+        let speed = 0.25;
+        let mut shop = Workshop::new(tolerance);
+        shop.fixed("hill", disc(1.0), DVec2::ZERO);
+        let ball = shop.dull("ball", disc(0.5), 1.0, thrown(0.0, 1.5, DVec2::new(speed, 0.0)));
+        let mut world = shop.build();
+        let radius = world.state(ball).position.y;
+        // Gravity along the radius is just what turns it: v^2 = g r cos a, and v^2 = v0^2 + 2 g r (1 - cos a).
+        let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * radius);
+        let ends = ends(&mut world, 2.0);
+        let [(time, normal)] = ends[..] else { panic!("it leaves once: {ends:?}") };
+        assert!((normal.y - cosine).abs() < error, "leaves at a cosine of {}, not {cosine}", normal.y);
+        // From there on it falls freely.
+        let sine = (1.0 - cosine * cosine).sqrt();
+        let leaves_at = (GRAVITY * radius * cosine).sqrt();
+        let velocity = leaves_at * DVec2::new(cosine, -sine);
+        let after = 2.0 - time;
+        let expected = radius * DVec2::new(sine, cosine) + velocity * after
+            - DVec2::new(0.0, 0.5 * GRAVITY * after * after);
+        let off = (world.state(ball).position - expected).length();
+        assert!(off < 10.0 * error, "{off} m off in its fall");
+        assert_eq!(world.statistics().impacts, 0);
+    }
+}
+
+#[test]
+fn a_ball_thrown_up_slowly_is_not_held_back() {
+    // Its speed is below the velocity tolerance: slow enough to be caught when it comes down, not when it goes up.
+    let settings = WorldSettings {
+        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
+        ..WorldSettings::default()
+    };
+    let mut builder = WorldBuilder::new(settings);
+    builder.add(BodySpec::fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5)));
+    let ball = builder.add(BodySpec::movable("ball", disc(0.5), 1.0, thrown(0.0, 0.5, DVec2::new(0.0, 0.4))));
+    builder.add_gravity(ball, DVec2::new(0.0, -GRAVITY));
+    let mut world = builder.build().expect("a fine world");
+    let start = world.state(ball).position.y;
+    advance(&mut world, 0.04);
+    let height = world.state(ball).position.y - start;
+    assert!((height - 0.4 * 0.4 / (2.0 * GRAVITY)).abs() < 1e-12, "as high as {height} m");
+    let mut begins = Vec::new();
+    world
+        .advance_to(1.0, &mut |event| {
+            if let Event::ContactBegins(begin) = event {
+                begins.push(begin.time);
+            }
+        })
+        .expect("it comes down");
+    assert!(begins.len() == 1 && (begins[0] - 0.08).abs() < 1e-9, "caught at {begins:?} s");
+    assert_eq!(world.state(ball).velocity.y, 0.0);
+    assert!((world.ledger().captures + 0.08).abs() < 1e-9, "{:?}", world.ledger());
+}
+
+#[test]
+fn what_opens_at_the_target_gap_never_fires() {
+    let mut shop = Workshop::weightless(1e-8);
+    shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
+    let ball = shop.body("ball", disc(0.5), 1.0, thrown(0.0, 0.5, DVec2::new(0.0, 1e-9)));
+    let mut world = shop.build();
+    let start = world.state(ball);
+    let mut events = 0;
+    world.advance_to(1e3, &mut |_| events += 1).expect("nothing happens");
+    assert_eq!(events, 0);
+    assert_eq!(world.state(ball).velocity, start.velocity);
+}
+
+/// A stadium-shaped hole in a block: a straight of 3 m between half circles of 1 m.
+fn stadium_hole() -> Shape {
+    let line = |x, y| EdgeSpec::Line { to: DVec2::new(x, y) };
+    let bulge = |x, y| EdgeSpec::Bulge { to: DVec2::new(x, y), bulge: 1.0 };
+    let outer = PathSpec {
+        start: DVec2::new(-3.0, -1.5),
+        edges: vec![line(3.0, -1.5), line(3.0, 1.5), line(-3.0, 1.5), line(-3.0, -1.5)],
+    };
+    let inner = PathSpec {
+        start: DVec2::new(-1.5, -1.0),
+        edges: vec![line(1.5, -1.0), bulge(1.5, 1.0), line(-1.5, 1.0), bulge(-1.5, -1.0)],
+    };
+    Shape::from_paths(&[outer, inner]).expect("a fine track")
+}
+
+/// A disc that slides to and fro in the hole.
+fn sliding(tolerance: f64, speed: f64) -> (World, halfgap::BodyId) {
+    let mut shop = Workshop::new(tolerance);
+    shop.fixed("track", stadium_hole(), DVec2::ZERO);
+    let disc = shop.dull("disc", disc(0.25), 1.0, thrown(0.0, -0.75, DVec2::new(speed, 0.0)));
+    (shop.build(), disc)
+}
+
+#[test]
+fn a_disc_that_slides_in_a_stadium_keeps_its_energy_for_a_hundred_seconds() {
+    let (mut world, disc) = sliding(1e-10, 3.0);
+    let energy = world.energy().total();
+    let kinetic = world.energy().kinetic;
+    let mut change = 0.0f64;
+    for piece in 1..=1000 {
+        advance(&mut world, 0.1 * f64::from(piece));
+        change = change.max((world.energy().total() - energy).abs() / kinetic);
+        assert!(world.state(disc).position.y < -0.2, "it stays below the middle");
+    }
+    println!("stadium track: energy {change:e}, {:?}", world.statistics());
+    assert!(change < 1e-8, "{change}");
+    assert_eq!(world.statistics().impacts, 0);
+}
+
+#[test]
+fn a_contact_goes_from_line_to_arc_and_back_when_the_disc_does() {
+    let (speed, tolerance) = (3.0, 1e-10);
+    let (mut world, disc) = sliding(tolerance, speed);
+    let gap = world.tolerances().target_gap;
+    // On a half circle it is a pendulum that starts at the bottom: half a swing to and fro on each side.
+    let radius = 0.75 - gap;
+    let amplitude = (1.0 - speed * speed / (2.0 * GRAVITY * radius)).acos();
+    let round = 2.0 * 3.0 / speed + pendulum_period((GRAVITY / radius).sqrt(), amplitude);
+    let mut changes = Vec::new();
+    world
+        .advance_to(10.0 * round, &mut |event| {
+            if let Event::ContactBegins(begin) = event {
+                changes.push(begin.time);
+            }
+        })
+        .expect("it slides");
+    let state = world.state(disc);
+    assert!(state.position.x.abs() < 1e-8, "{} m from its start after ten rounds", state.position.x);
+    assert!((state.velocity - DVec2::new(speed, 0.0)).length() < 1e-8, "{}", state.velocity);
+    // Four times a round, first after half of the straight.
+    assert_eq!(changes.len(), 40, "{changes:?}");
+    assert!((changes[0] - 0.5).abs() < 1e-8, "{changes:?}");
+}
+
+#[test]
+fn three_feet_on_a_floor_carry_a_pendulum_by_turns() {
+    // The middle foot is one too many: forces of redundant contacts come and go without anything moving.
+    let foot = |x: f64| [DVec2::new(x, -0.5), DVec2::new(x + 0.2, -0.5), DVec2::new(x + 0.2, -0.3)];
+    let mut vertices = Vec::new();
+    for x in [-1.1, -0.1, 0.9] {
+        vertices.extend(foot(x));
+        if x < 0.9 {
+            vertices.push(DVec2::new(x + 1.0, -0.3));
+        }
+    }
+    vertices.extend([DVec2::new(1.1, 0.3), DVec2::new(-1.1, 0.3)]);
+    let mut shop = Workshop::new(1e-9);
+    shop.fixed("floor", block(40.0, 1.0), DVec2::new(0.0, -0.5));
+    let shape = Shape::polygon(&vertices).expect("a table");
+    let centroid = shape.mass_properties().centroid;
+    let table = shop.dull("table", shape, 4.0, at_rest(centroid.x, 0.5 + centroid.y));
+    let bob = shop.bar("bob", DVec2::new(0.0, 2.0), DVec2::new(0.8, 2.0));
+    shop.pin(table, bob, DVec2::new(0.0, 2.0));
+    let mut world = shop.build();
+    let start: BodyState = world.state(table);
+    let energy = world.energy().total();
+    for piece in 1..=400 {
+        advance(&mut world, 0.05 * f64::from(piece));
+        let state = world.state(table);
+        let sunk = state.position.y - start.position.y;
+        assert!(
+            sunk.abs() < 1e-9 && (state.angle - start.angle).abs() < 1e-9,
+            "{sunk} m at {} s",
+            world.time()
+        );
+    }
+    assert!((world.energy().total() / energy - 1.0).abs() < 1e-8);
+    assert_eq!(world.statistics().impacts, 0);
+}

@@ -1,0 +1,52 @@
+//! What overlaps at the start is refused with bodies and depth.
+
+use halfgap::World;
+use halfgap::scene::{Scene, SceneFormat};
+use halfgap_tests::world_of;
+
+const FLOOR: &str = r#"
+format = "halfgap-scene-1"
+title = "test"
+run = { duration = 10.0 }
+force = [{ gravity = { acceleration = [0.0, -10.0] } }]
+
+[[body]]
+name = "floor"
+fixed = true
+shape = { block = { width = 20.0, height = 1.0 } }
+position = [0.0, -0.5]
+"#;
+
+fn on_floor(body: &str) -> String {
+    format!("{FLOOR}\n[[body]]\nname = \"body\"\nmass = 1.0\n{body}")
+}
+
+fn build_error(toml: &str) -> String {
+    let scene = Scene::parse(toml, SceneFormat::Toml).expect("a fine scene");
+    World::from_scene(&scene).expect_err("refused").to_string()
+}
+
+#[test]
+fn an_overlap_at_the_start_names_both_bodies_and_its_depth() {
+    let message = build_error(&on_floor("shape = { disc = { radius = 0.5 } }\nposition = [0.0, 0.4]"));
+    for part in ["\"floor\"", "\"body\"", "overlap by 0.0999"] {
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
+fn a_body_inside_another_overlaps_it() {
+    let message = build_error(&on_floor("shape = { disc = { radius = 0.1 } }\nposition = [0.0, -0.5]"));
+    assert!(message.contains("overlap by 0.5 m"), "{message}");
+}
+
+#[test]
+fn a_tiny_overlap_is_lifted_to_the_target_gap() {
+    let body = "shape = { disc = { radius = 0.5 } }\nposition = [0.0, 0.4999999]\nvelocity = [0.0, 3.0]";
+    let world = world_of(&on_floor(body));
+    let disc = world.find("body").expect("it is there");
+    let gap = world.state(disc).position.y - 0.5;
+    let target = world.tolerances().target_gap;
+    assert!((gap - target).abs() < 1e-3 * target, "gap {gap}, target {target}");
+    assert!(world.start_correction() > 1e-7);
+}
