@@ -66,11 +66,13 @@ fn detect_features(
     time: f64,
 ) -> Option<Collision> {
     let (shape_a, shape_b) = (a.body.shape.feature(feature_a), b.body.shape.feature(feature_b));
-    let sample = GapSample::measure(shape_a, &a.moving.pose, shape_b, &b.moving.pose)?;
+    let sides = [(shape_a, &a.moving.pose), (shape_b, &b.moving.pose)];
+    let mut sample = GapSample::measure_unbounded(sides[0].0, sides[0].1, sides[1].0, sides[1].1)?;
     let tolerances = pair_tolerances(shape_a, shape_b, tolerances);
     if sample.gap > tolerances.distance_tol() || sample.gap < -depth {
         return None;
     }
+    sample.find_excess(sides);
     if !is_within(&sample, [(&a.body.shape, feature_a), (&b.body.shape, feature_b)], &tolerances) {
         return None;
     }

@@ -171,6 +171,16 @@ impl GapSample {
     /// Measures the gap of two features of two bodies; `None` if the two cannot touch inside their ranges.
     #[must_use]
     pub fn measure(a: &Feature, pose_a: &Pose, b: &Feature, pose_b: &Pose) -> Option<Self> {
+        let mut sample = Self::measure_unbounded(a, pose_a, b, pose_b)?;
+        sample.find_excess([(a, pose_a), (b, pose_b)]);
+        Some(sample)
+    }
+
+    /// As [`GapSample::measure`] for features continued without end: their ranges of directions are not looked at, and both
+    /// excesses are 0. Angles cost more than everything else.
+    #[must_use]
+    #[inline]
+    pub fn measure_unbounded(a: &Feature, pose_a: &Pose, b: &Feature, pose_b: &Pose) -> Option<Self> {
         let kind = pair_kind(a, b)?;
         Some(match (kind, a, b) {
             (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
@@ -193,12 +203,28 @@ impl GapSample {
         })
     }
 
+    /// Fills in by how much the contact lies outside the ranges of the features `a` and `b` that were measured.
+    pub fn find_excess(&mut self, [a, b]: [(&Feature, &Pose); 2]) {
+        let (primary, other) = if self.primary_is_a { (a, b) } else { (b, a) };
+        let Feature::Round(round) = primary.0 else { return };
+        let toward = match (self.kind, other.0) {
+            (GapKind::CenterCenter, Feature::Round(other_round)) => {
+                self.excess_normal =
+                    other_round.range.excess(other.1.vector_to_body(self.normal * other_round.sign()));
+                self.normal * -round.sign()
+            }
+            _ => -self.normal,
+        };
+        self.excess_primary = round.range.excess(primary.1.vector_to_body(toward));
+    }
+
     /// True if the contact lies within both features.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.excess_primary <= 0.0 && self.excess_normal <= 0.0 && self.overrun <= 0.0
     }
 
+    #[inline]
     fn of_line(
         round: &RoundFeature,
         pose_round: &Pose,
@@ -217,12 +243,13 @@ impl GapSample {
             center_normal: foot,
             point_primary: measured.center - measured.normal * round.radius,
             point_normal: foot,
-            excess_primary: measured.excess(round, pose_round),
+            excess_primary: 0.0,
             excess_normal: 0.0,
             overrun: measured.overrun(line),
         }
     }
 
+    #[inline]
     fn of_centers(
         primary: &RoundFeature,
         pose_primary: &Pose,
@@ -232,7 +259,6 @@ impl GapSample {
         primary_is_a: bool,
     ) -> Self {
         let measured = CenterGap::measure(primary, pose_primary, other, pose_other, inner);
-        let [excess_primary, excess_normal] = measured.excess(primary, pose_primary, other, pose_other);
         Self {
             kind: GapKind::CenterCenter,
             primary_is_a,
@@ -242,8 +268,8 @@ impl GapSample {
             center_normal: measured.center_b,
             point_primary: measured.center_a - measured.normal * primary.radius,
             point_normal: measured.center_b + measured.normal * other.radius,
-            excess_primary,
-            excess_normal,
+            excess_primary: 0.0,
+            excess_normal: 0.0,
             overrun: 0.0,
         }
     }

@@ -74,6 +74,15 @@ impl Pose {
         self.rotation.unapply(world_point - self.position)
     }
 
+    /// The pose in the body coordinates of another.
+    #[must_use]
+    pub fn seen_from(&self, other: &Pose) -> Self {
+        let (own, its) = (self.rotation, other.rotation);
+        let direction = its.unapply(DVec2::new(own.cos, own.sin));
+        let rotation = Rotation { cos: direction.x, sin: direction.y };
+        Self { position: other.point_to_body(self.position), rotation }
+    }
+
     /// World components of a vector given in body coordinates.
     #[must_use]
     #[inline]
@@ -99,6 +108,14 @@ mod tests {
         let p = DVec2::new(0.3, 1.9);
         assert!((pose.point_to_body(pose.point_to_world(p)) - p).length() < 1e-15 * 8.0);
         assert!((pose.vector_to_body(pose.vector_to_world(p)) - p).length() < 1e-15 * 8.0);
+    }
+
+    #[test]
+    fn seen_from_another_pose_points_are_where_they_are() {
+        let (pose, other) = (Pose::new(DVec2::new(3.0, -2.0), 0.7), Pose::new(DVec2::new(-1.0, 0.5), -2.1));
+        let p = DVec2::new(0.3, 1.9);
+        let seen = pose.seen_from(&other).point_to_world(p);
+        assert!((other.point_to_world(seen) - pose.point_to_world(p)).length() < 1e-15 * 8.0);
     }
 
     #[test]

@@ -116,7 +116,7 @@ impl FeatureTree {
         visit: &mut impl FnMut(FeatureId, FeatureId),
     ) {
         if !self.nodes.is_empty() && !other.nodes.is_empty() {
-            let pair = PosedTrees { a: self, pose_a: pose, b: other, pose_b: other_pose, distance };
+            let pair = PosedTrees { a: self, b: other, a_in_b: pose.seen_from(other_pose), distance };
             pair.descend(0, 0, visit);
         }
     }
@@ -221,9 +221,9 @@ struct Item {
 
 struct PosedTrees<'a> {
     a: &'a FeatureTree,
-    pose_a: &'a Pose,
     b: &'a FeatureTree,
-    pose_b: &'a Pose,
+    /// Where `a` is as seen from `b`.
+    a_in_b: Pose,
     distance: f64,
 }
 
@@ -251,13 +251,12 @@ impl PosedTrees<'_> {
     }
 
     fn are_apart(&self, a: &Node, b: &Node) -> bool {
-        let center_a = self.pose_a.point_to_world(a.center);
-        let center_b = self.pose_b.point_to_world(b.center);
+        let center_a = self.a_in_b.point_to_world(a.center);
         let reach = a.radius + b.radius + self.distance;
-        if (center_a - center_b).length_squared() > reach * reach {
+        if (center_a - b.center).length_squared() > reach * reach {
             return true;
         }
-        b.bounds.distance_to(self.pose_b.point_to_body(center_a)) > a.radius + self.distance
-            || a.bounds.distance_to(self.pose_a.point_to_body(center_b)) > b.radius + self.distance
+        b.bounds.distance_to(center_a) > a.radius + self.distance
+            || a.bounds.distance_to(self.a_in_b.point_to_body(b.center)) > b.radius + self.distance
     }
 }

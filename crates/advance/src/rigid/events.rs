@@ -241,7 +241,7 @@ impl RigidSystem {
     fn gap_at(&self, bodies: [BodyId; 2], features: [FeatureId; 2], time: Time) -> (f64, f64) {
         let moving = bodies.map(|body| self.flyer(body).moving_at(time));
         let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
-        let Some(sample) = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose) else {
+        let Some(sample) = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose) else {
             return (f64::INFINITY, 0.0);
         };
         let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };

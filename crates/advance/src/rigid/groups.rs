@@ -360,10 +360,16 @@ impl RigidSystem {
 
     /// Extends a group by a segment and puts it back.
     fn extend_group(&mut self, mut group: Box<Group>) -> Result<(), AdvanceError> {
+        for row in &group.rows {
+            if let (RowSource::Connector(id, _), Some(_)) = (row.source, row.hint) {
+                self.connector_states[id.index()].hint = row.hint;
+            }
+        }
         let outcome = self.with_group(&mut group, |dynamics, tools| {
             dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
             dynamics.end_on_rows(tools);
             dynamics.evaluate_end();
+            dynamics.follow_rails();
             dynamics.make_dense(tools.stepper);
             dynamics.group.event = dynamics.find_event();
             dynamics.note_middle_error();

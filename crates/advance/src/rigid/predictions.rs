@@ -138,8 +138,8 @@ impl RigidSystem {
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
         self.pairs.rules_mut(pair).retain(|rule: &FeatureRule| {
             let [feature_a, feature_b] = rule.features;
-            let sample =
-                GapSample::measure(shape_a.feature(feature_a), &pose_a, shape_b.feature(feature_b), &pose_b);
+            let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
+            let sample = GapSample::measure_unbounded(features[0], &pose_a, features[1], &pose_b);
             rule.target.is_none() || sample.is_some_and(|sample| sample.gap < opened)
         });
     }

@@ -76,6 +76,8 @@ impl Mechanism<'_> {
         }
     }
 
+    /// The gap of the features of a row, wherever on them it is.
+    #[inline]
     pub(crate) fn sample(
         &self,
         bodies: [BodyId; 2],
@@ -83,7 +85,7 @@ impl Mechanism<'_> {
         movings: [&Moving; 2],
     ) -> GapSample {
         let [a, b] = [0, 1].map(|side: usize| self.shape(bodies[side]).feature(features[side]));
-        GapSample::measure(a, &movings[0].pose, b, &movings[1].pose)
+        GapSample::measure_unbounded(a, &movings[0].pose, b, &movings[1].pose)
             .expect("a contact was made from features that touch")
     }
 
@@ -108,7 +110,9 @@ impl Mechanism<'_> {
                 rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
             }
             RowSource::Contact(features) => {
-                let sample = self.sample(row.bodies, features, [&a, &b]);
+                let mut sample = self.sample(row.bodies, features, [&a, &b]);
+                let feature = |side: usize| self.shape(row.bodies[side]).feature(features[side]);
+                sample.find_excess([(feature(0), &a.pose), (feature(1), &b.pose)]);
                 let beyond =
                     |side: usize, excess: f64| excess * self.shape(row.bodies[side]).lever(features[side]);
                 let outside =

@@ -1,6 +1,7 @@
 //! A group's segment: an accepted step, its projection, its dense output, and its repetition up to an event.
 
 use super::dynamics::{Dynamics, body_state};
+use super::rows::{RowSource, moving_of};
 use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
 use halfgap_collision::BodyId;
@@ -216,6 +217,20 @@ impl Dynamics<'_> {
         self.group.end_forces.clear();
         self.group.end_forces.extend_from_slice(&self.stage.forces);
         (self.group.end_state, self.group.end_rates) = (end, rates);
+    }
+
+    /// Notes where on splines the points of rails are, with the bodies in place: searches from nearby are short, and do not
+    /// stray where a rail crosses itself. On other rails events tell.
+    pub(crate) fn follow_rails(&mut self) {
+        let mechanism = &self.physics.mechanism;
+        for row in &mut self.group.rows {
+            let (RowSource::Connector(id, _), Some(hint)) = (row.source, &row.hint) else { continue };
+            let connector = &mechanism.connectors[id.index()];
+            let Some(path) = connector.path().filter(|path| path.knots().is_empty()) else { continue };
+            let anchor = connector.anchors().0;
+            let point = moving_of(&self.stage.movings, anchor.body).pose.point_to_world(anchor.point);
+            row.hint = Some(path.nearest(point, Some(hint)).hint().staying());
+        }
     }
 
     /// Energy [J] of the group's bodies in a state, as far as it has a potential.

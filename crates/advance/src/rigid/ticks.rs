@@ -31,7 +31,8 @@ impl RigidSystem {
         let bodies = self.pairs.get(pair).bodies;
         let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
         let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
-        let Some(sample) = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose) else { return false };
+        let sample = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose);
+        let Some(sample) = sample else { return false };
         let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
         let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
         if -rate > self.settings.tolerances.velocity_tol {

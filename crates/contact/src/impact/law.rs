@@ -157,7 +157,7 @@ impl Impact {
     /// The only row: if it is bilateral it comes to rest.
     fn solve_single(&mut self) {
         if self.violation(0) > 0.0 && self.can_move(0) {
-            self.aim_at_rebounds();
+            self.aim_at_rebounds(&[0]);
             self.solve_alone(0, self.scratch.targets[0]);
         }
     }

@@ -46,11 +46,12 @@ impl Impact {
 
     /// The row to solve next: the fastest, ties by place, or a random one of those that are violated.
     fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
-        let violated = || (0..self.rows.len()).filter(|&row| self.is_violated(row, small));
+        let rest = self.rest(small);
+        let violated = || (0..self.rows.len()).filter(|&row| self.violation(row) > rest);
         match shuffle {
             None => {
                 let most = violated().map(|row| self.violation(row)).fold(0.0, f64::max);
-                violated().filter(|&row| self.violation(row) >= (1.0 - TIE) * most).last()
+                violated().rfind(|&row| self.violation(row) >= (1.0 - TIE) * most)
             }
             Some(shuffle) => {
                 let count = violated().count();

@@ -84,21 +84,21 @@ impl Impact {
     /// Rows that hardly open are held as if they rested. Where others depend on them and leave no room to rebound into, as
     /// in a wedge, all are stopped.
     pub(super) fn rebound_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
-        self.aim_at_rebounds();
+        self.aim_at_rebounds(set);
         self.solve_together(set).or_else(|_| {
             self.aim_at_rest();
             self.solve_together(set)
         })
     }
 
-    /// Sets each row's target to its rebound from the rate that it has now; bilateral rows are to rest.
-    pub(super) fn aim_at_rebounds(&mut self) {
-        let rows = self.rows.iter().zip(&self.rates);
-        self.scratch.targets.clear();
-        self.scratch.targets.extend(rows.map(|(row, &rate)| {
+    /// Sets the target of each row of a set to its rebound from the rate that it has now; bilateral rows are to rest.
+    pub(super) fn aim_at_rebounds(&mut self, set: &[usize]) {
+        self.scratch.targets.resize(self.rows.len(), 0.0);
+        for &index in set {
+            let (row, rate) = (&self.rows[index], self.rates[index]);
             let rebounds = !row.bilateral && rate < 0.0 && row.rebounds_at(-rate);
-            if rebounds { row.elasticity * -rate } else { 0.0 }
-        }));
+            self.scratch.targets[index] = if rebounds { row.elasticity * -rate } else { 0.0 };
+        }
     }
 
     /// Sets each row's target to rest.
