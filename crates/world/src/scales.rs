@@ -5,10 +5,11 @@ use halfgap_collision::Tolerances;
 /// Part of the smallest body's radius, times the tolerance, that the target gap takes: the gap is a modelling error that
 /// impacts amplify, so it lies far below the tolerance.
 const GAP_SHARE: f64 = 1e-2;
-/// The target gap is at least so many machine epsilons of the largest coordinate: gaps must be told from rounding.
-const GAP_ROUNDINGS: f64 = 64.0;
+/// The target gap is at least so many machine epsilons of the largest coordinate: gaps must be told from rounding, and so
+/// must the small part of one by which a contact without force may sink before it fires again.
+const GAP_ROUNDINGS: f64 = 512.0;
 /// Twice that: a body falls through the target gap from rest with a speed that is told from rounding.
-const SPEED_ROUNDINGS: f64 = 128.0;
+const SPEED_ROUNDINGS: f64 = 1024.0;
 
 /// Sizes that occur in a scene at its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -18,12 +18,14 @@ pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
     collisions: true,
-    search: SearchSettings { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4 },
+    search: SearchSettings { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0 },
     method: Method::Dop853,
     steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
     projection: true,
     extra: None,
-    contact_forces: true,
+    impulse_step: None,
+    joint_small_impacts: false,
+    rest_speed: 1e-12,
     resolution_time: 1e-10,
 };
 
