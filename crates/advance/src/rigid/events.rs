@@ -145,7 +145,7 @@ impl RigidSystem {
         self.book_impact(&report, is_storm);
         self.last_impact = report;
         let happened = outcome?;
-        self.counts.impacts += 1;
+        self.counts.impacts += u64::from(happened);
         self.remeasure(&mut work.region, self.now);
         self.go_on(work)?;
         Ok(happened)

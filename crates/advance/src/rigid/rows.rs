@@ -8,9 +8,9 @@ use halfgap_collision::{
 };
 use halfgap_geometry::{FeatureId, GapSample, Shape};
 
-/// Part of the accuracy by which a contact may run off its features before it is said to have changed: far more than
-/// rounding, far less than what forces can feel.
-const CHANGE_SHARE: f64 = 1e-3;
+/// Part of the accuracy by which a contact may run off its features before it is said to have changed: more than the
+/// rounding by which one that has run off is still detected, far less than what forces can feel.
+const CHANGE_SHARE: f64 = 1.0 / 8.0;
 
 /// What makes a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
