@@ -36,7 +36,8 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
         },
         projection: settings.stabilization == Stabilization::Projection,
         extra: extra(settings),
-        contact_forces: settings.contacts,
+        impulse_step: settings.fixed_step().filter(|_| !settings.contacts),
+        joint_small_impacts: settings.joint_small_impacts,
         resolution_time,
     }
 }

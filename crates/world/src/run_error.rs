@@ -2,7 +2,7 @@
 
 use halfgap_advance::rigid::{AdvanceError, Between};
 use halfgap_collision::BodyId;
-use halfgap_contact::ImpactError;
+use halfgap_contact::{ImpactError, SolveError};
 
 /// How a run that stopped early is summed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +41,32 @@ pub enum RunError {
         /// How many times.
         events: u32,
     },
+    /// The forces of contacts and connectors cannot be found.
+    #[error("at {time} s in the contacts of {}: {source}", quoted(bodies))]
+    Contacts {
+        /// When [s].
+        time: f64,
+        /// Names of the bodies that take part.
+        bodies: Vec<String>,
+        /// Why not.
+        source: Box<SolveError>,
+    },
+    /// The integrator's step has fallen to nothing.
+    #[error(
+        "at {time} s the step of {} fell to {step:e} s under the forces of {}",
+        quoted(bodies),
+        quoted(laws)
+    )]
+    StepCollapsed {
+        /// When [s].
+        time: f64,
+        /// Length of the step [s].
+        step: f64,
+        /// Names of the bodies that share the step.
+        bodies: Vec<String>,
+        /// Names of the force laws that act on them.
+        laws: Vec<String>,
+    },
     /// The advance stopped for a reason that has no name here.
     #[error(transparent)]
     Advance(AdvanceError),
@@ -50,14 +76,23 @@ impl RunError {
     /// How the run is summed up.
     #[must_use]
     pub fn status(&self) -> Status {
-        Status::Stuck
+        match self {
+            Self::Contacts { source, .. } if matches!(**source, SolveError::Infeasible(_)) => {
+                Status::Infeasible
+            }
+            Self::Impact { source: ImpactError::Infeasible { .. }, .. } => Status::Infeasible,
+            _ => Status::Stuck,
+        }
     }
 
     /// When it stopped [s].
     #[must_use]
     pub fn time(&self) -> Option<f64> {
         match self {
-            Self::Impact { time, .. } | Self::Stuck { time, .. } => Some(*time),
+            Self::Impact { time, .. }
+            | Self::Contacts { time, .. }
+            | Self::StepCollapsed { time, .. }
+            | Self::Stuck { time, .. } => Some(*time),
             Self::Advance(_) => None,
         }
     }
@@ -67,6 +102,13 @@ impl RunError {
         match error {
             AdvanceError::Impact { time, bodies, source } => {
                 Self::Impact { time, bodies: bodies.into_iter().map(|body| name(body)).collect(), source }
+            }
+            AdvanceError::Contacts { time, bodies, source } => {
+                Self::Contacts { time, bodies: bodies.into_iter().map(name).collect(), source }
+            }
+            AdvanceError::StepCollapsed { time, step, bodies, laws } => {
+                let bodies = bodies.into_iter().map(name).collect();
+                Self::StepCollapsed { time, step, bodies, laws }
             }
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);

@@ -1,5 +1,6 @@
 //! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
 
+use super::group::Stop;
 use super::path::Path;
 use super::region::Region;
 use super::rows::RowSource;
@@ -199,6 +200,18 @@ impl RigidSystem {
         if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
     }
 
+    /// A stop as it is watched along a segment that starts now.
+    pub(crate) fn stop(&self, id: ConnectorId) -> Stop {
+        let connector = self.connector(id);
+        let hint = self.connector_states[id.index()].hint;
+        let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
+        let sample = connector.measure_near(0, &a, &b, hint.as_ref());
+        let tolerances = &self.settings.tolerances;
+        let rests = sample.kinematics.rate <= tolerances.rest_speed() && sample.gap <= tolerances.accuracy;
+        let slack = if rests { tolerances.sink() + (-sample.gap).max(0.0) } else { 0.0 };
+        Stop { id, hint, slack }
+    }
+
     /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
         if self.connector_states[id.index()].taut.is_some() {
@@ -209,6 +222,11 @@ impl RigidSystem {
         }
         false
     }
+}
+
+/// True for the end of a rail.
+pub(crate) fn is_stop(connector: &Connector) -> bool {
+    matches!(connector.kind, ConnectorKind::RailStop { .. })
 }
 
 /// About the time [s] in which the ends of a rope, as they move now, go as far as it is long.

@@ -13,9 +13,6 @@ use halfgap_collision::{BodyId, ConnectorId, FeatureRule, GapKinematics};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
-/// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates that are only
-/// rounding pass.
-const SINK_SHARE: f64 = 1.0 / 8.0;
 /// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
 const SEAM_SHARE: f64 = 1.0 / 32.0;
 /// An event's time is corrected while the gap is off by more than this part of the accuracy.
@@ -27,10 +24,10 @@ type Fired = Option<([BodyId; 2], [FeatureId; 2])>;
 /// Buffers of the handling of events, kept from one to the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EventWork {
-    region: Region,
+    pub(crate) region: Region,
     impact: Impact,
-    settling: Settling,
-    seeds: Vec<BodyId>,
+    pub(crate) settling: Settling,
+    pub(crate) seeds: Vec<BodyId>,
 }
 
 impl RigidSystem {
@@ -54,6 +51,9 @@ impl RigidSystem {
         features: [FeatureId; 2],
     ) -> Result<bool, AdvanceError> {
         let bodies = self.pairs.get(pair).bodies;
+        if self.sinks(pair, features) {
+            return Ok(false);
+        }
         self.note_repeat(pair)?;
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
@@ -126,13 +126,16 @@ impl RigidSystem {
         self.go_on(work)
     }
 
-    fn handle_impact(&mut self, work: &mut EventWork, fired: Fired) -> Result<bool, AdvanceError> {
+    pub(crate) fn handle_impact(&mut self, work: &mut EventWork, fired: Fired) -> Result<bool, AdvanceError> {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
             let gap = fired.map(|(bodies, features)| self.gap_at(bodies, features, self.now).0);
             self.now =
                 self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
             self.remeasure(&mut work.region, self.now);
+        }
+        if self.at_tick {
+            self.put_back(work);
         }
         let is_storm = self.note_events(&work.region);
         let mut report = std::mem::take(&mut self.last_impact);
@@ -167,7 +170,7 @@ impl RigidSystem {
 
     /// Distance [m] by which a contact without force may sink before it fires again.
     pub(crate) fn sink(&self) -> f64 {
-        SINK_SHARE * self.settings.tolerances.accuracy
+        self.settings.tolerances.sink()
     }
 
     /// By how much [s] the time is off at which a pair has the gap [m] that it had by dense output, if that can be told.

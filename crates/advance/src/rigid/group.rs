@@ -3,7 +3,7 @@
 use super::rows::HeldRow;
 use crate::ode::SegmentPolynomial;
 use crate::time::Time;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::HeldRows;
 
 /// Work that has no potential and is integrated with the motion.
@@ -28,6 +28,16 @@ pub(crate) enum SegmentEnd {
     Switch,
 }
 
+/// A stop of a rail that is not held.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stop {
+    pub(crate) id: ConnectorId,
+    /// Piece of the rail.
+    pub(crate) hint: Option<RailHint>,
+    /// How far [m] it may sink before it fires: more than nothing where it is touched without force.
+    pub(crate) slack: f64,
+}
+
 /// Bodies with a common segment.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Group {
@@ -35,6 +45,7 @@ pub(crate) struct Group {
     pub(crate) bodies: Vec<BodyId>,
     /// The rows that are held: independent ones, and every row of its connectors.
     pub(crate) rows: Vec<HeldRow>,
+    pub(crate) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
     pub(crate) laws: Vec<usize>,
     pub(crate) works: Vec<Work>,
@@ -74,6 +85,7 @@ impl Group {
     pub(crate) fn clear(&mut self) {
         self.bodies.clear();
         self.rows.clear();
+        self.stops.clear();
         self.laws.clear();
         self.works.clear();
         self.state.clear();

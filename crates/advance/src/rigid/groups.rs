@@ -1,10 +1,11 @@
 //! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
 
+use super::connectors::is_stop;
 use super::dynamics::{Dynamics, body_state, set_body_state};
 use super::error::AdvanceError;
 use super::group::{Group, Work};
 use super::region::Region;
-use super::rows::HeldRow;
+use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settle::Settling;
 use super::system::RigidSystem;
@@ -215,6 +216,10 @@ impl RigidSystem {
                 self.couple_bodies(region, law.bodies().iter().copied());
             }
         }
+        for place in 0..count {
+            let mut connectors = self.connectors_of[region.bodies[place].index()].iter();
+            self.groups.integrated[place] |= connectors.any(|&id| is_stop(self.connector(id)));
+        }
         // What is integrated is a matter of the whole class.
         for place in 0..count {
             if self.groups.integrated[place] {
@@ -249,6 +254,7 @@ impl RigidSystem {
         let rows = settling.held.iter().map(|&(_, row)| row).filter(in_group);
         group.rows.extend(rows.clone().filter(|row| row.bilateral));
         group.rows.extend(rows.filter(|row| !row.bilateral));
+        self.list_stops(&mut group);
         group.laws.extend(group.bodies.iter().flat_map(|&body| self.laws_of(body)));
         group.laws.sort_unstable();
         group.laws.dedup();
@@ -256,6 +262,18 @@ impl RigidSystem {
         let steps = group.bodies.iter().filter_map(|body| self.groups.step_of[body.index()]);
         group.next_step = steps.min_by(f64::total_cmp);
         group
+    }
+
+    fn list_stops(&self, group: &mut Group) {
+        for index in 0..group.bodies.len() {
+            for &id in &self.connectors_of[group.bodies[index].index()] {
+                let source = RowSource::Connector(id, 0);
+                let is_held = group.rows.iter().any(|row| row.source == source);
+                if is_stop(self.connector(id)) && !is_held {
+                    group.stops.push(self.stop(id));
+                }
+            }
+        }
     }
 
     fn list_works(&self, group: &mut Group) {
@@ -359,11 +377,16 @@ pub(crate) struct Tools<'a> {
 impl Dynamics<'_> {
     /// Projects the end onto the held rows and books what energy that took.
     fn end_on_rows(&mut self, tools: &Tools<'_>) {
-        if !tools.settings.projection || self.group.rows.is_empty() {
+        let settings = tools.settings;
+        if self.group.rows.is_empty() || !(settings.projection || settings.joint_small_impacts) {
             return;
         }
         let before = self.end_energy();
-        self.project_end(tools.settings.steps.length);
+        if settings.projection {
+            self.project_end(settings.steps.length);
+        } else {
+            self.fit_joint_velocities();
+        }
         self.group.projected += self.end_energy() - before;
     }
 

@@ -9,10 +9,6 @@ use halfgap_collision::{BodyId, BodyState, Collision, Detector, Moving};
 use halfgap_contact::{CollisionRow, Impact, ImpactError, Inertia};
 use halfgap_geometry::GapSample;
 
-/// Rates below this part of `velocity_tol` are at rest: far more than rounding leaves of a solve, far less than any
-/// approach that counts.
-const REST_SHARE: f64 = 1e-3;
-
 /// One row of an impact, as told to the outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowReport {
@@ -42,7 +38,7 @@ pub struct ImpactReport {
 impl RigidSystem {
     /// Rates [m/s] up to which a row counts as neither closing nor opening.
     pub(crate) fn rest_speed(&self) -> f64 {
-        REST_SHARE * self.settings.tolerances.velocity_tol
+        self.settings.tolerances.rest_speed()
     }
 
     pub(crate) fn inertia(&self, body: BodyId) -> Inertia {

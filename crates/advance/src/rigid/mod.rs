@@ -7,7 +7,8 @@
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact; `events` handles what comes true: `region` collects the bodies that touch, `groups` cuts and makes groups,
-//! `impacts` applies impulses, `settle` finds what is held, `storms` ends what does not end by itself. `ledger` keeps the
+//! `impacts` applies impulses, `settle` finds what is held, `storms` ends what does not end by itself, `ticks` stands
+//! in for forces where contacts carry impulses only. `ledger` keeps the
 //! energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod boxes;
@@ -32,6 +33,7 @@ mod segment;
 mod settle;
 mod storms;
 mod system;
+mod ticks;
 mod watch;
 
 pub use dynamics::ExtraAcceleration;

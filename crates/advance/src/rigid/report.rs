@@ -27,6 +27,9 @@ pub struct RowForce {
     pub normal: DVec2,
     /// Force on the primary body along the normal [N].
     pub force: f64,
+    /// How long [s] the bounces would have gone on that were too slow to be resolved, of a contact that begins with an
+    /// impact: a geometric series under constant acceleration. `None` where there is no such series.
+    pub bouncing: Option<f64>,
 }
 
 impl RowForce {
@@ -101,7 +104,7 @@ impl RigidSystem {
             RowSource::Connector(id, _) => (Some(id), None),
             RowSource::Contact(features) => (None, Some(features)),
         };
-        RowForce { bodies: row.bodies, connector, features, point, normal, force }
+        RowForce { bodies: row.bodies, connector, features, point, normal, force, bouncing: None }
     }
 
     /// Notes the unilateral rows of a group that is cut, with their forces at the cut.
@@ -115,10 +118,27 @@ impl RigidSystem {
     /// Notes the unilateral rows that are held from now on.
     pub(crate) fn note_begins(&mut self, region: &Region, settling: &Settling) {
         for (index, row) in settling.held.iter().filter(|(_, row)| !row.bilateral) {
-            let told = told_of(&region.records[*index], row);
+            let told = RowForce {
+                bouncing: self.bouncing(region, settling),
+                ..told_of(&region.records[*index], row)
+            };
             self.changes.begin.push(told);
         }
         self.changes.drop_continued();
+    }
+
+    /// How long [s] a single contact that was just captured would have gone on bouncing.
+    ///
+    /// After an impact at the speed v each flight lasts 2 v/a, and v falls by e each time: 2 e v/(a (1 - e)) in all.
+    fn bouncing(&self, region: &Region, settling: &Settling) -> Option<f64> {
+        let ([record], Some(acceleration)) = (region.records.as_slice(), settling.closing_acceleration())
+        else {
+            return None;
+        };
+        let impact = self.last_impact.rows.first().filter(|_| self.last_impact.time == self.now)?;
+        let elasticity = record.response.elasticity;
+        let closing = (-impact.rate_before).max(0.0);
+        (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
     }
 
     /// The energy's books at a time of the present segments.
@@ -186,6 +206,7 @@ fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
         point: record.geometry.point_primary,
         normal: record.geometry.normal,
         force: record.response.force.unwrap_or(0.0),
+        bouncing: None,
     }
 }
 

@@ -179,6 +179,23 @@ impl Dynamics<'_> {
         self.group.end_state = end;
     }
 
+    /// Brings the rates of bilateral rows to zero at the end and leaves those of the others as they are.
+    pub(crate) fn fit_joint_velocities(&mut self) {
+        let mut end = std::mem::take(&mut self.group.end_state);
+        self.stage.load(&self.group.bodies, &end);
+        let mut offsets = std::mem::take(&mut self.stage.offsets);
+        offsets.clear();
+        self.factorize(|_, rate| offsets.push(rate));
+        for (offset, row) in offsets.iter_mut().zip(&self.group.rows) {
+            *offset = if row.bilateral { *offset } else { 0.0 };
+        }
+        self.stage.offsets = offsets;
+        self.respond();
+        let velocities = self.group.velocities();
+        add_changes(&mut end[velocities..2 * velocities], &self.stage.changes);
+        self.group.end_state = end;
+    }
+
     /// Evaluates the rates and the forces of the rows at the end.
     pub(crate) fn evaluate_end(&mut self) {
         let end = std::mem::take(&mut self.group.end_state);

@@ -13,7 +13,7 @@ use super::watch::FORCE_SHARE;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin};
-use halfgap_contact::{Auto, Problem, Row, Settings, Solution, SolveError, Solver};
+use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveError, Solver};
 
 /// Solves for contact forces, with its buffers.
 #[derive(Debug)]
@@ -51,6 +51,40 @@ impl Clone for Settling {
     /// Buffers hold nothing worth copying.
     fn clone(&self) -> Self {
         Self::default()
+    }
+}
+
+impl Settling {
+    /// Solves another problem with the same solver.
+    pub(crate) fn solve(&mut self, problem: &Problem) -> Result<(), SolveError> {
+        self.solver.solve(problem, &mut self.solution)
+    }
+
+    /// Acceleration [m/s^2] with which the only candidate would close without a force.
+    pub(crate) fn closing_acceleration(&self) -> Option<f64> {
+        match self.problem.offset() {
+            [offset] if *offset < 0.0 => Some(-offset),
+            _ => None,
+        }
+    }
+
+    /// What the forces of the last solve, one for each record, move the bodies of a region by: M^-1 J^T f.
+    pub(crate) fn shifts(&self, region: &Region, inertia: impl Fn(BodyId) -> Inertia) -> Vec<[f64; 3]> {
+        let mut shifts = vec![[0.0; 3]; region.bodies.len()];
+        for (record, force) in region.records.iter().zip(&self.solution.force) {
+            let j = &record.motion.kinematics.jacobian;
+            for (side, body) in
+                [record.parties.primary.body, record.parties.normal.body].into_iter().enumerate()
+            {
+                let Some(place) = region.place(body) else { continue };
+                let Inertia { inverse_mass, inverse_moment } = inertia(body);
+                let weights = [inverse_mass, inverse_mass, inverse_moment];
+                for k in 0..3 {
+                    shifts[place][k] += weights[k] * j[3 * side + k] * force;
+                }
+            }
+        }
+        shifts
     }
 }
 
@@ -95,7 +129,7 @@ impl RigidSystem {
 
     /// True if a unilateral row may carry a force: connectors always do.
     fn holds(&self, record: &Collision) -> bool {
-        self.settings.contact_forces || record.parties.primary.site.is_none()
+        self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
     }
 
     fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {

@@ -18,6 +18,7 @@ use super::report::ContactChanges;
 use super::rows::Mechanism;
 use super::segment::StepControl;
 use super::storms::Recent;
+use super::ticks::Ticks;
 use crate::ode::{Method, Stepper};
 use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
@@ -49,8 +50,10 @@ pub struct RigidSettings {
     pub projection: bool,
     /// Accelerations against the errors of held rows, if any.
     pub extra: Option<ExtraAcceleration>,
-    /// Resting contacts carry forces; connectors always do.
-    pub contact_forces: bool,
+    /// Contacts carry impulses only, in steps of this length [s]; connectors carry forces all the same.
+    pub impulse_step: Option<f64>,
+    /// Velocities of connectors are made to fit at the ends of steps, where `projection` does not do so.
+    pub joint_small_impacts: bool,
     /// Time [s] that forces take to make `velocity_tol`: more events than it can hold are ended.
     pub resolution_time: f64,
 }
@@ -138,6 +141,11 @@ pub struct RigidSystem {
     pub(crate) groups: Groups,
     pub(crate) recent: Vec<Recent>,
     pub(crate) ledger: Ledger,
+    pub(crate) ticks: Ticks,
+    /// The event at hand is a tick.
+    pub(crate) at_tick: bool,
+    /// When the system started.
+    pub(crate) start: Time,
     /// Taken out while an event is handled.
     pub(crate) work: Option<Box<EventWork>>,
     /// Bodies of the group that was extended last.
@@ -179,6 +187,9 @@ impl RigidSystem {
             now: start,
             groups: Groups::new(count),
             recent: vec![Recent::default(); count],
+            ticks: Ticks::default(),
+            at_tick: false,
+            start,
             ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
             has_potential: laws.iter().map(|law| law.potential(&snapshot).is_some()).collect(),
             connectors_of: index_by_body(
@@ -298,7 +309,7 @@ impl RigidSystem {
         u32::try_from(self.flyers.len()).unwrap_or(u32::MAX)
     }
 
-    /// Sources of events, in this order: bodies that leave their boxes, groups by leader, connectors, pairs.
+    /// Sources of events, in this order: bodies that leave their boxes, groups by leader, connectors, ticks, pairs.
     pub(crate) fn group_source(&self, leader: BodyId) -> SourceId {
         SourceId(self.count_u32().saturating_add(leader.0))
     }
@@ -311,8 +322,12 @@ impl RigidSystem {
         SourceId(self.first_connector_source().saturating_add(id.0))
     }
 
+    pub(crate) fn tick_source(&self) -> SourceId {
+        SourceId(self.first_connector_source() + u32::try_from(self.connectors.len()).unwrap_or(u32::MAX))
+    }
+
     fn first_pair_source(&self) -> u32 {
-        self.first_connector_source() + u32::try_from(self.connectors.len()).unwrap_or(u32::MAX)
+        self.tick_source().0 + 1
     }
 
     pub(crate) fn pair_source(&self, pair: PairId) -> SourceId {
@@ -326,6 +341,9 @@ impl RigidSystem {
             }
             self.predict(pair);
             return Ok(false);
+        }
+        if source == self.tick_source() {
+            return self.handle_tick();
         }
         if let Some(id) = source.0.checked_sub(self.first_connector_source()).map(ConnectorId) {
             return if self.rope_fires(id) { self.handle_rope(id) } else { Ok(false) };

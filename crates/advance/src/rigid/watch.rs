@@ -5,9 +5,9 @@
 
 use super::crossing::{NODES, first_fall, node};
 use super::dynamics::Dynamics;
-use super::group::SegmentEnd;
+use super::group::{SegmentEnd, Stop};
 use super::law::Snapshot;
-use super::rows::HeldRow;
+use super::rows::{HeldRow, moving_of};
 use crate::ode::Ode;
 use glam::DVec2;
 
@@ -45,6 +45,9 @@ impl Dynamics<'_> {
             offer(fall, SegmentEnd::Change(row));
         }
         self.stage.samples = rooms;
+        for place in 0..self.group.stops.len() {
+            offer(self.find_stop(self.group.stops[place]), SegmentEnd::Stop);
+        }
         for place in 0..self.group.laws.len() {
             let law = self.group.laws[place];
             for index in 0..self.physics.laws[law].switches() {
@@ -152,6 +155,30 @@ impl Dynamics<'_> {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
+    /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
+    /// then begins with a part of the segment so short that the point is off.
+    fn find_stop(&mut self, stop: Stop) -> Option<f64> {
+        let mut reach = self.group.span;
+        for _ in 0..MOST_SHORTER {
+            let mut values = std::array::from_fn(|index| self.stop_at(stop, node(index, reach)));
+            let touches = values[0] <= 0.0;
+            values[0] = values[0].max(0.0);
+            if !touches || values[1] >= 0.0 {
+                return first_fall(&values, reach, |offset| self.stop_at(stop, offset));
+            }
+            reach *= SHORTER;
+        }
+        Some(reach)
+    }
+
+    /// Gap of a stop [m], with what it may sink by.
+    fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
+        self.place_at(offset);
+        let connector = &self.physics.mechanism.connectors[stop.id.index()];
+        let [a, b] = connector.bodies().map(|body| moving_of(&self.stage.movings, body));
+        connector.measure_near(0, &a, &b, stop.hint.as_ref()).gap + stop.slack
+    }
+
     fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {
         self.place_at(offset);
         let now = Snapshot::new(self.start.seconds() + offset, &self.stage.movings);
@@ -173,5 +200,9 @@ impl Dynamics<'_> {
     }
 }
 
+/// A search for a stop begins with this part of the segment, and again, if that is too long.
+const SHORTER: f64 = 0.25;
+/// Cap on that.
+const MOST_SHORTER: usize = 30;
 /// Part of the segment after which the sign of a switching function is taken.
 const SIGN_AT: f64 = 1.0 / 1024.0;

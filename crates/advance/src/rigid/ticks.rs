@@ -1,0 +1,153 @@
+//! Without contact forces: slow contacts sink, and are put back once a step.
+//!
+//! A pair that closes more slowly than `velocity_tol` does not fire. At the next tick of the step its velocity is stopped by
+//! an impulse and it is moved back to its target gap, by the least displacement in the metric of the masses.
+
+use super::events::EventWork;
+use super::pairs::{PairId, Prediction};
+use super::region::Region;
+use super::system::RigidSystem;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyState, GapKinematics};
+use halfgap_contact::{Problem, Row};
+use halfgap_geometry::{FeatureId, GapSample};
+
+/// Rounds of putting back: gaps are not linear in the displacement, but nearly.
+const ROUNDS: usize = 3;
+
+/// The pairs that wait for the next tick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ticks {
+    waiting: Vec<PairId>,
+    /// Ticks that have gone by.
+    count: f64,
+}
+
+impl RigidSystem {
+    /// True if a pair that fires is left to sink until the next tick.
+    pub(crate) fn sinks(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
+        let Some(step) = self.settings.impulse_step else { return false };
+        let bodies = self.pairs.get(pair).bodies;
+        let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
+        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
+        let Some(sample) = GapSample::measure(a, &moving[0].pose, b, &moving[1].pose) else { return false };
+        let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
+        let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
+        if -rate > self.settings.tolerances.velocity_tol {
+            return false;
+        }
+        let tick = self.next_tick(step);
+        let entry = self.pairs.get_mut(pair);
+        (entry.prediction, entry.clear) = (Prediction::Quiet, tick);
+        let source = self.pair_source(pair);
+        self.queue.clear(source);
+        if !self.ticks.waiting.contains(&pair) {
+            self.ticks.waiting.push(pair);
+        }
+        self.queue.set(self.tick_source(), tick);
+        true
+    }
+
+    /// The first tick after the present time.
+    fn next_tick(&mut self, step: f64) -> Time {
+        let passed = (self.now.since(self.start) / step).floor();
+        self.ticks.count = passed.max(self.ticks.count);
+        let tick = self.start.plus((self.ticks.count + 1.0) * step);
+        if tick > self.now { tick } else { self.start.plus((self.ticks.count + 2.0) * step) }
+    }
+
+    /// Stops and puts back what has sunk; true if there was an impact.
+    pub(crate) fn handle_tick(&mut self) -> Result<bool, super::AdvanceError> {
+        self.queue.clear(self.tick_source());
+        let mut work = self.work.take().unwrap_or_default();
+        work.seeds.clear();
+        for pair in std::mem::take(&mut self.ticks.waiting) {
+            work.seeds.extend(self.pairs.get(pair).bodies);
+        }
+        work.seeds.sort_unstable();
+        work.seeds.dedup();
+        self.at_tick = true;
+        let outcome = self.handle_impact(&mut work, None);
+        self.at_tick = false;
+        self.work = Some(work);
+        outcome
+    }
+
+    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target.
+    pub(crate) fn put_back(&mut self, work: &mut EventWork) {
+        for &body in &work.region.bodies {
+            self.restart_flight(body, self.now);
+        }
+        for _ in 0..ROUNDS {
+            let before = self.potential_of(&work.region);
+            if !self.move_apart(work) {
+                break;
+            }
+            self.remeasure(&mut work.region, self.now);
+            self.ledger.projections += self.potential_of(&work.region) - before;
+        }
+    }
+
+    /// One round; false if nothing had to move.
+    fn move_apart(&mut self, work: &mut EventWork) -> bool {
+        let mut problem = Problem::new();
+        let region = &work.region;
+        let inertias = region.bodies.iter().map(|&body| self.inertia(body));
+        let bodies: Vec<_> = inertias
+            .map(|inertia| problem.add_body(inertia).expect("inertias were checked when the body was made"))
+            .collect();
+        let mut any_sunk = false;
+        for record in &region.records {
+            let bilateral = record.parties.bilateral;
+            let target =
+                if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
+            let offset = record.geometry.distance - target;
+            any_sunk |= offset < 0.0 && !bilateral;
+            let j = &record.motion.kinematics.jacobian;
+            let places =
+                [record.parties.primary.body, record.parties.normal.body].map(|body| region.place(body));
+            let sides = [(places[0], [j[0], j[1], j[2]]), (places[1], [j[3], j[4], j[5]])];
+            let mut movable = sides.into_iter().filter_map(|(place, j)| Some((bodies[place?], j)));
+            let Some((first, coefficients)) = movable.next() else { continue };
+            let mut row = Row::new(first, coefficients, offset);
+            if let Some((second, coefficients)) = movable.next() {
+                row = row.against(second, coefficients);
+            }
+            let row = if bilateral { row.bilateral() } else { row };
+            problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+        }
+        if !any_sunk || work.settling.solve(&problem).is_err() {
+            return false;
+        }
+        let shifts = work.settling.shifts(&work.region, |body| self.inertia(body));
+        for (place, shift) in shifts.into_iter().enumerate() {
+            let body = work.region.bodies[place];
+            let state = self.flyer(body).state_at(self.now);
+            let moved = BodyState {
+                position: state.position + DVec2::new(shift[0], shift[1]),
+                angle: state.angle + shift[2],
+                ..state
+            };
+            self.flyers[body.index()].fly_from(self.now, moved);
+        }
+        true
+    }
+
+    /// Potential energy [J] of the bodies of a region, as far as it has one.
+    fn potential_of(&mut self, region: &Region) -> f64 {
+        let mut energy = 0.0;
+        for &body in &region.bodies {
+            self.stage.movings[body.index()] = self.flyer(body).moving_at(self.now);
+            let flyer = self.flyer(body);
+            let position = self.stage.movings[body.index()].pose.position;
+            energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
+        }
+        let now = super::Snapshot::new(self.now.seconds(), &self.stage.movings);
+        let mut laws: Vec<usize> =
+            region.bodies.iter().flat_map(|&body| self.laws_of(body)).copied().collect();
+        laws.sort_unstable();
+        laws.dedup();
+        energy + laws.into_iter().filter_map(|law| self.laws[law].potential(&now)).sum::<f64>()
+    }
+}
