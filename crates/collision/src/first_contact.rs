@@ -32,11 +32,14 @@ pub struct SearchSettings {
     pub crowded: usize,
     /// Windows of one call of [`search_step`].
     pub windows: u32,
+    /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper ones lie on the
+    /// far sides of their bodies.
+    pub depth: f64,
 }
 
 impl Default for SearchSettings {
     fn default() -> Self {
-        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4 }
+        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0 }
     }
 }
 
@@ -234,7 +237,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let tolerances = pair_tolerances(a, b, self.tolerances);
         let rule = self.rules.iter().find(|rule| rule.features == ids);
         let target = rule.map_or(Some(tolerances.target_gap), |rule| rule.target)?;
-        Some(Pair { kind, feature_a: a, feature_b: b, target, depth: tolerances.distance_tol() })
+        let depth = tolerances.distance_tol().max(self.settings.depth);
+        Some(Pair { kind, feature_a: a, feature_b: b, target, depth })
     }
 
     fn by_windows(&self, from: f64, span: f64) -> Search {

@@ -19,18 +19,9 @@ impl Tolerances {
     /// A fit is tight when its clearance is less than this many target gaps; its target is then that part of it.
     pub const TIGHT_FIT: f64 = 4.0;
 
-    /// Part of `velocity_tol` up to which a rate is none: far more than rounding leaves of a solve, far less than any
-    /// approach that counts.
-    pub const REST_SHARE: f64 = 1e-3;
     /// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates that are only
     /// rounding pass.
     pub const SINK_SHARE: f64 = 1.0 / 8.0;
-
-    /// Rate [m/s] up to which a row neither closes nor opens.
-    #[must_use]
-    pub fn rest_speed(&self) -> f64 {
-        Self::REST_SHARE * self.velocity_tol
-    }
 
     /// Distance [m] by which a contact without force may sink before it fires again.
     #[must_use]

@@ -4,8 +4,13 @@ use crate::scales::Scales;
 use crate::settings::{Integrator, Stabilization, WorldSettings};
 use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, StepControl};
-use halfgap_collision::SearchSettings;
+use halfgap_collision::{SearchSettings, Tolerances};
 
+/// Part of `velocity_tol`, and of the scene's speed, up to which a rate is none.
+const REST_OF_SLOW: f64 = 1e-3;
+const REST: f64 = 1e-10;
+/// The corner of a body that turns while it falls may be faster than its centre.
+const SINKING: f64 = 4.0;
 /// Part of the tolerance that the error of one step may be.
 const LOCAL_SHARE: f64 = 0.1;
 
@@ -26,7 +31,7 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
         law: settings.impact_law,
         order: settings.impact_order,
         collisions: settings.collisions,
-        search: SearchSettings::default(),
+        search: SearchSettings { depth: sinking(settings, &tolerances, scales), ..SearchSettings::default() },
         method: method(settings.integrator),
         steps: StepControl {
             local_error: LOCAL_SHARE * settings.tolerance,
@@ -38,8 +43,21 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
         extra: extra(settings),
         impulse_step: settings.fixed_step().filter(|_| !settings.contacts),
         joint_small_impacts: settings.joint_small_impacts,
+        rest_speed: rest_speed(tolerances.velocity_tol, speed),
         resolution_time,
     }
+}
+
+/// How far [m] a slow contact may sink in one step, where contacts carry impulses only.
+fn sinking(settings: &WorldSettings, tolerances: &Tolerances, scales: &Scales) -> f64 {
+    let step = settings.fixed_step().filter(|_| !settings.contacts);
+    step.map_or(0.0, |step| SINKING * (tolerances.velocity_tol + scales.acceleration * step) * step)
+}
+
+/// Rates up to which a row is at rest, in a scene of the given speed [m/s].
+fn rest_speed(velocity_tol: f64, speed: f64) -> f64 {
+    let slow = REST_OF_SLOW * velocity_tol;
+    if speed > 0.0 { slow.min(REST * speed) } else { slow }
 }
 
 fn method(integrator: Integrator) -> Method {

@@ -211,7 +211,7 @@ impl RigidSystem {
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
         let tolerances = &self.settings.tolerances;
-        let rests = sample.kinematics.rate <= tolerances.rest_speed() && sample.gap <= tolerances.accuracy;
+        let rests = sample.kinematics.rate <= self.rest_speed() && sample.gap <= tolerances.accuracy;
         let slack = if rests { tolerances.sink() + (-sample.gap).max(0.0) } else { 0.0 };
         Stop { id, hint, slack }
     }

@@ -137,7 +137,8 @@ impl RigidSystem {
         if self.at_tick {
             self.put_back(work);
         }
-        let is_storm = self.note_events(&work.region);
+        // What was slow when it fired stays inelastic, whatever the speed it has gained since.
+        let is_storm = self.at_tick || self.note_events(&work.region);
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, is_storm);

@@ -38,7 +38,7 @@ pub struct ImpactReport {
 impl RigidSystem {
     /// Rates [m/s] up to which a row counts as neither closing nor opening.
     pub(crate) fn rest_speed(&self) -> f64 {
-        self.settings.tolerances.rest_speed()
+        self.settings.rest_speed
     }
 
     pub(crate) fn inertia(&self, body: BodyId) -> Inertia {

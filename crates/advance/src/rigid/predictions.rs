@@ -160,7 +160,8 @@ impl RigidSystem {
             let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
             return self.search_shapes(&side_a, &side_b, (rules, &tolerances), span);
         };
-        if let (Some(radius_a), Some(radius_b), true) = (flyer_a.disc(), flyer_b.disc(), rules.is_empty()) {
+        let is_plain = rules.is_empty() && self.settings.search.depth == 0.0;
+        if let (Some(radius_a), Some(radius_b), true) = (flyer_a.disc(), flyer_b.disc(), is_plain) {
             let (side_a, side_b) = ((flight_a, offset_a, radius_a), (flight_b, offset_b, radius_b));
             if let Some(found) = disc_contact(side_a, side_b, span, &tolerances) {
                 return found;

@@ -123,7 +123,7 @@ impl RigidSystem {
         let tolerances = &self.settings.tolerances;
         let mut fresh = std::mem::take(&mut region.fresh);
         fresh.clear();
-        let depth = self.deepest();
+        let depth = tolerances.distance_tol().max(self.settings.search.depth);
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
         // Farther than the target zone a row fires in its own time, unless it was held there already, or from the start.
         let rest = self.rest_speed();
@@ -143,16 +143,6 @@ impl RigidSystem {
         region.fresh = fresh;
         let last = region.records.last();
         last.is_some_and(|record| record.involves_body(first.id) && record.involves_body(second.id))
-    }
-
-    /// How deep [m] bodies may overlap and still be told to touch: without contact forces they sink between two ticks.
-    fn deepest(&self) -> f64 {
-        let tolerances = &self.settings.tolerances;
-        let sunk = self.settings.impulse_step.map_or(0.0, |step| {
-            let speed = tolerances.velocity_tol * (1.0 + step / self.settings.resolution_time.max(step));
-            speed * step
-        });
-        tolerances.distance_tol() + sunk
     }
 
     /// True if a contact is held now: the search leaves it alone.

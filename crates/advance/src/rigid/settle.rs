@@ -15,12 +15,18 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin};
 use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveError, Solver};
 
+/// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares: that of rows which
+/// move by what counts as rest. What crushes a body is of the order of 1.
+const SMALL_CONTRADICTION: f64 = 1e-3;
+
 /// Solves for contact forces, with its buffers.
 #[derive(Debug)]
 pub(crate) struct Settling {
     problem: Problem,
     solution: Solution,
     solver: Auto,
+    /// For contacts that contradict each other by more than rounding, but by little.
+    lenient: Auto,
     /// Records that enter the problem.
     candidates: Vec<usize>,
     /// The rows to be held, with the record of each.
@@ -35,10 +41,14 @@ impl Default for Settling {
         // Nearly redundant contacts that contradict each other get modest forces.
         let mut settings = Settings::default();
         settings.contradiction = halfgap_contact::Contradiction::LeastSquares;
+        let solver = |settings| Auto::new(settings).expect("the settings are valid");
+        let mut lenient = settings;
+        lenient.inconsistency = SMALL_CONTRADICTION;
         Self {
             problem: Problem::new(),
             solution: Solution::new(),
-            solver: Auto::new(settings).expect("the default settings are valid"),
+            solver: solver(settings),
+            lenient: solver(lenient),
             candidates: Vec::new(),
             held: Vec::new(),
             laws: Vec::new(),
@@ -55,9 +65,19 @@ impl Clone for Settling {
 }
 
 impl Settling {
+    fn solve_strictly(&mut self) -> Result<(), SolveError> {
+        self.solver.solve(&self.problem, &mut self.solution)
+    }
+
+    fn solve_at_all(&mut self) -> Result<(), SolveError> {
+        self.solve_strictly().or_else(|_| self.lenient.solve(&self.problem, &mut self.solution))
+    }
+
     /// Solves another problem with the same solver.
     pub(crate) fn solve(&mut self, problem: &Problem) -> Result<(), SolveError> {
-        self.solver.solve(problem, &mut self.solution)
+        self.solver
+            .solve(problem, &mut self.solution)
+            .or_else(|_| self.lenient.solve(problem, &mut self.solution))
     }
 
     /// Acceleration [m/s^2] with which the only candidate would close without a force.
@@ -119,10 +139,10 @@ impl RigidSystem {
         if scale == 0.0 && !any_bilateral {
             return Ok(());
         }
-        settling
-            .solver
-            .solve(&settling.problem, &mut settling.solution)
-            .map_err(|source| self.settle_error(region, settling, time, source))?;
+        if settling.solve_strictly().is_err() {
+            self.drop_distant(region, settling, stage);
+            settling.solve_at_all().map_err(|source| self.settle_error(region, settling, time, source))?;
+        }
         self.choose_rows(region, settling, stage);
         Ok(())
     }
@@ -130,6 +150,17 @@ impl RigidSystem {
     /// True if a unilateral row may carry a force: connectors always do.
     fn holds(&self, record: &Collision) -> bool {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
+    }
+
+    /// Leaves out what is farther away than its target gap, and need not be in contact: where a body fits between two
+    /// others with little room, it touches at most one of them.
+    fn drop_distant(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let sink = self.sink();
+        settling.candidates.retain(|&index| {
+            let record = &region.records[index];
+            record.parties.bilateral || record.distance_to_target() <= sink
+        });
+        self.pose_problem(region, settling, stage);
     }
 
     fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {

@@ -54,6 +54,10 @@ pub struct RigidSettings {
     pub impulse_step: Option<f64>,
     /// Velocities of connectors are made to fit at the ends of steps, where `projection` does not do so.
     pub joint_small_impacts: bool,
+    /// Rates [m/s] up to which a row neither closes nor opens: more than rounding leaves of a solve, but far less than any
+    /// approach that counts. Two rows that oppose each other at a small angle stop what slides between them, if both are
+    /// taken to rest.
+    pub rest_speed: f64,
     /// Time [s] that forces take to make `velocity_tol`: more events than it can hold are ended.
     pub resolution_time: f64,
 }

@@ -4,12 +4,12 @@
 //! an impulse and it is moved back to its target gap, by the least displacement in the metric of the masses.
 
 use super::events::EventWork;
-use super::pairs::{PairId, Prediction};
+use super::pairs::PairId;
 use super::region::Region;
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyState, GapKinematics};
+use halfgap_collision::{BodyState, FeatureRule, GapKinematics};
 use halfgap_contact::{Problem, Row};
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -38,10 +38,11 @@ impl RigidSystem {
             return false;
         }
         let tick = self.next_tick(step);
-        let entry = self.pairs.get_mut(pair);
-        (entry.prediction, entry.clear) = (Prediction::Quiet, tick);
-        let source = self.pair_source(pair);
-        self.queue.clear(source);
+        let rules = self.pairs.rules_mut(pair);
+        rules.retain(|rule| rule.features != features);
+        rules.push(FeatureRule { features, target: None });
+        // The search goes on for the other features of the two bodies.
+        self.predict(pair);
         if !self.ticks.waiting.contains(&pair) {
             self.ticks.waiting.push(pair);
         }
