@@ -10,7 +10,11 @@
 //! # Code map
 //!
 //! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; [`ode`] integrates
-//! motions that have no closed form; `rigid` implements the trait for bodies in free flight with impacts.
+//! motions that have no closed form; `rigid` implements the trait for rigid bodies: free flight in closed form, contacts,
+//! connectors and forces between bodies by integrated groups, impacts and all changes of contact as events.
+//!
+//! The examples `bouncing_point` (closed form) and `stick_slip` (integrated) are systems that need nothing but this crate
+//! without its features.
 
 #![forbid(unsafe_code)]
 

@@ -101,15 +101,17 @@ impl RigidSystem {
                 let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
                 let state = &self.connector_states[id.index()];
                 let hint = path.nearest(point, state.hint.as_ref()).hint();
-                self.connector_states[id.index()].hint = Some(hint.staying());
+                // A stop lies on whatever piece: it must see its point pass the joints before it.
+                let hint = if is_stop(self.connector(id)) { hint } else { hint.staying() };
+                self.connector_states[id.index()].hint = Some(hint);
             }
         }
     }
 
-    /// The point of a rail passes a joint of the path: it goes on along the next piece.
-    pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) {
+    /// The point of a rail passes a joint of the path: it goes on along the next piece. True if the joint is a corner.
+    pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
         let connector = self.connector(id);
-        let (Some(path), (anchor, _)) = (connector.path(), connector.anchors()) else { return };
+        let (Some(path), (anchor, _)) = (connector.path(), connector.anchors()) else { return false };
         let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
         let place = path.nearest(point, self.connector_states[id.index()].hint.as_ref());
         let ends = path.knots().iter().flat_map(|knot| {
@@ -117,9 +119,11 @@ impl RigidSystem {
             [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
         });
         let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
-        let Some((_, knot, forward)) = nearest else { return };
+        let Some((_, knot, forward)) = nearest else { return false };
+        let is_corner = knot.turn.abs() > 0.0;
         let hint = path.hint_past(knot, forward).staying();
         self.connector_states[id.index()].hint = Some(hint);
+        is_corner
     }
 
     /// Predicts when the ropes of a region go taut.

@@ -63,10 +63,10 @@ impl RigidSystem {
         outcome
     }
 
-    /// A group's segment ends, or something ends it early.
-    pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+    /// A group's segment ends, or something ends it early; true if that is an impact: at a stop or a corner of a rail.
+    pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<bool, AdvanceError> {
         if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
-            return self.extend_naturally(leader);
+            return self.extend_naturally(leader).map(|()| false);
         }
         let mut work = self.work.take().unwrap_or_default();
         let outcome = self.handle_group_with(leader, &mut work);
@@ -74,24 +74,24 @@ impl RigidSystem {
         outcome
     }
 
-    fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<(), AdvanceError> {
-        let Some(group) = self.group_of(leader) else { return Ok(()) };
+    fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        let Some(group) = self.group_of(leader) else { return Ok(false) };
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
-        let Some((_, end)) = group.event else { return Ok(()) };
+        let Some((_, end)) = group.event else { return Ok(false) };
         let changed = match end {
             SegmentEnd::Change(row) => Some(group.rows[row].source),
             SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
         };
         if let Some(RowSource::Connector(id, _)) = changed {
             // Where a rail has a corner, the velocity across the next piece is stopped.
-            self.pass_knot(id, self.now);
-            return self.handle_impact(work, None).map(|_| ());
+            let is_corner = self.pass_knot(id, self.now);
+            return self.handle_impact(work, None).map(|happened| happened && is_corner);
         }
         if end == SegmentEnd::Stop {
-            return self.handle_impact(work, None).map(|_| ());
+            return self.handle_impact(work, None);
         }
-        self.handle_change(work)
+        self.handle_change(work).map(|()| false)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {

@@ -6,10 +6,10 @@
 //! motion, `segment` one step of them, `watch` (with `crossing`) what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
-//! contact; `events` handles what comes true: `region` collects the bodies that touch, `groups` cuts and makes groups,
-//! `impacts` applies impulses, `settle` finds what is held, `storms` ends what does not end by itself, `ticks` stands
-//! in for forces where contacts carry impulses only. `ledger` keeps the
-//! energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
+//! contact, `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
+//! collects the bodies that touch, `groups` cuts and makes groups, `impacts` applies impulses, `settle` finds what is held,
+//! `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
+//! keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod boxes;
 mod connectors;

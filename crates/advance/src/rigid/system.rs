@@ -353,10 +353,12 @@ impl RigidSystem {
             return if self.rope_fires(id) { self.handle_rope(id) } else { Ok(false) };
         }
         match source.0.checked_sub(self.count_u32()).map(BodyId) {
-            Some(leader) => self.handle_group(leader)?,
-            None => self.leave_box(BodyId(source.0)),
+            Some(leader) => self.handle_group(leader),
+            None => {
+                self.leave_box(BodyId(source.0));
+                Ok(false)
+            }
         }
-        Ok(false)
     }
 }
 

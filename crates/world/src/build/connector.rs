@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Elasticity of connectors that hold their points, unless said otherwise.
 const HOLDING_ELASTICITY: f64 = 0.0;
-/// Elasticity of connectors that only limit them, unless said otherwise.
+/// Elasticity of connectors that only limit them, unless said otherwise: at most, for it is no more than that of the bodies.
 const LIMITING_ELASTICITY: f64 = 1.0;
 
 /// Adds all connectors; all bodies have been added before, in the order of the scene.
@@ -22,14 +22,25 @@ pub(super) fn add_all(builder: &mut WorldBuilder, scene: &Scene) -> Result<(), S
         let field = FieldPath::top().field("connector").element(index).field(data.key());
         let kind = kind(builder, scene, data, &mut paths, &field)?;
         let options = data.options();
-        let elasticity = options.elasticity.unwrap_or(match data {
-            ConnectorData::Rope(_) | ConnectorData::RailStop(_) => LIMITING_ELASTICITY,
-            _ => HOLDING_ELASTICITY,
-        });
+        let elasticity = options.elasticity.unwrap_or(default_elasticity(scene, data));
         let connector = Connector::new(kind, elasticity).map_err(|error| refused(&error, &field))?;
         builder.add_connector(ConnectorSpec { connector, collide: options.collide, align: options.align });
     }
     Ok(())
+}
+
+/// The elasticity of a connector that does not say it: what limits is as elastic as the lesser of its bodies, like any
+/// pair of bodies that meet.
+fn default_elasticity(scene: &Scene, data: &ConnectorData) -> f64 {
+    let of_body = |point: &PointData| {
+        let body = scene.bodies.iter().find(|body| body.name == point.body);
+        body.map_or(LIMITING_ELASTICITY, |body| body.elasticity)
+    };
+    match data {
+        ConnectorData::Rope(rope) => of_body(&rope.a).min(of_body(&rope.b)),
+        ConnectorData::RailStop(stop) => of_body(&stop.a),
+        _ => HOLDING_ELASTICITY,
+    }
 }
 
 fn kind<'a>(
