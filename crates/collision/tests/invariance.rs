@@ -193,7 +193,7 @@ proptest! {
 
     #[test]
     fn a_search_in_many_small_calls_finds_the_same(case in any_case(), march_steps in 1..6u32) {
-        let small = SearchSettings { march_steps, windows: 1, crowded: 2, direct_pairs: 4 };
+        let small = SearchSettings { march_steps, windows: 1, crowded: 2, direct_pairs: 4, ..SearchSettings::default() };
         let (one, other) = (case.search(None), case.search(Some(&small)));
         prop_assert!(case.agrees(one, other), "{:?} and {:?}", one, other);
     }

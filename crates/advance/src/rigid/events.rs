@@ -79,19 +79,28 @@ impl RigidSystem {
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
         let Some((_, end)) = group.event else { return Ok(false) };
-        let changed = match end {
-            SegmentEnd::Change(row) => Some(group.rows[row].source),
+        let changed_row = match end {
+            SegmentEnd::Change(row) => Some(group.rows[row]),
             SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
         };
-        if let Some(RowSource::Connector(id, _)) = changed {
-            // Where a rail has a corner, the velocity across the next piece is stopped.
-            let is_corner = self.pass_knot(id, self.now);
-            return self.handle_impact(work, None).map(|happened| happened && is_corner);
+        work.region.run_off = None;
+        match changed_row.map(|row| (row.bodies, row.source)) {
+            Some((bodies, RowSource::Contact(features))) => work.region.run_off = Some((bodies, features)),
+            Some((_, RowSource::Connector(id, _))) => return self.pass_joint(work, id),
+            None => {}
         }
         if end == SegmentEnd::Stop {
             return self.handle_impact(work, None);
         }
-        self.handle_change(work).map(|()| false)
+        let outcome = self.handle_change(work);
+        work.region.run_off = None;
+        outcome.map(|()| false)
+    }
+
+    /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
+    fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
+        let is_corner = self.pass_knot(id, self.now);
+        self.handle_impact(work, None).map(|happened| happened && is_corner)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {

@@ -4,7 +4,8 @@
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions,
+    BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, is_same_collision,
+    merge_collisions,
 };
 use halfgap_geometry::FeatureId;
 
@@ -28,6 +29,8 @@ pub(crate) struct Region {
     pub(crate) groups: Vec<BodyId>,
     /// Nothing has happened yet: what rests within `distance_tol` counts as touching.
     pub(crate) at_start: bool,
+    /// Features of a contact that has just run off them: another pair that finds the same spot takes over.
+    pub(crate) run_off: Option<([BodyId; 2], [FeatureId; 2])>,
     fresh: Vec<Collision>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
@@ -128,6 +131,7 @@ impl RigidSystem {
         fresh.retain(|record| self.counts_as_touching(record, [first.id, second.id], region.at_start));
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
         if fresh.len() > 1 {
+            drop_run_off(&mut fresh, region.run_off);
             merge_collisions(&mut fresh);
         }
         region.records.append(&mut fresh);
@@ -163,6 +167,21 @@ impl RigidSystem {
         for record in &mut region.records {
             self.remeasure_record(record, time);
         }
+    }
+}
+
+/// Drops the record of a contact that has run off its features, if another record is of the same spot.
+fn drop_run_off(records: &mut Vec<Collision>, run_off: Option<([BodyId; 2], [FeatureId; 2])>) {
+    let Some((bodies, features)) = run_off else { return };
+    let is_run_off = |record: &Collision| {
+        let sides = [record.parties.primary, record.parties.normal];
+        sides.map(|side| side.body) == bodies && sides.map(|side| side.feature()) == features.map(Some)
+    };
+    let Some(place) = records.iter().position(is_run_off) else { return };
+    let has_heir =
+        (0..records.len()).any(|other| other != place && is_same_collision(&records[other], &records[place]));
+    if has_heir {
+        _ = records.remove(place);
     }
 }
 
