@@ -8,7 +8,7 @@ use halfgap_collision::{SearchSettings, Tolerances};
 
 /// Part of `velocity_tol`, and of the scene's speed, up to which a rate is none.
 const REST_OF_SLOW: f64 = 1e-3;
-const REST: f64 = 1e-6;
+const REST: f64 = 1e-5;
 /// The corner of a body that turns while it falls may be faster than its centre.
 const SINKING: f64 = 4.0;
 /// Part of the tolerance that the error of one step may be.
