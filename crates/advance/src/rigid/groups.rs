@@ -20,6 +20,7 @@ pub(crate) struct Groups {
     /// The leader of each body's group.
     pub(crate) leader_of: Vec<Option<BodyId>>,
     /// Groups to be used again.
+    #[expect(clippy::vec_box, reason = "groups go from here to `by_leader` without being copied")]
     pool: Vec<Box<Group>>,
     /// Step [s] that was right for each body last.
     step_of: Vec<Option<f64>>,

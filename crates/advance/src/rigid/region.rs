@@ -76,12 +76,12 @@ impl RigidSystem {
         let mut next = 0;
         while next < region.bodies.len() {
             let body = region.bodies[next];
-            if let Some(group) = self.group_of(body) {
-                if !region.groups.contains(&group.leader()) {
-                    region.groups.push(group.leader());
-                    for &mate in &group.bodies {
-                        region.add(mate);
-                    }
+            if let Some(group) = self.group_of(body)
+                && !region.groups.contains(&group.leader())
+            {
+                region.groups.push(group.leader());
+                for &mate in &group.bodies {
+                    region.add(mate);
                 }
             }
             self.collect_connectors(region, next, time);

@@ -19,6 +19,9 @@ use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveErro
 /// move by what counts as rest. What crushes a body is of the order of 1.
 const SMALL_CONTRADICTION: f64 = 1e-3;
 
+/// Residual that is then accepted, in units of the largest acceleration: the integrator errs by more.
+const LENIENT_RESIDUAL: f64 = 1e-9;
+
 /// Solves for contact forces, with its buffers.
 #[derive(Debug)]
 pub(crate) struct Settling {
@@ -44,6 +47,7 @@ impl Default for Settling {
         let solver = |settings| Auto::new(settings).expect("the settings are valid");
         let mut lenient = settings;
         lenient.inconsistency = SMALL_CONTRADICTION;
+        lenient.natural_residual = LENIENT_RESIDUAL;
         Self {
             problem: Problem::new(),
             solution: Solution::new(),

@@ -26,12 +26,11 @@ impl Dynamics<'_> {
         if self.group.rows.iter().any(|row| !row.bilateral) {
             let least = FORCE_SHARE * self.largest_force();
             let samples = self.sample_forces(least);
-            for row in 0..self.group.rows.len() {
+            for (row, values) in samples.iter().enumerate() {
                 if self.group.rows[row].bilateral {
                     continue;
                 }
-                let fall =
-                    first_fall(&samples[row], self.group.span, |offset| self.force_at(offset, row) + least);
+                let fall = first_fall(values, self.group.span, |offset| self.force_at(offset, row) + least);
                 offer(fall, SegmentEnd::Release(row));
             }
             self.stage.samples = samples;
