@@ -101,7 +101,7 @@ impl RunError {
         let names = |between: Between| (name(between.primary), name(between.normal));
         match error {
             AdvanceError::Impact { time, bodies, source } => {
-                Self::Impact { time, bodies: bodies.into_iter().map(|body| name(body)).collect(), source }
+                Self::Impact { time, bodies: bodies.into_iter().map(name).collect(), source }
             }
             AdvanceError::Contacts { time, bodies, source } => {
                 Self::Contacts { time, bodies: bodies.into_iter().map(name).collect(), source }
