@@ -1,9 +1,9 @@
 //! Capture and release: contacts begin and end where theory says, and change from edge to edge on the way.
 
-use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
+use halfgap::geometry::{DVec2, Shape};
 use halfgap::{BodySpec, ToleranceOverrides};
 use halfgap::{BodyState, Event, World, WorldBuilder, WorldSettings};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 
 fn ends(world: &mut World, until: f64) -> Vec<(f64, DVec2)> {
     let mut ends = Vec::new();
@@ -90,29 +90,6 @@ fn what_opens_at_the_target_gap_never_fires() {
     world.advance_to(1e3, &mut |_| events += 1).expect("nothing happens");
     assert_eq!(events, 0);
     assert_eq!(world.state(ball).velocity, start.velocity);
-}
-
-/// A stadium-shaped hole in a block: a straight of 3 m between half circles of 1 m.
-fn stadium_hole() -> Shape {
-    let line = |x, y| EdgeSpec::Line { to: DVec2::new(x, y) };
-    let bulge = |x, y| EdgeSpec::Bulge { to: DVec2::new(x, y), bulge: 1.0 };
-    let outer = PathSpec {
-        start: DVec2::new(-3.0, -1.5),
-        edges: vec![line(3.0, -1.5), line(3.0, 1.5), line(-3.0, 1.5), line(-3.0, -1.5)],
-    };
-    let inner = PathSpec {
-        start: DVec2::new(-1.5, -1.0),
-        edges: vec![line(1.5, -1.0), bulge(1.5, 1.0), line(-1.5, 1.0), bulge(-1.5, -1.0)],
-    };
-    Shape::from_paths(&[outer, inner]).expect("a fine track")
-}
-
-/// A disc that slides to and fro in the hole.
-fn sliding(tolerance: f64, speed: f64) -> (World, halfgap::BodyId) {
-    let mut shop = Workshop::new(tolerance);
-    shop.fixed("track", stadium_hole(), DVec2::ZERO);
-    let disc = shop.dull("disc", disc(0.25), 1.0, thrown(0.0, -0.75, DVec2::new(speed, 0.0)));
-    (shop.build(), disc)
 }
 
 #[test]
