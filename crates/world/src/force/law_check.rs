@@ -6,6 +6,12 @@ use halfgap_collision::BodyState;
 
 /// Step of finite differences [m, rad].
 const STEP: f64 = 1e-4;
+/// Forces larger than this [N] are there at all.
+const NOTICEABLE: f64 = 1e-3;
+/// Part of the largest force by which a finite difference may miss it [1, m for torques].
+const DIFFERENCE_ERROR: f64 = 1e-6;
+/// Part of the largest force that rounding may leave of a sum that is zero [1, m for torques].
+const SUM_ROUNDING: f64 = 1e-14;
 
 pub(super) type Pushed = Wrench;
 
@@ -53,7 +59,7 @@ pub(super) fn assert_gradient(law: &dyn ForceLaw, states: &[BodyState; 3]) {
     };
     let sums = wrenches(law, states);
     let size = sums.iter().map(|sum| sum.force.length()).fold(0.0, f64::max);
-    assert!(size > 1e-3, "there is a force to compare");
+    assert!(size > NOTICEABLE, "there is a force to compare");
     for (body, sum) in sums.iter().enumerate() {
         let slope = |change: fn(&mut BodyState, f64)| {
             let at = |step: f64| {
@@ -69,7 +75,10 @@ pub(super) fn assert_gradient(law: &dyn ForceLaw, states: &[BodyState; 3]) {
             slope(|state, step| state.angle += step),
         ];
         for (slope, push) in expected.into_iter().zip([sum.force.x, sum.force.y, sum.torque]) {
-            assert!((slope + push).abs() < 1e-6 * size, "body {body}: slope {slope}, push {push}");
+            assert!(
+                (slope + push).abs() < DIFFERENCE_ERROR * size,
+                "body {body}: slope {slope}, push {push}"
+            );
         }
     }
 }
@@ -78,10 +87,10 @@ pub(super) fn assert_gradient(law: &dyn ForceLaw, states: &[BodyState; 3]) {
 pub(super) fn assert_pushes_cancel(law: &dyn ForceLaw, states: &[BodyState; 3]) {
     let sums = wrenches(law, states);
     let size = sums.iter().map(|sum| sum.force.length()).fold(0.0, f64::max);
-    assert!(size > 1e-3, "there are forces that could cancel");
+    assert!(size > NOTICEABLE, "there are forces that could cancel");
     let force: DVec2 = sums.iter().map(|sum| sum.force).sum();
     let about_origin = |(sum, state): (&Pushed, &BodyState)| state.position.perp_dot(sum.force) + sum.torque;
     let torque: f64 = sums.iter().zip(states).map(about_origin).sum();
-    assert!(force.length() < 1e-14 * size, "{force}");
-    assert!(torque.abs() < 1e-14 * size, "{torque}");
+    assert!(force.length() < SUM_ROUNDING * size, "{force}");
+    assert!(torque.abs() < SUM_ROUNDING * size, "{torque}");
 }
