@@ -1,12 +1,35 @@
 //! Scenes at which the reference engine fails, gets stuck or takes very long.
 
 use halfgap::World;
+use halfgap::geometry::DVec2;
 use halfgap::scene::Scene;
-use halfgap_tests::mechanism::advance;
+use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, connector_error};
 use halfgap_tests::reference_scene;
 
 fn world(scene: &Scene) -> World {
     World::from_scene(scene).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The reference's grinder works only while its start is exactly aligned.
+#[test]
+fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
+    for body in [0, 1] {
+        let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
+        scene.bodies[body].angle += 1e-9;
+        scene.set_duration(100.0, "duration").expect("a fine duration");
+        let mut world = world(&scene);
+        let handle = world.find("handle").expect("it is there");
+        for second in 1..=100 {
+            advance(&mut world, f64::from(second));
+            assert!(connector_error(&world) < 1e-6, "{} m at {second} s", connector_error(&world));
+        }
+        // A constant force drives it round.
+        assert!(
+            world.state(handle).angle.abs() > std::f64::consts::TAU,
+            "turned by {}",
+            world.state(handle).angle
+        );
+    }
 }
 
 #[test]
@@ -23,6 +46,58 @@ fn the_gears_turn_for_a_minute() {
     }
     println!("gears: {:?}", world.statistics());
     assert!(turned(&world, "left_gear").abs() > 10.0);
+}
+
+/// SplitMix64.
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        low + (high - low) * ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+#[test]
+fn twenty_random_blocks_settle_in_a_pit() {
+    for seed in [3] {
+        let mut random = Random(seed);
+        let mut shop = Workshop::new(1e-3);
+        shop.fixed("floor", block(8.0, 1.0), DVec2::new(0.0, -0.5));
+        shop.fixed("left", block(1.0, 12.0), DVec2::new(-3.5, 6.0));
+        shop.fixed("right", block(1.0, 12.0), DVec2::new(3.5, 6.0));
+        for index in 0..20 {
+            let (width, height) = (random.between(0.4, 1.2), random.between(0.4, 1.2));
+            let state = halfgap::BodyState {
+                angle: random.between(-3.0, 3.0),
+                ..at_rest(-2.1 + 1.8 * f64::from(index % 3), 1.5 + 1.8 * f64::from(index / 3))
+            };
+            let body =
+                shop.settler(&format!("block {index}"), block(width, height), width * height, state, 0.3);
+            shop.builder.add_damping(body, 0.05, 0.01);
+        }
+        let mut world = shop.build();
+        let start = world.energy().total();
+        for second in 1..=40 {
+            advance(&mut world, f64::from(second));
+        }
+        println!("pit {seed}: {:?} {:?}", world.energy(), world.statistics());
+        assert!(world.energy().kinetic < 1e-2, "seed {seed}: {:?}", world.energy());
+        assert!(world.energy().total() < start);
+        let ledger = world.ledger();
+        assert!(ledger.integration_error().abs() < 1e-4 * start, "seed {seed}: {ledger:?}");
+        for body in world.bodies().filter(|&body| !world.is_fixed(body)) {
+            let place = world.state(body).position;
+            assert!(
+                place.x.abs() < 3.0 && place.y > 0.0 && place.y < 12.0,
+                "{} is at {place}",
+                world.name(body)
+            );
+        }
+    }
 }
 
 /// A ball that bounces until it rests, by impulses alone.

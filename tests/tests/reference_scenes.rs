@@ -3,14 +3,13 @@
 use halfgap_tests::{check_at, reference_scene, reference_scene_names};
 
 /// Scenes whose expected state is not reached, each with its reason in docs/reference-cases.md; that it is not is checked too.
-const NOT_YET: [&str; 7] = [
+const NOT_YET: [&str; 6] = [
     "apps__chain",
     "extra__two_blocks_2_joints",
     "multiple_collision__test7_0_simultaneous",
     "multiple_collision__test7_1_hybrid",
     "straight_straight__one_block1",
     "straight_straight__six_blocks_1",
-    "straight_straight__six_blocks_settle2",
 ];
 
 /// Everything but friction is simulated.

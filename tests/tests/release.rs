@@ -1,9 +1,9 @@
 //! Capture and release: contacts begin and end where theory says, and change from edge to edge on the way.
 
-use halfgap::geometry::{DVec2, Shape};
+use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
 use halfgap::{BodySpec, ToleranceOverrides};
 use halfgap::{BodyState, Event, World, WorldBuilder, WorldSettings};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
 
 fn ends(world: &mut World, until: f64) -> Vec<(f64, DVec2)> {
     let mut ends = Vec::new();
@@ -90,6 +90,70 @@ fn what_opens_at_the_target_gap_never_fires() {
     world.advance_to(1e3, &mut |_| events += 1).expect("nothing happens");
     assert_eq!(events, 0);
     assert_eq!(world.state(ball).velocity, start.velocity);
+}
+
+/// A stadium-shaped hole in a block: a straight of 3 m between half circles of 1 m.
+fn stadium_hole() -> Shape {
+    let line = |x, y| EdgeSpec::Line { to: DVec2::new(x, y) };
+    let bulge = |x, y| EdgeSpec::Bulge { to: DVec2::new(x, y), bulge: 1.0 };
+    let outer = PathSpec {
+        start: DVec2::new(-3.0, -1.5),
+        edges: vec![line(3.0, -1.5), line(3.0, 1.5), line(-3.0, 1.5), line(-3.0, -1.5)],
+    };
+    let inner = PathSpec {
+        start: DVec2::new(-1.5, -1.0),
+        edges: vec![line(1.5, -1.0), bulge(1.5, 1.0), line(-1.5, 1.0), bulge(-1.5, -1.0)],
+    };
+    Shape::from_paths(&[outer, inner]).expect("a fine track")
+}
+
+/// A disc that slides to and fro in the hole.
+fn sliding(tolerance: f64, speed: f64) -> (World, halfgap::BodyId) {
+    let mut shop = Workshop::new(tolerance);
+    shop.fixed("track", stadium_hole(), DVec2::ZERO);
+    let disc = shop.dull("disc", disc(0.25), 1.0, thrown(0.0, -0.75, DVec2::new(speed, 0.0)));
+    (shop.build(), disc)
+}
+
+#[test]
+fn a_disc_that_slides_in_a_stadium_keeps_its_energy_for_a_hundred_seconds() {
+    let (mut world, disc) = sliding(1e-10, 3.0);
+    let energy = world.energy().total();
+    let kinetic = world.energy().kinetic;
+    let mut change = 0.0f64;
+    for piece in 1..=1000 {
+        advance(&mut world, 0.1 * f64::from(piece));
+        change = change.max((world.energy().total() - energy).abs() / kinetic);
+        assert!(world.state(disc).position.y < -0.2, "it stays below the middle");
+    }
+    println!("stadium track: energy {change:e}, {:?}", world.statistics());
+    assert!(change < 1e-8, "{change}");
+    assert_eq!(world.statistics().impacts, 0);
+}
+
+#[test]
+fn a_contact_goes_from_line_to_arc_and_back_when_the_disc_does() {
+    let (speed, tolerance) = (3.0, 1e-10);
+    let (mut world, disc) = sliding(tolerance, speed);
+    let gap = world.tolerances().target_gap;
+    // On a half circle it is a pendulum that starts at the bottom: half a swing to and fro on each side.
+    let radius = 0.75 - gap;
+    let amplitude = (1.0 - speed * speed / (2.0 * GRAVITY * radius)).acos();
+    let round = 2.0 * 3.0 / speed + pendulum_period((GRAVITY / radius).sqrt(), amplitude);
+    let mut changes = Vec::new();
+    world
+        .advance_to(10.0 * round, &mut |event| {
+            if let Event::ContactBegins(begin) = event {
+                changes.push(begin.time);
+            }
+        })
+        .expect("it slides");
+    let state = world.state(disc);
+    assert!(state.position.x.abs() < 1e-8, "{} m from its start after ten rounds", state.position.x);
+    assert!((state.velocity - DVec2::new(speed, 0.0)).length() < 1e-8, "{}", state.velocity);
+    // Four times a round, first after half of the straight.
+    assert_eq!(changes.len(), 40, "{changes:?}");
+    assert!((changes[0] - 0.5).abs() < 1e-8, "{changes:?}");
 }
 
 #[test]

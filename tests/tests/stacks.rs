@@ -1,8 +1,112 @@
-//! Blocks that fall come to rest.
+//! Rest is cheap: what stands still takes few steps, and does not move.
 
-use halfgap::BodyState;
-use halfgap::geometry::DVec2;
-use halfgap_tests::mechanism::{Workshop, advance, at_rest, block};
+use halfgap::geometry::{DVec2, Shape};
+use halfgap::{BodyId, BodyState, World};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
+
+/// Largest distance [m] or angle [rad] by which a body has moved.
+fn moved(world: &World, start: &[BodyState]) -> f64 {
+    let of = |(body, start): (BodyId, &BodyState)| {
+        let state = world.state(body);
+        (state.position - start.position).length().max((state.angle - start.angle).abs())
+    };
+    world.bodies().zip(start).map(of).fold(0.0, f64::max)
+}
+
+/// Rests for a hundred seconds, and returns the largest motion met.
+fn rest(world: &mut World) -> f64 {
+    let start: Vec<BodyState> = world.bodies().map(|body| world.state(body)).collect();
+    let mut most = 0.0f64;
+    for piece in 1..=100 {
+        advance(world, f64::from(piece));
+        most = most.max(moved(world, &start));
+    }
+    println!("moved {most:e}, {:?}", world.statistics());
+    most
+}
+
+fn stack(count: usize, elasticity: f64) -> World {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -0.5));
+    for index in 0..count {
+        let state = at_rest(0.0, 0.25 + 0.5 * index as f64);
+        let name = format!("block {index}");
+        if elasticity > 0.0 {
+            shop.body(&name, block(1.0, 0.5), 1.0, state);
+        } else {
+            shop.dull(&name, block(1.0, 0.5), 1.0, state);
+        }
+    }
+    shop.build()
+}
+
+#[test]
+fn a_stack_of_ten_rests_for_a_hundred_seconds_in_less_than_two_hundred_steps() {
+    for elasticity in [0.0, 1.0] {
+        let mut world = stack(10, elasticity);
+        let most = rest(&mut world);
+        assert!(most < 1e-9, "elasticity {elasticity}: moved by {most}");
+        assert!(world.statistics().steps < 200, "{:?}", world.statistics());
+        assert_eq!(world.statistics().impacts, 0, "elasticity {elasticity}");
+        // The lowest carries all ten, by its two ends.
+        let floor = world.find("floor").expect("it is there");
+        let on_floor =
+            world.contact_forces().iter().filter(|row| row.bodies[1] == floor).map(|row| row.force).sum();
+        let weight: f64 = on_floor;
+        assert!((weight - 10.0 * GRAVITY).abs() < 1e-9, "{weight} N");
+    }
+}
+
+#[test]
+fn a_wall_of_bricks_rests() {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
+    for row in 0..5 {
+        // Each brick stands on two: every row has one less than the one below.
+        for column in 0..5 - row {
+            let x = 1.01 * f64::from(column) + 0.505 * f64::from(row);
+            shop.dull(
+                &format!("{row} {column}"),
+                block(1.0, 0.5),
+                1.0,
+                at_rest(x, 0.25 + 0.5 * f64::from(row)),
+            );
+        }
+    }
+    let mut world = shop.build();
+    let most = rest(&mut world);
+    assert!(most < 1e-9, "moved by {most}");
+    assert!(world.statistics().steps < 400, "{:?}", world.statistics());
+}
+
+#[test]
+fn discs_rest_in_a_round_bowl_where_they_hold_each_other() {
+    // Three discs in a bowl, the outer two leaning on the middle one, each on the bowl: all forces are positive.
+    let bowl = Shape::ring(4.0, 3.0).expect("a fine ring");
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("bowl", bowl, DVec2::ZERO);
+    let reach = 3.0 - 0.5;
+    let turn = 2.0 * (0.5f64 / reach).asin();
+    for (name, angle) in [("left", -turn), ("middle", 0.0), ("right", turn)] {
+        let place = DVec2::from_angle(angle - std::f64::consts::FRAC_PI_2) * reach;
+        shop.dull(name, disc(0.5), 1.0, at_rest(place.x, place.y));
+    }
+    let mut world = shop.build();
+    let most = rest(&mut world);
+    assert!(most < 1e-8, "moved by {most}");
+    assert_eq!(world.contact_forces().len(), 5, "{:?}", world.contact_forces());
+    let weight: DVec2 = world
+        .contact_forces()
+        .iter()
+        .filter(|row| row.bodies.iter().any(|&body| world.is_fixed(body)))
+        .map(
+            |row| {
+                if world.is_fixed(row.bodies[0]) { -row.force * row.normal } else { row.force * row.normal }
+            },
+        )
+        .sum();
+    assert!((weight - DVec2::new(0.0, 3.0 * GRAVITY)).length() < 1e-7, "{weight} N");
+}
 
 #[test]
 fn a_block_that_lands_askew_comes_to_rest_flat() {

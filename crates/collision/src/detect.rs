@@ -58,6 +58,20 @@ pub fn detect_features_of_pair(
     );
 }
 
+/// The record of one pair of features, wherever on them its contact is and however far they are apart: of a pair that a
+/// search says is in contact. `None` if the two cannot touch inside their ranges.
+#[must_use]
+pub fn record_features(
+    [a, b]: [&Moment<'_>; 2],
+    features: [FeatureId; 2],
+    tolerances: &Tolerances,
+    time: f64,
+) -> Option<Collision> {
+    let (shape_a, shape_b) = (a.body.shape.feature(features[0]), b.body.shape.feature(features[1]));
+    let sample = GapSample::measure(shape_a, &a.moving.pose, shape_b, &b.moving.pose)?;
+    Some(record([a, b], features, &sample, pair_tolerances(shape_a, shape_b, tolerances), time))
+}
+
 fn detect_features(
     [a, b]: [&Moment<'_>; 2],
     [feature_a, feature_b]: [FeatureId; 2],
@@ -76,6 +90,16 @@ fn detect_features(
     if !is_within(&sample, [(&a.body.shape, feature_a), (&b.body.shape, feature_b)], &tolerances) {
         return None;
     }
+    Some(record([a, b], [feature_a, feature_b], &sample, tolerances, time))
+}
+
+fn record(
+    [a, b]: [&Moment<'_>; 2],
+    [feature_a, feature_b]: [FeatureId; 2],
+    sample: &GapSample,
+    tolerances: Tolerances,
+    time: f64,
+) -> Collision {
     let (primary, normal, primary_feature, normal_feature) =
         if sample.primary_is_a { (a, b, feature_a, feature_b) } else { (b, a, feature_b, feature_a) };
     let (shape_primary, shape_normal) = (&primary.body.shape, &normal.body.shape);
@@ -91,14 +115,7 @@ fn detect_features(
         normal.body.shape.feature(normal_feature).radius(),
     ];
     let elasticity = a.body.elasticity.min(b.body.elasticity);
-    Some(Collision::new(
-        parties,
-        (&sample, radii),
-        [&primary.moving, &normal.moving],
-        tolerances,
-        elasticity,
-        time,
-    ))
+    Collision::new(parties, (sample, radii), [&primary.moving, &normal.moving], tolerances, elasticity, time)
 }
 
 fn detector(kinds: [FeatureKind; 2]) -> Detector {

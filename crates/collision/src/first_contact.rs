@@ -5,10 +5,13 @@
 
 use crate::closed::quadratic;
 use crate::detect::pair_tolerances;
-use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
+use crate::march::{MarchEnd, Pair, Slack, Window, contact_is_within, reach_circle};
 use crate::motion::Motion;
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
+
+/// Part of the accuracy by which a contact may lie outside of its features and still fires.
+const VALIDITY_SHARE: f64 = 1.0 / 16.0;
 
 /// A shape in motion, as the search sees it.
 #[derive(Clone, Copy, Debug)]
@@ -223,7 +226,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     fn touches_at(&self, pair: &Pair<'_>, time: f64) -> bool {
         let pose_a = self.a.motion.moving_at(self.a.offset + time).pose;
         let pose_b = self.b.motion.moving_at(self.b.offset + time).pose;
-        contact_is_within((pair.feature_a, &pose_a), (pair.feature_b, &pose_b), pair.kind)
+        contact_is_within(pair, [&pose_a, &pose_b])
     }
 
     /// The pair as it is to be searched; `None` if it is not.
@@ -238,7 +241,10 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let rule = self.rules.iter().find(|rule| rule.features == ids);
         let target = rule.map_or(Some(tolerances.target_gap), |rule| rule.target)?;
         let depth = tolerances.distance_tol().max(self.settings.depth);
-        Some(Pair { kind, feature_a: a, feature_b: b, target, depth })
+        let overrun = VALIDITY_SHARE * tolerances.accuracy;
+        let angles = [overrun / self.a.shape.lever(ids[0]), overrun / self.b.shape.lever(ids[1])];
+        let slack = Slack { angles, overrun };
+        Some(Pair { kind, feature_a: a, feature_b: b, target, depth, slack })
     }
 
     fn by_windows(&self, from: f64, span: f64) -> Search {
@@ -288,6 +294,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             feature_b: circle_b,
             target,
             depth: f64::INFINITY,
+            slack: Slack::NONE,
         };
         let offsets = [self.a.offset + start, self.b.offset + start];
         let (a, b) = ((circle_a, self.a.motion), (circle_b, self.b.motion));

@@ -5,6 +5,9 @@
 //! asks again. It never passes a contact and, since the bound touches the gap to second order, it converges to a
 //! transversal one as Newton's method does, from before.
 //!
+//! A bound on an acceleration keeps its direction as far as the normal can turn in the window, so that what both bodies
+//! have in common, or have along the contact, does not count.
+//!
 //! Over a window, with a_rel and u bounding the relative acceleration and velocity of the two centres:
 //!
 //! * vertices and convex arcs: the distance of the centres is convex but for their acceleration, K = a_rel;
@@ -19,10 +22,11 @@
 //! Source: the one-sided bound is conservative advancement (B. Mirtich, "Impulse-based dynamic simulation of rigid body
 //! systems", 1996, 2.3) carried to second order.
 
-use crate::motion::{Motion, MotionBounds, Moving};
+use crate::motion::{Ball, Motion, MotionBounds, Moving};
 use crate::tolerances::rounding;
 use glam::DVec2;
 use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, Pose, RoundFeature};
+use std::f64::consts::PI;
 
 /// Two bodies' motions over a window, with bounds that hold in all of it.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +35,9 @@ pub(crate) struct Window<'a, A, B> {
     pub(crate) motion_b: &'a B,
     /// Offsets [s] of the search's time 0 in the two motions.
     pub(crate) offsets: [f64; 2],
-    /// Bounds over the window on the relative velocity and acceleration of the centres of mass.
+    /// Bounds over the window on the relative velocity and acceleration of the centres of mass, of a against b.
     pub(crate) speed: f64,
-    pub(crate) acceleration: f64,
+    pub(crate) acceleration: Ball,
     pub(crate) spin_a: SpinBound,
     pub(crate) spin_b: SpinBound,
 }
@@ -97,7 +101,29 @@ pub(crate) struct Pair<'a> {
     pub(crate) target: f64,
     /// A pair deeper than this [m] lies behind.
     pub(crate) depth: f64,
+    pub(crate) slack: Slack,
 }
+
+/// By how much a contact may lie outside of its features and still counts as within them.
+///
+/// Edges that lie flat on each other are parallel up to rounding: their corners are now within, now outside of their
+/// cones. A bound well above rounding keeps the search from asking at every tick of the clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slack {
+    /// Angles [rad] outside of the ranges of the two features.
+    pub(crate) angles: [f64; 2],
+    /// Distance [m] beyond the ends of a line.
+    pub(crate) overrun: f64,
+}
+
+impl Slack {
+    /// No more than rounding.
+    pub(crate) const NONE: Self = Self { angles: [0.0; 2], overrun: 0.0 };
+}
+
+/// The round side of a pair, with the angle [rad] by which a contact may lie outside of its range.
+type RoundSide<'a> = (&'a RoundFeature, &'a Moving, SpinBound, f64);
+type LineSide<'a> = (&'a LineFeature, &'a Moving, SpinBound);
 
 impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     /// The window from `start` to `end` [s].
@@ -109,7 +135,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             motion_b,
             offsets,
             speed: bounds_a.velocity.largest_difference(&bounds_b.velocity),
-            acceleration: bounds_a.acceleration.largest_difference(&bounds_b.acceleration),
+            acceleration: bounds_a.acceleration.minus(&bounds_b.acceleration),
             spin_a: SpinBound::of(&bounds_a),
             spin_b: SpinBound::of(&bounds_b),
         }
@@ -144,10 +170,14 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let (a, b) = self.at(time);
         match (pair.kind, pair.feature_a, pair.feature_b) {
             (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
-                self.look_at_line(pair, (round, &a, self.spin_a), (line, &b, self.spin_b), ahead)
+                let slack = pair.slack.angles[0];
+                let sides = ((round, &a, self.spin_a, slack), (line, &b, self.spin_b));
+                self.look_at_line(pair, sides, &self.acceleration, ahead)
             }
             (PairKind::LineRound, Feature::Line(line), Feature::Round(round)) => {
-                self.look_at_line(pair, (round, &b, self.spin_b), (line, &a, self.spin_a), ahead)
+                let slack = pair.slack.angles[1];
+                let sides = ((round, &b, self.spin_b, slack), (line, &a, self.spin_a));
+                self.look_at_line(pair, sides, &self.acceleration.mirrored(), ahead)
             }
             (kind, Feature::Round(round_a), Feature::Round(round_b)) => {
                 self.look_at_centers(pair, (round_a, &a), (round_b, &b), kind == PairKind::Inner, ahead)
@@ -169,22 +199,34 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let gap = CenterGap::measure(round_a, &a.pose, round_b, &b.pose, inner);
         let height = gap.gap - pair.target;
         let arms = [round_a.center.length(), round_b.center.length()];
-        let u_max = self.speed + self.spin_a.speed * arms[0] + self.spin_b.speed * arms[1];
-        let a_max =
-            self.acceleration + self.spin_a.arm_acceleration(arms[0]) + self.spin_b.arm_acceleration(arms[1]);
         let u = a.velocity_at(gap.center_a - a.pose.position) - b.velocity_at(gap.center_b - b.pose.position);
+        let u_max = self.speed + self.spin_a.speed * arms[0] + self.spin_b.speed * arms[1];
+        let of_arms = self.spin_a.arm_acceleration(arms[0]) + self.spin_b.arm_acceleration(arms[1]);
+        let a_max = self.acceleration.largest() + of_arms;
+        // While the centres keep half of their distance the direction turns by at most u/(d/2).
+        let direction_turn = quotient(2.0 * u_max, gap.center_distance);
+        let direction_rate = turning_rate(&gap, u, inner);
+        let turned =
+            if quotient(0.5 * gap.center_distance, u_max) >= ahead { direction_turn * ahead } else { PI };
+        let downward = fastest_against(&self.acceleration, gap.normal, turned) + of_arms;
         let size = gap.center_a.abs().max(gap.center_b.abs()).max_element()
             + round_a.radius.abs()
             + round_b.radius.abs();
         let mut look = Look {
             value: height,
             rate: gap.normal.dot(u),
-            curvature: a_max,
+            curvature: downward,
             height,
             value_rounding: rounding(size),
             rate_rounding: rounding(u.length()),
             resolution: quotient(rounding(size), u_max),
-            outside_for: self.outside_ranges(&gap, (round_a, a), (round_b, b), u_max),
+            outside_for: self.outside_ranges(
+                pair,
+                &gap,
+                (round_a, a),
+                (round_b, b),
+                (direction_rate, u_max, a_max),
+            ),
         };
         if inner || look.is_behind(pair.depth) {
             // In terms of H = +-(|d|^2 - reach^2), whose acceleration +-2 (|u|^2 + d.d'') is bounded at the centre too.
@@ -204,8 +246,8 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     fn look_at_line(
         &self,
         pair: &Pair<'_>,
-        (round, a, spin_a): (&RoundFeature, &Moving, SpinBound),
-        (line, b, spin_b): (&LineFeature, &Moving, SpinBound),
+        ((round, a, spin_a, slack), (line, b, spin_b)): (RoundSide<'_>, LineSide<'_>),
+        acceleration: &Ball,
         ahead: f64,
     ) -> Look {
         let gap = LineGap::measure(round, &a.pose, line, &b.pose);
@@ -215,18 +257,33 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let e_rate = a.velocity_at(gap.center - a.pose.position) - b.velocity;
         let e_speed = self.speed + spin_a.speed * arm;
         let e_max = e.length() + e_speed * ahead;
-        let curvature = (spin_b.acceleration + spin_b.speed * spin_b.speed) * e_max
-            + 2.0 * spin_b.speed * e_speed
-            + self.acceleration
-            + spin_a.arm_acceleration(arm);
         let (n, w) = (gap.normal, b.angular_velocity);
+        let of_turning = (spin_b.acceleration + spin_b.speed * spin_b.speed) * e_max
+            + 2.0 * spin_b.speed * e_speed
+            + spin_a.arm_acceleration(arm);
+        let in_any_direction = of_turning + acceleration.largest();
+        let curvature = if height < -pair.depth {
+            in_any_direction
+        } else {
+            of_turning + fastest_against(acceleration, n, spin_b.speed * ahead)
+        };
         let rate = n.dot(e_rate) + w * n.perp().dot(e);
         let along_rate = n.perp().dot(e_rate) - w * n.dot(e);
         let size = gap.center.abs().max(b.pose.position.abs()).max_element() + e.length() + round.radius;
-        let beyond = overrun_for(gap.along, along_rate, line, curvature, rounding(size));
+        let beyond = overrun_for(
+            gap.along,
+            along_rate,
+            line,
+            in_any_direction,
+            rounding(size).max(pair.slack.overrun),
+        );
         let excess = gap.excess(round, &a.pose);
-        let turning = spin_a.speed + spin_b.speed;
-        let askew = (excess > rounding(1.0)).then(|| quotient(excess, turning));
+        let turning = (a.angular_velocity - w).abs();
+        let askew = (excess > rounding(1.0).max(slack)).then(|| {
+            let room = excess - slack;
+            let by_speed = quotient(room, spin_a.speed + spin_b.speed);
+            by_speed.max(first_descent(room, -turning, spin_a.acceleration + spin_b.acceleration))
+        });
         Look {
             value: height,
             rate,
@@ -242,24 +299,53 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     /// For how long [s] the direction between two centres surely stays outside of one of the ranges.
     fn outside_ranges(
         &self,
+        pair: &Pair<'_>,
         gap: &CenterGap,
         (round_a, a): (&RoundFeature, &Moving),
         (round_b, b): (&RoundFeature, &Moving),
-        u_max: f64,
+        (direction_rate, u_max, a_max): (f64, f64, f64),
     ) -> Option<f64> {
         let [excess_a, excess_b] = gap.excess(round_a, &a.pose, round_b, &b.pose);
-        let slack = direction_rounding(gap);
-        if excess_a <= slack && excess_b <= slack {
+        let [slack_a, slack_b] = pair.slack.angles.map(|slack| slack.max(direction_rounding(gap)));
+        if excess_a <= slack_a && excess_b <= slack_b {
             return None;
         }
-        // While the centres keep half of their distance the direction turns by at most u/(d/2).
-        let half_way = quotient(0.5 * gap.center_distance, u_max);
-        let direction_turn = quotient(2.0 * u_max, gap.center_distance);
-        let wait = |excess: f64, spin: SpinBound| {
-            (excess > slack).then(|| half_way.min(quotient(excess, direction_turn + spin.speed)))
+        let distance = gap.center_distance;
+        let half_way = quotient(0.5 * distance, u_max);
+        // Over that time the direction's angular acceleration is at most a/(d/2) + 2 u^2/(d/2)^2.
+        let direction_speed = quotient(2.0 * u_max, distance);
+        let direction_acceleration =
+            quotient(2.0 * a_max, distance) + quotient(8.0 * u_max * u_max, distance * distance);
+        let wait = |excess: f64, slack: f64, rate: f64, spin: SpinBound| {
+            (excess > slack).then(|| {
+                let room = excess - slack;
+                let by_speed = quotient(room, direction_speed + spin.speed);
+                let turning = (direction_rate - rate).abs();
+                let acceleration = direction_acceleration + spin.acceleration;
+                half_way.min(by_speed.max(first_descent(room, -turning, acceleration)))
+            })
         };
-        longer(wait(excess_a, self.spin_a), wait(excess_b, self.spin_b))
+        longer(
+            wait(excess_a, slack_a, a.angular_velocity, self.spin_a),
+            wait(excess_b, slack_b, b.angular_velocity, self.spin_b),
+        )
     }
+}
+
+/// Rate [rad/s] at which the normal turns.
+fn turning_rate(gap: &CenterGap, u: DVec2, inner: bool) -> f64 {
+    if gap.center_distance > 0.0 {
+        let across = if inner { -gap.normal.perp_dot(u) } else { gap.normal.perp_dot(u) };
+        across / gap.center_distance
+    } else {
+        0.0
+    }
+}
+
+/// Bound on the acceleration against a direction, which may turn by the given angle [rad], of what has one in the ball.
+fn fastest_against(acceleration: &Ball, direction: DVec2, turned: f64) -> f64 {
+    let off = turned.min(2.0) * acceleration.center.length();
+    (acceleration.radius + off - direction.dot(acceleration.center)).max(0.0)
 }
 
 impl Look {
@@ -318,12 +404,12 @@ fn quotient(numerator: f64, denominator: f64) -> f64 {
 }
 
 /// For how long [s] the foot surely stays beyond the ends of the line, given its place, rate and bounded acceleration.
-fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, rounding: f64) -> Option<f64> {
+fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, slack: f64) -> Option<f64> {
     let (before, after) = (line.start - along, along - line.end);
-    if before > rounding {
-        Some(first_descent(before, -rate, curvature))
-    } else if after > rounding {
-        Some(first_descent(after, rate, curvature))
+    if before > slack {
+        Some(first_descent(before - slack, -rate, curvature))
+    } else if after > slack {
+        Some(first_descent(after - slack, rate, curvature))
     } else {
         None
     }
@@ -343,27 +429,35 @@ fn longer(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// True if the contact point of a pair lies within both of its features, up to rounding.
-pub(crate) fn contact_is_within(a: (&Feature, &Pose), b: (&Feature, &Pose), kind: PairKind) -> bool {
-    match (a.0, b.0) {
-        (Feature::Round(round_a), Feature::Round(round_b)) => {
-            let gap = CenterGap::measure(round_a, a.1, round_b, b.1, kind == PairKind::Inner);
-            let slack = direction_rounding(&gap);
-            gap.excess(round_a, a.1, round_b, b.1).iter().all(|&excess| excess <= slack)
+/// True if the contact point of a pair lies within both of its features, up to its slack.
+pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
+    let [slack_a, slack_b] = pair.slack.angles;
+    match (pair.feature_a, pair.feature_b) {
+        (Feature::Round(a), Feature::Round(b)) => {
+            let gap = CenterGap::measure(a, poses[0], b, poses[1], pair.kind == PairKind::Inner);
+            let least = direction_rounding(&gap);
+            let [excess_a, excess_b] = gap.excess(a, poses[0], b, poses[1]);
+            excess_a <= least.max(slack_a) && excess_b <= least.max(slack_b)
         }
-        (Feature::Round(round), Feature::Line(line)) => is_within_line((round, a.1), (line, b.1)),
-        (Feature::Line(line), Feature::Round(round)) => is_within_line((round, b.1), (line, a.1)),
+        (Feature::Round(round), Feature::Line(line)) => {
+            is_within_line((round, poses[0], slack_a), (line, poses[1]), pair.slack.overrun)
+        }
+        (Feature::Line(line), Feature::Round(round)) => {
+            is_within_line((round, poses[1], slack_b), (line, poses[0]), pair.slack.overrun)
+        }
         (Feature::Line(_), Feature::Line(_)) => false,
     }
 }
 
 fn is_within_line(
-    (round, pose_round): (&RoundFeature, &Pose),
+    (round, pose_round, slack): (&RoundFeature, &Pose, f64),
     (line, pose_line): (&LineFeature, &Pose),
+    overrun: f64,
 ) -> bool {
     let gap = LineGap::measure(round, pose_round, line, pose_line);
     let size = gap.center.abs().max(pose_line.position.abs()).max_element();
-    gap.overrun(line) <= rounding(size) && gap.excess(round, pose_round) <= rounding(1.0)
+    gap.overrun(line) <= rounding(size).max(overrun)
+        && gap.excess(round, pose_round) <= rounding(1.0).max(slack)
 }
 
 /// The round feature that stands for a whole body far away: its reach about its centre of mass.

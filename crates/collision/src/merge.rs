@@ -7,6 +7,9 @@ use std::cmp::Ordering;
 /// corner.
 const PARALLEL: f64 = 1e-6;
 
+/// Part of the accuracy by which a contact may lie outside of its features and counts as within.
+const HAIR: f64 = 1.0 / 64.0;
+
 /// True if two records are the same physical collision: the same two bodies touch at one place along one normal. Rows of
 /// connectors are never the same as anything.
 ///
@@ -60,8 +63,15 @@ pub fn merge_collisions(records: &mut Vec<Collision>) {
     records.truncate(kept);
 }
 
+/// By how much a contact lies outside of its features; nothing if it is so little that it may be rounding. The normal of
+/// two corners that lie on each other is all rounding: they must not win by a hair.
+fn beyond(record: &Collision) -> f64 {
+    let outside = record.geometry.outside;
+    if outside > HAIR * record.tolerances.accuracy { outside } else { 0.0 }
+}
+
 fn is_better(candidate: &Collision, other: &Collision) -> bool {
-    let by_place = other.geometry.outside.total_cmp(&candidate.geometry.outside);
+    let by_place = beyond(other).total_cmp(&beyond(candidate));
     let by_detector = candidate.parties.detector.cmp(&other.parties.detector);
     let by_distance = other.geometry.distance.total_cmp(&candidate.geometry.distance);
     by_place.then(by_detector).then(by_distance) == Ordering::Greater

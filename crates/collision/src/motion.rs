@@ -71,6 +71,27 @@ impl Ball {
     pub fn largest_difference(&self, other: &Ball) -> f64 {
         (self.center - other.center).length() + self.radius + other.radius
     }
+
+    /// All differences of a vector of one ball and a vector of the other.
+    #[must_use]
+    #[inline]
+    pub fn minus(&self, other: &Ball) -> Ball {
+        Ball { center: self.center - other.center, radius: self.radius + other.radius }
+    }
+
+    /// The vectors turned round.
+    #[must_use]
+    #[inline]
+    pub fn mirrored(&self) -> Ball {
+        Ball { center: -self.center, radius: self.radius }
+    }
+
+    /// Largest size of a vector.
+    #[must_use]
+    #[inline]
+    pub fn largest(&self) -> f64 {
+        self.center.length() + self.radius
+    }
 }
 
 /// Bounds on a body's motion over an interval.

@@ -26,6 +26,8 @@ pub struct Shape {
     reach: f64,
     features: Vec<Feature>,
     sources: Vec<FeatureSource>,
+    /// Of each feature, see [`Shape::lever`].
+    levers: Vec<f64>,
     tree: FeatureTree,
 }
 
@@ -134,17 +136,9 @@ impl Shape {
     /// Length [m] over which an angle outside of a feature's range becomes a distance: an arc's radius, the shorter of the
     /// two edges at a vertex, a line's length.
     #[must_use]
+    #[inline]
     pub fn lever(&self, feature: FeatureId) -> f64 {
-        match self.feature(feature) {
-            Feature::Line(line) => line.end - line.start,
-            Feature::Round(round) if round.radius != 0.0 => round.radius.abs(),
-            Feature::Round(_) => {
-                let source = self.source(feature);
-                let edges = self.paths()[source.path as usize].edges();
-                let (after, count) = (source.edge as usize, edges.len());
-                edges[after].length().min(edges[(after + count - 1) % count].length())
-            }
-        }
+        self.levers[feature.0 as usize]
     }
 
     /// Which part of the outline a feature is.
@@ -167,7 +161,20 @@ impl Shape {
         let boxes: Vec<Aabb> = sources.iter().map(|source| feature_box(&paths, source)).collect();
         let tree = FeatureTree::build(&features, &boxes);
         let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
-        Self { paths, mass, bounds, reach, features, sources, tree }
+        let levers = features.iter().zip(&sources).map(|(f, source)| lever(&paths, f, source)).collect();
+        Self { paths, mass, bounds, reach, features, sources, levers, tree }
+    }
+}
+
+fn lever(paths: &[Path], feature: &Feature, source: &FeatureSource) -> f64 {
+    match feature {
+        Feature::Line(line) => line.end - line.start,
+        Feature::Round(round) if round.radius != 0.0 => round.radius.abs(),
+        Feature::Round(_) => {
+            let edges = paths[source.path as usize].edges();
+            let (after, count) = (source.edge as usize, edges.len());
+            edges[after].length().min(edges[(after + count - 1) % count].length())
+        }
     }
 }
 

@@ -20,7 +20,8 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
     let speed = scales.speed_scale();
     // Without forces nothing makes speed: then what crosses the gap tells which events are near each other.
     let resolution_time = if scales.acceleration > 0.0 {
-        tolerances.velocity_tol / scales.acceleration
+        let fall = (2.0 * tolerances.accuracy / scales.acceleration).sqrt();
+        fall.max(tolerances.velocity_tol / scales.acceleration)
     } else if speed > 0.0 {
         tolerances.target_gap / speed
     } else {

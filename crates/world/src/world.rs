@@ -277,7 +277,11 @@ impl World {
                 on_event(told);
             }
             let changes = system.contact_changes();
-            let told_of = |row| ContactEvent { time: changes.time.seconds(), contact: contact_force(row) };
+            let told_of = |row: &RowForce| ContactEvent {
+                time: changes.time.seconds(),
+                contact: contact_force(row),
+                bouncing: row.bouncing,
+            };
             changes.end.iter().for_each(|row| on_event(&Event::ContactEnds(told_of(row))));
             changes.begin.iter().for_each(|row| on_event(&Event::ContactBegins(told_of(row))));
         });

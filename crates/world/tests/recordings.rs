@@ -164,7 +164,7 @@ fn with_forces(world: &World) -> Recording {
         contact(Some(3), glam::DVec2::X, -6.0),
         contact(Some(3), glam::DVec2::Y, 8.0),
     ];
-    let event = ContactEvent { time: 0.5, contact: contact(None, glam::DVec2::Y, 2.5) };
+    let event = ContactEvent { time: 0.5, contact: contact(None, glam::DVec2::Y, 2.5), bouncing: Some(0.25) };
     recording.contacts.push(ContactRecord { change: ContactChange::Begins, event });
     recording
         .contacts

@@ -14,6 +14,9 @@ use halfgap_collision::{BodyId, BodyState, Moving, Spin};
 use std::convert::Infallible;
 use std::sync::Arc;
 
+/// Part of the forces on a body below which what is left of them is rounding: a slope of this many radians is level.
+const LEVEL: f64 = 1e-12;
+
 /// Velocities are corrected through accelerations: an older remedy against drift, kept for scenes recorded with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtraAcceleration {
@@ -49,6 +52,8 @@ pub(crate) struct Stage {
     /// Forces of the rows [N].
     pub(crate) forces: Vec<f64>,
     pub(crate) changes: Vec<[f64; 3]>,
+    /// Sum of the sizes of all rows' forces on each body [N].
+    gross: Vec<f64>,
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows.
     pub(crate) free_acceleration: f64,
     /// Rates of rows during a projection [m/s].
@@ -217,6 +222,36 @@ impl Dynamics<'_> {
         for (acceleration, change) in self.stage.accelerations.iter_mut().zip(changes) {
             for k in 0..3 {
                 acceleration[k] += change[k];
+            }
+        }
+        if self.group.rows.iter().any(|row| !row.bilateral) {
+            self.level();
+        }
+    }
+
+    /// Takes accelerations that are only rounding of the forces of contacts from the bodies that have them: what stands
+    /// does not creep because its sides are level up to rounding only.
+    fn level(&mut self) {
+        let Stage { forces, jacobians, accelerations, gross, .. } = &mut *self.stage;
+        gross.clear();
+        gross.resize(self.group.bodies.len(), 0.0);
+        for ((row, force), jacobian) in self.group.rows.iter().zip(forces.iter()).zip(jacobians.iter()) {
+            for (side, body) in row.bodies.iter().enumerate() {
+                if let Ok(place) = self.group.bodies.binary_search(body) {
+                    gross[place] += (force * DVec2::new(jacobian[3 * side], jacobian[3 * side + 1])).length();
+                }
+            }
+        }
+        for ((acceleration, &body), gross) in
+            accelerations.iter_mut().zip(&self.group.bodies).zip(gross.iter())
+        {
+            let flyer = &self.physics.mechanism.flyers[body.index()];
+            let (inertia, reach) = (flyer.body(), flyer.reach());
+            let least = LEVEL * gross;
+            let linear = DVec2::new(acceleration[0], acceleration[1]).length();
+            let turning = acceleration[2].abs() / reach;
+            if linear <= least * inertia.inverse_mass && turning <= least * inertia.inverse_moment {
+                *acceleration = [0.0; 3];
             }
         }
     }

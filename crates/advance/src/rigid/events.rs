@@ -4,8 +4,8 @@ use super::error::{AdvanceError, Between};
 use super::group::SegmentEnd;
 use super::impacts::ImpactReport;
 use super::pairs::PairId;
-use super::region::Region;
-use super::rows::RowSource;
+use super::region::{Region, Touch};
+use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
@@ -15,11 +15,10 @@ use halfgap_geometry::{FeatureId, GapSample};
 
 /// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
 const SEAM_SHARE: f64 = 1.0 / 32.0;
+/// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
+const SEAM_ANGLE: f64 = 4e-9;
 /// An event's time is corrected while the gap is off by more than this part of the accuracy.
 const TIME_SHARE: f64 = 1e-2;
-
-/// What fired: a pair of features, or nothing that has a gap.
-type Fired = Option<([BodyId; 2], [FeatureId; 2])>;
 
 /// Buffers of the handling of events, kept from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +27,8 @@ pub(crate) struct EventWork {
     impact: Impact,
     pub(crate) settling: Settling,
     pub(crate) seeds: Vec<BodyId>,
+    /// The pair that fired has done so again and again without time going by.
+    is_repeat: bool,
 }
 
 impl RigidSystem {
@@ -54,11 +55,15 @@ impl RigidSystem {
         if self.sinks(pair, features) {
             return Ok(false);
         }
-        self.note_repeat(pair)?;
+        let repeats = self.note_repeat(pair)?;
         let mut work = self.work.take().unwrap_or_default();
+        work.is_repeat = repeats > CALM_REPEATS;
         work.seeds.clear();
         work.seeds.extend(bodies);
-        let outcome = self.handle_impact(&mut work, Some((bodies, features)));
+        work.region.fired = Some(Touch { bodies, features });
+        let outcome = self.handle_impact(&mut work);
+        work.region.fired = None;
+        work.is_repeat = false;
         self.work = Some(work);
         outcome
     }
@@ -81,26 +86,50 @@ impl RigidSystem {
         let Some((_, end)) = group.event else { return Ok(false) };
         let changed_row = match end {
             SegmentEnd::Change(row) => Some(group.rows[row]),
+            SegmentEnd::Sink(row) => {
+                let row = group.leaning[row];
+                return self.handle_sinking(work, &row);
+            }
             SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
         };
         work.region.run_off = None;
         match changed_row.map(|row| (row.bodies, row.source)) {
-            Some((bodies, RowSource::Contact(features))) => work.region.run_off = Some((bodies, features)),
+            Some((bodies, RowSource::Contact(features))) => {
+                let touch = Touch::new(bodies, features);
+                work.region.run_off = self.leaves(touch).then_some(touch);
+            }
             Some((_, RowSource::Connector(id, _))) => return self.pass_joint(work, id),
             None => {}
         }
         if end == SegmentEnd::Stop {
-            return self.handle_impact(work, None);
+            return self.handle_impact(work);
         }
         let outcome = self.handle_change(work);
         work.region.run_off = None;
-        outcome.map(|()| false)
+        outcome
+    }
+
+    /// True if a contact that has come to the end of its features leaves them.
+    fn leaves(&self, Touch { bodies, features }: Touch) -> bool {
+        let pose = bodies.map(|body| self.flyer(body).moving_at(self.now).pose);
+        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
+        let sample = GapSample::measure_unbounded(a, &pose[0], b, &pose[1]);
+        sample.is_none_or(|sample| has_left(&sample, [a, b]))
+    }
+
+    /// A contact that was touched without force has sunk.
+    fn handle_sinking(&mut self, work: &mut EventWork, row: &HeldRow) -> Result<bool, AdvanceError> {
+        let RowSource::Contact(features) = row.source else { return Ok(false) };
+        work.region.fired = Some(Touch::new(row.bodies, features));
+        let outcome = self.handle_impact(work);
+        work.region.fired = None;
+        outcome
     }
 
     /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
     fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
         let is_corner = self.pass_knot(id, self.now);
-        self.handle_impact(work, None).map(|happened| happened && is_corner)
+        self.handle_impact(work).map(|happened| happened && is_corner)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
@@ -111,6 +140,7 @@ impl RigidSystem {
         for &body in &bodies {
             self.renew_stay(body);
         }
+        self.let_go(leader);
         self.predict_all_of(&bodies, false);
         self.search_ropes_on(&bodies);
         self.extended = bodies;
@@ -122,23 +152,58 @@ impl RigidSystem {
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.connector(id).bodies());
-        let outcome = self.handle_impact(&mut work, None);
+        let outcome = self.handle_impact(&mut work);
         self.work = Some(work);
         outcome
     }
 
-    /// What is held changes, but nothing closes.
-    fn handle_change(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+    /// What is held changes; true if there was an impact, of something else that closes within its target zone.
+    fn handle_change(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         self.cut_groups(&work.region, self.now, |_, _| None);
         self.remeasure(&mut work.region, self.now);
-        self.go_on(work)
+        self.hand_over(work)?;
+        let rest = self.rest_speed();
+        if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
+            return self.collide(work);
+        }
+        self.go_on(work).map(|()| false)
     }
 
-    pub(crate) fn handle_impact(&mut self, work: &mut EventWork, fired: Fired) -> Result<bool, AdvanceError> {
+    /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour closes or opens
+    /// by is only the angle up to which joints are smooth.
+    fn hand_over(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let Some(run_off) = work.region.run_off else { return Ok(()) };
+        let mut any = false;
+        for record in &mut work.region.records {
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let (rate, speed) = (record.motion.normal_velocity, record.motion.center_velocity.length());
+            let is_neighbour = Touch::new(bodies, run_off.features).bodies == run_off.bodies;
+            if is_neighbour && rate.abs() <= SEAM_ANGLE * speed {
+                record.parties.bilateral = true;
+                any = true;
+            }
+        }
+        if !any {
+            return Ok(());
+        }
+        let mut report = ImpactReport::default();
+        let now = self.now;
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
+        for record in &mut work.region.records {
+            record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
+        }
+        outcome?;
+        self.book_impact(&report, true);
+        self.remeasure(&mut work.region, now);
+        Ok(())
+    }
+
+    pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        let fired = work.region.fired;
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
-            let gap = fired.map(|(bodies, features)| self.gap_at(bodies, features, self.now).0);
+            let gap = fired.map(|fired| self.gap_at(fired, self.now).0);
             self.now =
                 self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
             self.remeasure(&mut work.region, self.now);
@@ -146,8 +211,13 @@ impl RigidSystem {
         if self.at_tick {
             self.put_back(work);
         }
+        self.collide(work)
+    }
+
+    /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row carried an impulse.
+    fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
-        let is_storm = self.at_tick || self.note_events(&work.region);
+        let is_storm = self.at_tick || self.note_events(&work.region) || work.is_repeat;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, is_storm);
@@ -168,8 +238,10 @@ impl RigidSystem {
         self.stage = stage;
         outcome?;
         self.note_begins(&work.region, &work.settling);
-        self.set_rules(&work.region, &work.settling);
+        self.measure_touches(&mut work.region);
+        self.note_seen(&work.region);
         self.regroup(&work.region, &work.settling)?;
+        self.set_rules(&work.region, &work.settling);
         for &body in &work.region.bodies {
             self.renew_stay(body);
         }
@@ -183,10 +255,14 @@ impl RigidSystem {
         self.settings.tolerances.sink()
     }
 
+    /// Gap [m] at which a contact without force fires that has a gap now.
+    pub(crate) fn sunk(&self, gap: f64) -> f64 {
+        (gap - self.sink()).min(self.settings.tolerances.target_gap)
+    }
+
     /// By how much [s] the time is off at which a pair has the gap [m] that it had by dense output, if that can be told.
-    fn time_error(&self, fired: Fired, wanted: Option<f64>, time: Time) -> Option<f64> {
-        let (bodies, features) = fired?;
-        let (gap, rate) = self.gap_at(bodies, features, time);
+    fn time_error(&self, fired: Option<Touch>, wanted: Option<f64>, time: Time) -> Option<f64> {
+        let (gap, rate) = self.gap_at(fired?, time);
         let error = gap - wanted?;
         let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
         (counts && rate < -self.settings.tolerances.velocity_tol).then(|| -error / rate)
@@ -201,26 +277,18 @@ impl RigidSystem {
                 self.pairs.rules_mut(pair).clear();
             }
         }
-        let sink = self.sink();
         let rest = self.rest_speed();
         self.set_halos(region);
-        for touch in &region.touches {
+        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-            let is_held = settling.held.iter().any(|(_, row)| match row.source {
-                RowSource::Contact([p, n]) => {
-                    (row.bodies == touch.bodies && [p, n] == touch.features)
-                        || (row.bodies == [touch.bodies[1], touch.bodies[0]] && [n, p] == touch.features)
-                }
-                RowSource::Connector(..) => false,
-            });
-            let rule: Option<FeatureRule> = if is_held {
-                Some(touch.skipped())
+            let rule: FeatureRule = if settling.holds_touch(*touch) || self.is_watched(*touch) {
+                touch.skipped()
             } else {
-                let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
-                (rate <= rest)
-                    .then(|| touch.lowered_to((gap - sink).min(self.settings.tolerances.target_gap)))
+                // What opens comes back to where any pair fires, however low the halos of its bodies.
+                let target = if rate <= rest { self.sunk(gap) } else { self.settings.tolerances.target_gap };
+                touch.lowered_to(target)
             };
-            self.pairs.rules_mut(pair).extend(rule);
+            self.pairs.rules_mut(pair).push(rule);
         }
     }
 
@@ -234,8 +302,7 @@ impl RigidSystem {
         }
         let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
         let least = target - self.settings.tolerances.accuracy;
-        for touch in &region.touches {
-            let (gap, rate) = self.gap_at(touch.bodies, touch.features, self.now);
+        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
             if rate > self.rest_speed() {
                 continue;
             }
@@ -246,8 +313,15 @@ impl RigidSystem {
         }
     }
 
+    /// Measures the touching features of a region at the present time.
+    fn measure_touches(&self, region: &mut Region) {
+        let Region { touches, motions, .. } = region;
+        motions.clear();
+        motions.extend(touches.iter().map(|&touch| self.gap_at(touch, self.now)));
+    }
+
     /// Gap [m] and rate [m/s] of two features at a time.
-    fn gap_at(&self, bodies: [BodyId; 2], features: [FeatureId; 2], time: Time) -> (f64, f64) {
+    pub(crate) fn gap_at(&self, Touch { bodies, features }: Touch, time: Time) -> (f64, f64) {
         let moving = bodies.map(|body| self.flyer(body).moving_at(time));
         let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
         let Some(sample) = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose) else {
@@ -264,7 +338,8 @@ impl RigidSystem {
         *booked += report.energy_change;
     }
 
-    fn note_repeat(&mut self, pair: PairId) -> Result<(), AdvanceError> {
+    /// How often the contacts of a pair have been handled at the present time.
+    fn note_repeat(&mut self, pair: PairId) -> Result<u32, AdvanceError> {
         let now = self.now;
         let entry = self.pairs.get_mut(pair);
         let same_time = SAME_TIME * f64::EPSILON * now.seconds().abs();
@@ -276,10 +351,12 @@ impl RigidSystem {
             let between = Between { primary, normal };
             return Err(AdvanceError::Stuck { time: now.seconds(), between, events });
         }
-        Ok(())
+        Ok(events)
     }
 }
 
+/// A pair that collides more often than this without time going by is stopped without elasticity.
+const CALM_REPEATS: u32 = 20;
 /// A pair may collide so many times without time going by before the advance is stuck.
 const MOST_REPEATS: u32 = 100;
 /// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.

@@ -22,6 +22,8 @@ pub(crate) enum SegmentEnd {
     Release(usize),
     /// A contact runs off its features, or a rail's piece ends.
     Change(usize),
+    /// A contact that is touched without force sinks.
+    Sink(usize),
     /// A unilateral connector within the group closes.
     Stop,
     /// A force law changes branch.
@@ -45,6 +47,8 @@ pub(crate) struct Group {
     pub(crate) bodies: Vec<BodyId>,
     /// The rows that are held: independent ones, and every row of its connectors.
     pub(crate) rows: Vec<HeldRow>,
+    /// Contacts within the group that are touched without force, each with the gap [m] below which it fires.
+    pub(crate) leaning: Vec<HeldRow>,
     pub(crate) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
     pub(crate) laws: Vec<usize>,
@@ -85,6 +89,7 @@ impl Group {
     pub(crate) fn clear(&mut self) {
         self.bodies.clear();
         self.rows.clear();
+        self.leaning.clear();
         self.stops.clear();
         self.laws.clear();
         self.works.clear();

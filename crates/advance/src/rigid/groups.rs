@@ -4,7 +4,8 @@ use super::connectors::is_stop;
 use super::dynamics::{Dynamics, body_state, set_body_state};
 use super::error::AdvanceError;
 use super::group::{Group, Work};
-use super::region::Region;
+use super::pairs::Prediction;
+use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settle::Settling;
@@ -255,6 +256,7 @@ impl RigidSystem {
         let rows = settling.held.iter().map(|&(_, row)| row).filter(in_group);
         group.rows.extend(rows.clone().filter(|row| row.bilateral));
         group.rows.extend(rows.filter(|row| !row.bilateral));
+        self.list_leaning(&mut group, region, settling);
         self.list_stops(&mut group);
         group.laws.extend(group.bodies.iter().flat_map(|&body| self.laws_of(body)));
         group.laws.sort_unstable();
@@ -263,6 +265,63 @@ impl RigidSystem {
         let steps = group.bodies.iter().filter_map(|body| self.groups.step_of[body.index()]);
         group.next_step = steps.min_by(f64::total_cmp);
         group
+    }
+
+    /// Lists the contacts of a group that are touched without force and neither close nor open.
+    fn list_leaning(&self, group: &mut Group, region: &Region, settling: &Settling) {
+        for (&touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+            let is_inside = |body: BodyId| group.bodies.binary_search(&body).is_ok();
+            let belongs = |body: BodyId| is_inside(body) || !self.is_movable(body);
+            if !touch.bodies.iter().any(|&body| is_inside(body))
+                || !touch.bodies.iter().all(|&body| belongs(body))
+                || settling.holds_touch(touch)
+            {
+                continue;
+            }
+            if rate.abs() <= self.rest_speed() {
+                let gap = self.sunk(gap);
+                let source = RowSource::Contact(touch.features);
+                group.leaning.push(HeldRow {
+                    source,
+                    bodies: touch.bodies,
+                    bilateral: false,
+                    gap,
+                    hint: None,
+                });
+            }
+        }
+    }
+
+    /// True if a contact that is touched without force is watched by the group of its bodies.
+    pub(crate) fn is_watched(&self, touch: Touch) -> bool {
+        let source = RowSource::Contact(touch.features);
+        let groups = touch.bodies.into_iter().filter_map(|body| self.group_of(body));
+        let mut leaning = groups.flat_map(|group| &group.leaning);
+        leaning.any(|row| row.bodies == touch.bodies && row.source == source)
+    }
+
+    /// Hands the contacts of a group that have opened beyond the target zone back to the search.
+    pub(crate) fn let_go(&mut self, leader: BodyId) {
+        let Some(mut group) = self.groups.take(leader) else { return };
+        let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
+        let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        group.leaning.retain(|row| {
+            let RowSource::Contact(features) = row.source else { return true };
+            let touch = Touch { bodies: row.bodies, features };
+            let stays = self.gap_at(touch, self.now).0 < opened;
+            if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
+                self.pairs.rules_mut(pair).retain(|rule| rule.features != features);
+                touched.push(pair);
+            }
+            stays
+        });
+        self.groups.put(group);
+        for &pair in &touched {
+            self.pairs.get_mut(pair).clear = self.now;
+            self.pairs.get_mut(pair).prediction = Prediction::Quiet;
+        }
+        self.touched = touched;
     }
 
     fn list_stops(&self, group: &mut Group) {
@@ -367,13 +426,8 @@ impl RigidSystem {
             }
         }
         let outcome = self.with_group(&mut group, |dynamics, tools| {
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
-            dynamics.end_on_rows(tools);
-            dynamics.evaluate_end();
-            dynamics.follow_rails();
-            dynamics.make_dense(tools.stepper);
+            dynamics.extend_on_rows(tools)?;
             dynamics.group.event = dynamics.find_event();
-            dynamics.note_middle_error();
             Ok(())
         });
         self.counts.segments += 1;
@@ -403,6 +457,12 @@ impl RigidSystem {
 /// Cap on the corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
 
+/// Cap on the steps tried for one that keeps to its rows.
+const MOST_SHORTENINGS: usize = 8;
+
+/// A shorter step must bring the error of its rows down by this factor.
+const SHORTENING_GAIN: f64 = 0.5;
+
 /// What a group's stepping uses beside its dynamics.
 pub(crate) struct Tools<'a> {
     pub(crate) stepper: &'a mut crate::ode::Stepper,
@@ -411,6 +471,33 @@ pub(crate) struct Tools<'a> {
 }
 
 impl Dynamics<'_> {
+    /// Extends the group by a step whose dense output keeps to the held rows, too: shorter ones are tried until it does.
+    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+        let steps = tools.settings.steps;
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_SHORTENINGS {
+            self.extend(tools.stepper, &steps, tools.scales)?;
+            self.end_on_rows(tools);
+            self.evaluate_end();
+            self.follow_rails();
+            self.make_dense(tools.stepper);
+            let excess =
+                self.middle_excess(steps.length * steps.local_error, tools.settings.tolerances.accuracy);
+            let method = tools.stepper.method();
+            // What shorter steps do not mend is rounding, or rows that contradict each other.
+            let is_helped = excess < SHORTENING_GAIN * last;
+            if !tools.settings.projection || !method.is_adaptive() || !is_helped {
+                break;
+            }
+            self.limit_next_step(method.step_factor(excess));
+            if excess <= 1.0 {
+                break;
+            }
+            last = excess;
+        }
+        Ok(())
+    }
+
     /// Projects the end onto the held rows and books what energy that took.
     fn end_on_rows(&mut self, tools: &Tools<'_>) {
         let settings = tools.settings;

@@ -1,5 +1,6 @@
 //! The impulses of an event and what is told of them.
 
+use super::bounces::closes_fast;
 use super::error::AdvanceError;
 use super::region::Region;
 use super::system::RigidSystem;
@@ -50,7 +51,7 @@ impl RigidSystem {
     }
 
     /// Resolves the impact of a region's rows; the bodies, which must be in flight, go on with changed velocities, and the
-    /// records are brought up to date. True if any row carried an impulse: `report` then tells of it.
+    /// records are brought up to date. True if any row closed: `report` then tells of it.
     pub(crate) fn resolve_impact(
         &mut self,
         region: &mut Region,
@@ -59,9 +60,12 @@ impl RigidSystem {
         time: Time,
         is_storm: bool,
     ) -> Result<bool, AdvanceError> {
+        let dull = self.settings.impulse_step.is_none() && self.bounces_low(region);
         let rows = region.records.iter().map(|record| {
             let sides = [record.parties.primary.body, record.parties.normal.body];
-            CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)))
+            let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
+            let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
+            CollisionRow { elasticity, ..row }
         });
         impact.set_rows(rows);
         let random = self.counts.impacts;
@@ -74,7 +78,11 @@ impl RigidSystem {
         self.counts.contact_solves += impact.solves();
         self.apply_impulses(region, impact, time);
         self.write_report(region, impact, report, time);
-        Ok(!report.rows.is_empty())
+        // What comes to rest without closing is a contact that begins, not an impact.
+        Ok(report
+            .rows
+            .iter()
+            .any(|row| row.collision.parties.bilateral || row.rate_before < -self.rest_speed()))
     }
 
     fn apply_impulses(&mut self, region: &mut Region, impact: &Impact, time: Time) {

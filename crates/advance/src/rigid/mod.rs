@@ -8,9 +8,10 @@
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact, `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
 //! collects the bodies that touch, `groups` cuts and makes groups, `impacts` applies impulses, `settle` finds what is held,
-//! `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
+//! `bounces` tells those that are too low to count, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
 //! keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
+mod bounces;
 mod boxes;
 mod connectors;
 mod crossing;

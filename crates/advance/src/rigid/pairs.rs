@@ -33,12 +33,26 @@ pub(crate) struct Pair {
     alive: bool,
 }
 
+/// Two features as they were at the last event in which they touched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// Of the lesser body and of the other.
+    pub(crate) features: [FeatureId; 2],
+    pub(crate) time: Time,
+    /// Gap [m].
+    pub(crate) gap: f64,
+    /// Rate of the gap [m/s].
+    pub(crate) rate: f64,
+}
+
 /// All pairs, and those of each body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
     /// Feature pairs that are searched otherwise, of each pair.
     rules: Vec<Vec<FeatureRule>>,
+    /// Feature pairs that have touched lately, of each pair.
+    seen: Vec<Vec<Seen>>,
     free: Vec<PairId>,
     of_body: Vec<Vec<PairId>>,
     /// Fixed bodies keep no list: nothing ever changes their motion, and theirs would be the longest.
@@ -67,6 +81,15 @@ impl Pairs {
         &mut self.rules[id.0 as usize]
     }
 
+    /// Feature pairs that have touched lately.
+    pub(crate) fn seen(&self, id: PairId) -> &[Seen] {
+        &self.seen[id.0 as usize]
+    }
+
+    pub(crate) fn seen_mut(&mut self, id: PairId) -> &mut Vec<Seen> {
+        &mut self.seen[id.0 as usize]
+    }
+
     /// Pairs of a body that is not fixed, in an order that depends on the past alone.
     pub(crate) fn of_body(&self, body: BodyId) -> &[PairId] {
         &self.of_body[body.index()]
@@ -92,11 +115,13 @@ impl Pairs {
             Some(id) => {
                 *self.get_mut(id) = pair;
                 self.rules_mut(id).clear();
+                self.seen_mut(id).clear();
                 id
             }
             None => {
                 self.pairs.push(pair);
                 self.rules.push(Vec::new());
+                self.seen.push(Vec::new());
                 PairId(
                     u32::try_from(self.pairs.len() - 1)
                         .expect("pairs of 32-bit bodies that are near each other"),

@@ -4,13 +4,12 @@
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, is_same_collision,
-    merge_collisions,
+    BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
 };
 use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Touch {
     pub(crate) bodies: [BodyId; 2],
     pub(crate) features: [FeatureId; 2],
@@ -25,12 +24,16 @@ pub(crate) struct Region {
     pub(crate) records: Vec<Collision>,
     /// Every pair of features that touches.
     pub(crate) touches: Vec<Touch>,
+    /// Gap [m] and rate [m/s] of each of them after the event.
+    pub(crate) motions: Vec<(f64, f64)>,
     /// Leaders of the groups that they belong to.
     pub(crate) groups: Vec<BodyId>,
     /// Nothing has happened yet: what rests within `distance_tol` counts as touching.
     pub(crate) at_start: bool,
-    /// Features of a contact that has just run off them: another pair that finds the same spot takes over.
-    pub(crate) run_off: Option<([BodyId; 2], [FeatureId; 2])>,
+    /// The contact that fired: it takes part, however near it is to the ends of its features.
+    pub(crate) fired: Option<Touch>,
+    /// A contact that has just run off its features: its neighbours take over, if they touch.
+    pub(crate) run_off: Option<Touch>,
     fresh: Vec<Collision>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
@@ -42,6 +45,7 @@ impl Region {
         self.bodies.clear();
         self.records.clear();
         self.touches.clear();
+        self.motions.clear();
         self.groups.clear();
         self.places.resize(body_count, (0, 0));
         self.stamp = self.stamp.wrapping_add(1);
@@ -128,10 +132,20 @@ impl RigidSystem {
         fresh.clear();
         let depth = tolerances.distance_tol().max(self.settings.search.depth);
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
-        fresh.retain(|record| self.counts_as_touching(record, [first.id, second.id], region.at_start));
+        let bodies = [first.id, second.id];
+        let takes_over = region.run_off.is_some_and(|run_off| run_off.bodies == bodies);
+        fresh.retain(|record| self.counts_as_touching(record, bodies, region.at_start, takes_over));
+        if let Some(fired) = region.fired.filter(|fired| fired.bodies == [first.id, second.id])
+            && !fresh.iter().any(|record| touch_of(record, fired.bodies) == Some(fired))
+        {
+            let moments = [first, second];
+            fresh.extend(record_features(moments, fired.features, tolerances, time.seconds()));
+        }
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
+        if let Some(run_off) = region.run_off {
+            fresh.retain(|record| touch_of(record, [first.id, second.id]) != Some(run_off));
+        }
         if fresh.len() > 1 {
-            drop_run_off(&mut fresh, region.run_off);
             merge_collisions(&mut fresh);
         }
         region.records.append(&mut fresh);
@@ -141,8 +155,14 @@ impl RigidSystem {
     }
 
     /// True if a record takes part in an event: what is at its target or nearer, what closes within the target zone, and what
-    /// was held already, or from the start. Other rows have room, and fire in their own time if they come to close.
-    fn counts_as_touching(&self, record: &Collision, bodies: [BodyId; 2], at_start: bool) -> bool {
+    /// was held already, or from the start, or takes over from a contact that has run off its features. Other rows have room, and fire in their own time if they come to close.
+    fn counts_as_touching(
+        &self,
+        record: &Collision,
+        bodies: [BodyId; 2],
+        at_start: bool,
+        takes_over: bool,
+    ) -> bool {
         let (rest, rate) = (self.rest_speed(), record.motion.normal_velocity);
         if record.zone() == Zone::OutOfRange {
             return false;
@@ -150,7 +170,7 @@ impl RigidSystem {
         record.distance_to_target() <= self.sink()
             || (record.zone() >= Zone::Target && rate < -rest)
             || at_start
-            || (rate.abs() <= rest && self.is_held_contact(record, bodies))
+            || (rate.abs() <= rest && (takes_over || self.is_held_contact(record, bodies)))
     }
 
     /// True if a contact is held now: the search leaves it alone.
@@ -170,29 +190,22 @@ impl RigidSystem {
     }
 }
 
-/// Drops the record of a contact that has run off its features, if another record is of the same spot.
-fn drop_run_off(records: &mut Vec<Collision>, run_off: Option<([BodyId; 2], [FeatureId; 2])>) {
-    let Some((bodies, features)) = run_off else { return };
-    let is_run_off = |record: &Collision| {
-        let sides = [record.parties.primary, record.parties.normal];
-        sides.map(|side| side.body) == bodies && sides.map(|side| side.feature()) == features.map(Some)
-    };
-    let Some(place) = records.iter().position(is_run_off) else { return };
-    let has_heir =
-        (0..records.len()).any(|other| other != place && is_same_collision(&records[other], &records[place]));
-    if has_heir {
-        _ = records.remove(place);
-    }
-}
-
 fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Option<Touch> {
     let (primary, normal) = (&record.parties.primary, &record.parties.normal);
-    let features = [primary.feature()?, normal.feature()?];
-    let features = if primary.body == bodies[0] { features } else { [features[1], features[0]] };
-    Some(Touch { bodies, features })
+    let touch = Touch::new([primary.body, normal.body], [primary.feature()?, normal.feature()?]);
+    (touch.bodies == bodies).then_some(touch)
 }
 
 impl Touch {
+    /// The features of a contact, whichever of its two bodies is named first.
+    pub(crate) fn new(bodies: [BodyId; 2], features: [FeatureId; 2]) -> Self {
+        if bodies[0] <= bodies[1] {
+            Self { bodies, features }
+        } else {
+            Self { bodies: [bodies[1], bodies[0]], features: [features[1], features[0]] }
+        }
+    }
+
     /// A rule by which the search leaves the pair alone.
     pub(crate) fn skipped(&self) -> FeatureRule {
         FeatureRule { features: self.features, target: None }

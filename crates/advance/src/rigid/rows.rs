@@ -6,11 +6,11 @@ use halfgap_collision::{
     BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailKnot, RailPath, RailPlace,
     Tolerances,
 };
-use halfgap_geometry::{FeatureId, GapSample, Shape};
+use halfgap_geometry::{Feature, FeatureId, GapSample, Shape};
 
 /// Part of the accuracy by which a contact may run off its features before it is said to have changed: more than the
 /// rounding by which one that has run off is still detected, far less than what forces can feel.
-const CHANGE_SHARE: f64 = 1.0 / 8.0;
+const CHANGE_SHARE: f64 = 1.0 / 64.0;
 
 /// What makes a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,6 +121,14 @@ impl Mechanism<'_> {
             }
         }
     }
+}
+
+/// True if a contact that is outside of its features has left them. A corner that leans a little off a line, so that the
+/// next corner along is nearer, still touches it: so a block rocks from one corner to the other.
+pub(crate) fn has_left(sample: &GapSample, features: [&Feature; 2]) -> bool {
+    let any_line = features.iter().any(|feature| matches!(feature, Feature::Line(_)));
+    let is_corner = |feature: &&Feature| matches!(feature, Feature::Round(round) if round.radius == 0.0);
+    sample.overrun > 0.0 || !any_line || !features.iter().any(is_corner)
 }
 
 /// Distance [m] along a rail to the nearer end of the piece on which a point is.

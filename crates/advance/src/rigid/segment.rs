@@ -96,6 +96,12 @@ impl Dynamics<'_> {
         outcome
     }
 
+    /// The next step is at most by a factor longer than the one just made.
+    pub(crate) fn limit_next_step(&mut self, factor: f64) {
+        let longest = self.group.span * factor;
+        self.group.next_step = Some(self.group.next_step.map_or(longest, |next| next.min(longest)));
+    }
+
     /// Repeats the segment up to an offset [s] within it, into the end state.
     pub(crate) fn repeat_to(&mut self, stepper: &mut Stepper, offset: f64) {
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));

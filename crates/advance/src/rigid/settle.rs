@@ -6,7 +6,7 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
-use super::region::Region;
+use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::system::RigidSystem;
 use super::watch::FORCE_SHARE;
@@ -18,6 +18,9 @@ use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveErro
 /// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares: that of rows which
 /// move by what counts as rest. What crushes a body is of the order of 1.
 const SMALL_CONTRADICTION: f64 = 1e-3;
+
+/// Forces this many times larger than all loads together jam.
+const JAM: f64 = 100.0;
 
 /// Residual that is then accepted, in units of the largest acceleration: the integrator errs by more.
 const LENIENT_RESIDUAL: f64 = 1e-9;
@@ -75,6 +78,17 @@ impl Settling {
 
     fn solve_at_all(&mut self) -> Result<(), SolveError> {
         self.solve_strictly().or_else(|_| self.lenient.solve(&self.problem, &mut self.solution))
+    }
+
+    /// True if a contact is held from now on.
+    pub(crate) fn holds_touch(&self, touch: Touch) -> bool {
+        self.held.iter().any(|(_, row)| match row.source {
+            RowSource::Contact([p, n]) => {
+                (row.bodies == touch.bodies && [p, n] == touch.features)
+                    || (row.bodies == [touch.bodies[1], touch.bodies[0]] && [n, p] == touch.features)
+            }
+            RowSource::Connector(..) => false,
+        })
     }
 
     /// Solves another problem with the same solver.
@@ -143,7 +157,7 @@ impl RigidSystem {
         if scale == 0.0 && !any_bilateral {
             return Ok(());
         }
-        if settling.solve_strictly().is_err() {
+        if settling.solve_strictly().is_err() || self.is_jammed(region, settling, stage) {
             self.drop_distant(region, settling, stage);
             settling.solve_at_all().map_err(|source| self.settle_error(region, settling, time, source))?;
         }
@@ -154,6 +168,17 @@ impl RigidSystem {
     /// True if a unilateral row may carry a force: connectors always do.
     fn holds(&self, record: &Collision) -> bool {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
+    }
+
+    /// True if forces are so much larger than what acts on the bodies that rows seem to work against each other, as those on
+    /// both sides of a body that just fits.
+    fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
+        let largest = settling.solution.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+        let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| {
+            let flyer = self.flyer(body);
+            (DVec2::new(a[0], a[1]).length() + a[2].abs() * flyer.reach()) / flyer.body().inverse_mass
+        });
+        largest > JAM * loads.sum::<f64>()
     }
 
     /// Leaves out what is farther away than its target gap, and need not be in contact: where a body fits between two

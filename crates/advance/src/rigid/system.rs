@@ -58,7 +58,7 @@ pub struct RigidSettings {
     /// approach that counts. Two rows that oppose each other at a small angle stop what slides between them, if both are
     /// taken to rest.
     pub rest_speed: f64,
-    /// Time [s] that forces take to make `velocity_tol`: more events than it can hold are ended.
+    /// Time [s] that forces take to make `velocity_tol`, or to cross the target zone: more events than it can hold are ended.
     pub resolution_time: f64,
 }
 

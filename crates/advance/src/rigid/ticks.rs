@@ -70,7 +70,7 @@ impl RigidSystem {
         work.seeds.sort_unstable();
         work.seeds.dedup();
         self.at_tick = true;
-        let outcome = self.handle_impact(&mut work, None);
+        let outcome = self.handle_impact(&mut work);
         self.at_tick = false;
         self.work = Some(work);
         outcome

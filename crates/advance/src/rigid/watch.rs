@@ -1,5 +1,5 @@
-//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features, a stop
-//! that closes, a force law that changes branch.
+//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features or, touched
+//! without force, sinks, a stop that closes, a force law that changes branch.
 //!
 //! Each is a function along the dense output whose first fall below zero is an event.
 
@@ -7,12 +7,17 @@ use super::crossing::{NODES, first_fall, node};
 use super::dynamics::Dynamics;
 use super::group::{SegmentEnd, Stop};
 use super::law::Snapshot;
-use super::rows::{HeldRow, moving_of};
+use super::rows::{HeldRow, RowSource, moving_of};
 use crate::ode::Ode;
 use glam::DVec2;
 
 /// A force below this part of the group's largest is none: more than the rounding of nearly redundant contacts.
 pub(crate) const FORCE_SHARE: f64 = 1e-9;
+
+/// Part of the accuracy by which a held contact may be too near in the middle of a step.
+const MIDDLE_SHARE: f64 = 0.5;
+/// So many local errors [m] may a connector be off there.
+const MIDDLE_ERRORS: f64 = 10.0;
 
 impl Dynamics<'_> {
     /// The earliest event of the group itself on the segment, whose dense output and end forces are known.
@@ -44,6 +49,9 @@ impl Dynamics<'_> {
             offer(fall, SegmentEnd::Change(row));
         }
         self.stage.samples = rooms;
+        for row in 0..self.group.leaning.len() {
+            offer(self.find_sinking(row), SegmentEnd::Sink(row));
+        }
         for place in 0..self.group.stops.len() {
             offer(self.find_stop(self.group.stops[place]), SegmentEnd::Stop);
         }
@@ -82,17 +90,29 @@ impl Dynamics<'_> {
         self.stage.trial = trial;
     }
 
-    /// Notes how far off bilateral rows are in the middle of the segment, where dense output is least exact.
-    pub(crate) fn note_middle_error(&mut self) {
+    /// By how much held rows are off in the middle of the segment, where dense output is least exact, in units of what is
+    /// allowed: part of the accuracy for a contact, so that nothing overlaps, some local errors [m] for a connector. The
+    /// largest error of a connector is noted.
+    pub(crate) fn middle_excess(&mut self, local_error: f64, accuracy: f64) -> f64 {
         self.group.largest_error = 0.0;
-        if !self.group.rows.iter().any(|row| row.bilateral) {
-            return;
+        let mut excess = 0.0f64;
+        if self.group.rows.is_empty() {
+            return excess;
         }
         self.place_at(0.5 * self.group.span);
-        for row in self.group.rows.iter().filter(|row| row.bilateral) {
+        for row in &self.group.rows {
             let moment = self.physics.mechanism.measure(row, &self.stage.movings);
-            self.group.largest_error = self.group.largest_error.max((moment.gap - row.gap).abs());
+            let error = moment.gap - row.gap;
+            let is_contact = matches!(row.source, RowSource::Contact(_));
+            if is_contact {
+                // A gap too large does no harm.
+                excess = excess.max(-error / (MIDDLE_SHARE * accuracy));
+            } else {
+                excess = excess.max(error.abs() / (MIDDLE_ERRORS * local_error));
+                self.group.largest_error = self.group.largest_error.max(error.abs());
+            }
         }
+        excess
     }
 
     /// Forces of the rows at an offset [s] of the segment, left in the stage.
@@ -152,6 +172,21 @@ impl Dynamics<'_> {
     /// How far a row is from running off its features, without end for one that cannot.
     fn room(&self, row: usize) -> f64 {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
+    }
+
+    /// When a contact that is touched without force has sunk to its least gap.
+    fn find_sinking(&mut self, row: usize) -> Option<f64> {
+        let span = self.group.span;
+        let values = std::array::from_fn(|index| self.height_at(row, node(index, span)));
+        first_fall(&values, span, |offset| self.height_at(row, offset))
+    }
+
+    /// Distance [m] of such a contact from its least gap, or that by which it lies outside of its features if this is more.
+    fn height_at(&mut self, row: usize, offset: f64) -> f64 {
+        self.place_at(offset);
+        let (mechanism, row) = (&self.physics.mechanism, &self.group.leaning[row]);
+        let height = mechanism.measure(row, &self.stage.movings).gap - row.gap;
+        mechanism.room(row, &self.stage.movings).map_or(height, |room| height.max(-room))
     }
 
     /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
