@@ -4,11 +4,12 @@
 //! budget: finished, or a clean error. Everything is judged from outside: distances by the geometry alone, energy from the
 //! states.
 
-use halfgap::geometry::Relation;
+use halfgap::geometry::{DVec2, Pose, Relation};
 use halfgap::scene::{ConnectorData, Scene, SceneFormat};
 use halfgap::{BodyId, ConnectorId, World};
 use std::any::Any;
 use std::cell::RefCell;
+use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
@@ -21,6 +22,9 @@ const ENERGY_ROUNDING: f64 = 1e-9;
 const CONNECTOR_TOLERANCES: f64 = 10.0;
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 
+/// Ways in which a body is shifted to see how deep it is.
+const DIRECTIONS: u32 = 16;
+
 /// What a run may cost.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
@@ -32,7 +36,7 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        Self { events: 300_000, wall: Duration::from_secs(5) }
+        Self { events: 300_000, wall: Duration::from_secs(3) }
     }
 }
 
@@ -41,6 +45,8 @@ impl Default for Budget {
 pub enum Verdict {
     /// To its end, and all held.
     Finished,
+    /// To its end, but bodies overlapped by less than the target gap.
+    Shallow(String),
     /// The scene could not be built: a clean error.
     Refused(String),
     /// It stopped early with an error.
@@ -64,6 +70,7 @@ impl Verdict {
     pub fn kind(&self) -> String {
         match self {
             Self::Finished => "finished".to_owned(),
+            Self::Shallow(_) => "finished, with overlaps within the target gap".to_owned(),
             Self::Refused(why) => format!("refused: {}", without_numbers(why)),
             Self::Stopped(why) => format!("stopped: {}", without_numbers(why)),
             Self::Broken(broken) => format!("BROKEN {}", broken.kind),
@@ -145,7 +152,7 @@ fn run(json: &str, budget: Budget) -> Verdict {
         }
         spend(events, started, budget);
     }
-    Verdict::Finished
+    inspector.shallow.map_or(Verdict::Finished, Verdict::Shallow)
 }
 
 /// Panics with [`Spent`] once too much was.
@@ -166,6 +173,10 @@ struct Inspector {
     smallest: f64,
     turned_over: f64,
     start_potential: f64,
+    /// Energy [J] that is nothing: that of all masses at a coordinate in the duration, times rounding.
+    no_energy: f64,
+    /// The first overlap that was less deep than the target gap.
+    shallow: Option<String>,
 }
 
 impl Inspector {
@@ -183,6 +194,8 @@ impl Inspector {
             smallest: movable.map(|&body| world.shape(body).reach()).fold(f64::INFINITY, f64::min),
             turned_over: 0.0,
             start_potential: world.energy().potential,
+            no_energy: no_energy(scene, world),
+            shallow: None,
         }
     }
 
@@ -204,10 +217,13 @@ impl Inspector {
         }
         for &(a, b) in &self.pairs {
             if let Some(relation) = penetration(world, a, b) {
-                return broken(
-                    "penetration",
-                    format!("{} and {}: {relation:?}", world.name(a), world.name(b)),
-                );
+                let (depth, names) = (depth(world, a, b), [a, b].map(|body| world.name(body)));
+                let gap = world.tolerances().target_gap;
+                let what = format!("{names:?}: {relation:?}, about {depth:.0e} m deep, gap {gap:.1e} m");
+                if depth > gap {
+                    return broken("penetration", what);
+                }
+                self.shallow.get_or_insert(format!("t = {} s: {what}", world.time()));
             }
         }
         let allowed =
@@ -232,7 +248,8 @@ impl Inspector {
         self.turned_over = self.turned_over.max(turned);
         let potential = ledger.now.potential.abs().max(self.start_potential.abs());
         let allowed = (ENERGY_TOLERANCES * self.tolerance + ENERGY_ROUNDING) * self.turned_over
-            + CONNECTOR_ROUNDINGS * potential;
+            + CONNECTOR_ROUNDINGS * potential
+            + self.no_energy;
         let gained = ledger.now.total() - ledger.start - work;
         if gained > allowed {
             return Err(("energy gained", format!("{gained:e} J, {allowed:e} J allowed: {ledger:?}")));
@@ -255,6 +272,30 @@ fn penetration(world: &World, a: BodyId, b: BodyId) -> Option<Relation> {
     }
     let relation = first.distance(&pose(a), second, &pose(b)).relation;
     (relation != Relation::Apart).then_some(relation)
+}
+
+/// Order of magnitude [m] of the least shift of a body that frees it of another.
+fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
+    let (of_a, of_b) = (world.state(a).pose(), world.state(b).pose());
+    let frees = |depth: f64| {
+        (0..DIRECTIONS).any(|direction| {
+            let way = DVec2::from_angle(f64::from(direction) * TAU / f64::from(DIRECTIONS));
+            let shifted = Pose { position: of_a.position + depth * way, ..of_a };
+            world.shape(a).distance(&shifted, world.shape(b), &of_b).relation == Relation::Apart
+        })
+    };
+    let size = world.shape(a).reach().max(world.shape(b).reach());
+    let gap = world.tolerances().target_gap;
+    let mut depths = [gap].into_iter().chain((-16..1).map(|power| size * 10f64.powi(power)));
+    depths.find(|&depth| frees(depth)).unwrap_or(f64::INFINITY)
+}
+
+fn no_energy(scene: &Scene, world: &World) -> f64 {
+    let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
+    let coordinate =
+        world.bodies().map(|body| world.state(body).position.abs().max_element() + world.shape(body).reach());
+    let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
+    CONNECTOR_ROUNDINGS * masses.sum::<f64>() * speed * speed
 }
 
 fn may_collide(scene: &Scene, world: &World, a: BodyId, b: BodyId) -> bool {
