@@ -99,7 +99,9 @@ fn supervise(first: u64, count: u64, jobs: u64) -> bool {
 fn report(found: &Found) {
     for (kind, seeds) in found {
         println!("{:7} {kind}", seeds.len());
-        for (seed, what) in seeds.iter().filter(|(_, what)| !what.is_empty()).take(LISTED) {
+        for (seed, what) in
+            seeds.iter().filter(|(_, what)| !what.is_empty() || kind.starts_with("BROKEN")).take(LISTED)
+        {
             let short: String = what.chars().take(200).collect();
             println!("          seed {seed}: {short}");
         }

@@ -18,7 +18,7 @@ const LOOKS: u32 = 50;
 /// How far the energy books may be from closing, in tolerances and parts of the energy turned over.
 const ENERGY_TOLERANCES: f64 = 1e4;
 const ENERGY_ROUNDING: f64 = 1e-9;
-/// How far a connector may be off, in tolerances of the smallest body's size and in roundings of the coordinates.
+/// How far a connector may be off, in tolerances and in roundings of the coordinates.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 
@@ -170,7 +170,6 @@ struct Inspector {
     /// What each connector is.
     connectors: Vec<&'static str>,
     tolerance: f64,
-    smallest: f64,
     turned_over: f64,
     start_potential: f64,
     /// Energy [J] that is nothing: that of all masses at a coordinate in the duration, times rounding.
@@ -186,12 +185,10 @@ impl Inspector {
             let others = bodies[index + 1..].iter().map(move |&b| (a, b));
             others.filter(|&(a, b)| may_collide(scene, world, a, b))
         });
-        let movable = bodies.iter().filter(|&&body| !world.is_fixed(body));
         Self {
             pairs: if scene.run.collisions { pairs.collect() } else { Vec::new() },
             connectors: scene.connectors.iter().map(ConnectorData::key).collect(),
             tolerance: scene.run.tolerance,
-            smallest: movable.map(|&body| world.shape(body).reach()).fold(f64::INFINITY, f64::min),
             turned_over: 0.0,
             start_potential: world.energy().potential,
             no_energy: no_energy(scene, world),
@@ -226,8 +223,7 @@ impl Inspector {
                 self.shallow.get_or_insert(format!("t = {} s: {what}", world.time()));
             }
         }
-        let allowed =
-            CONNECTOR_TOLERANCES * self.tolerance * self.smallest + CONNECTOR_ROUNDINGS * coordinate;
+        let allowed = (CONNECTOR_TOLERANCES * self.tolerance + CONNECTOR_ROUNDINGS) * coordinate;
         for connector in (0..).map(ConnectorId).take(self.connectors.len()) {
             let error = world.connector_error(connector);
             // Not a number is not within either.

@@ -1,0 +1,32 @@
+//! Hard cases, one module a theme: each is named for its claim and derives what it expects.
+//!
+//! `docs/stability.md` lists what is reached: run with `-- --nocapture --test-threads 1` to see the numbers.
+
+mod chains;
+mod changes;
+mod extremes;
+mod grazing;
+mod linkages;
+mod narrow;
+mod reversal;
+mod ropes;
+mod scaling;
+mod simultaneous;
+mod unsolvable;
+
+/// Tells how far off something is, and fails if that is more than allowed.
+#[track_caller]
+fn within(what: &str, error: f64, allowed: f64) {
+    println!("REACHED | {what} | {allowed:.0e} | {error:.1e}");
+    assert!(error.abs() <= allowed, "{what}: {error:e}, {allowed:e} allowed");
+}
+
+/// Counts the impacts up to a time [s].
+#[track_caller]
+fn impacts(world: &mut halfgap::World, until: f64) -> usize {
+    let mut count = 0;
+    world
+        .advance_to(until, &mut |event| count += usize::from(event.impact().is_some()))
+        .unwrap_or_else(|error| panic!("{error}"));
+    count
+}
