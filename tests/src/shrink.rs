@@ -74,7 +74,7 @@ fn count(scene: &Value, list: &str) -> usize {
 
 fn without(scene: &Value, list: &str, index: usize) -> Value {
     let mut less = scene.clone();
-    if let Some(items) = less[list].as_array_mut() {
+    if let Some(items) = less.get_mut(list).and_then(Value::as_array_mut) {
         items.remove(index);
     }
     less
@@ -85,7 +85,7 @@ fn without_body(scene: &Value, index: usize) -> Value {
     let name = scene["body"][index]["name"].to_string();
     let mut less = without(scene, "body", index);
     for list in ["force", "connector"] {
-        if let Some(items) = less[list].as_array_mut() {
+        if let Some(items) = less.get_mut(list).and_then(Value::as_array_mut) {
             items.retain(|item| !item.to_string().contains(&name));
         }
     }

@@ -63,7 +63,9 @@ pub fn scene_of_seed(seed: u64) -> Value {
         }
     }
     let connectors = ties::connectors(&mut random, &units, &placed);
-    let forces = ties::forces(&mut random, &units, &placed);
+    // Bodies that are joined may pass through each other, and their centres through the pole of a 1/r^2 force.
+    let attract = connectors.is_empty();
+    let forces = ties::forces(&mut random, &units, &placed, attract);
     json!({
         "format": "halfgap-scene-1",
         "title": format!("seed {seed}"),
@@ -72,6 +74,18 @@ pub fn scene_of_seed(seed: u64) -> Value {
         "connector": connectors,
         "force": forces,
     })
+}
+
+/// The scene of a seed without forces, connectors and loss: bodies that fly and collide, and never rest on each other.
+#[must_use]
+pub fn billiard_of_seed(seed: u64) -> Value {
+    let mut scene = scene_of_seed(seed);
+    scene["connector"] = json!([]);
+    scene["force"] = json!([]);
+    for body in scene["body"].as_array_mut().into_iter().flatten() {
+        body["elasticity"] = json!(1.0);
+    }
+    scene
 }
 
 fn units(random: &mut Random) -> Units {

@@ -84,7 +84,7 @@ fn rail(random: &mut Random, units: &Units, a: &Placed, at: [f64; 2]) -> Value {
     }
 }
 
-pub(super) fn forces(random: &mut Random, units: &Units, placed: &[Placed]) -> Vec<Value> {
+pub(super) fn forces(random: &mut Random, units: &Units, placed: &[Placed], attract: bool) -> Vec<Value> {
     let mut forces = Vec::new();
     let acceleration = units.length / (units.time * units.time);
     if random.chance(0.75) {
@@ -98,7 +98,7 @@ pub(super) fn forces(random: &mut Random, units: &Units, placed: &[Placed]) -> V
         let angular = angular * units.length * units.length / units.time;
         forces.push(json!({ "damping": { "linear": linear / units.time, "angular": angular } }));
     }
-    if random.chance(0.1) {
+    if attract && random.chance(0.1) {
         let strength = random.between(-1.0, 3.0) * acceleration * units.length * units.length;
         forces.push(json!({ "mutual_gravity": { "strength": strength } }));
     }
