@@ -3,12 +3,13 @@
 //! ```text
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 100000 --seed 1
 //! cargo run --release -p halfgap-tests --example fuzz -- --scene 4711      # prints the scene of a seed
+//! cargo run --release -p halfgap-tests --example fuzz -- --billiard 4711   # the same without forces, ties and loss
 //! cargo run --release -p halfgap-tests --example fuzz -- --shrink 4711     # prints a smaller one that fails alike
 //! ```
 //!
 //! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.
 
-use halfgap_tests::generate::scene_of_seed;
+use halfgap_tests::generate::{billiard_of_seed, scene_of_seed};
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
 use halfgap_tests::shrink::shrink;
 use std::collections::BTreeMap;
@@ -32,6 +33,8 @@ fn main() {
     let (first, count) = (number("--seed", 1), number("--count", 1000));
     if has("--scene") {
         println!("{:#}", scene_of_seed(number("--scene", 1)));
+    } else if has("--billiard") {
+        println!("{:#}", billiard_of_seed(number("--billiard", 1)));
     } else if has("--shrink") {
         print_shrunk(number("--shrink", 1));
     } else if has("--worker") {

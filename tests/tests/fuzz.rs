@@ -7,7 +7,7 @@ use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
 use std::collections::BTreeMap;
 
 /// Scenes of a run.
-const COUNT: u64 = 1500;
+const COUNT: u64 = 380;
 
 #[test]
 fn what_must_hold_holds_in_generated_billiards() {
@@ -21,6 +21,8 @@ fn what_must_hold_holds_in_generated_billiards() {
             broken.push((seed, verdict));
         }
     }
+    // From here on panics are heard again.
+    drop(std::panic::take_hook());
     println!("{kinds:#?}");
     assert!(broken.is_empty(), "{broken:#?}");
     assert!(kinds.get("finished").is_some_and(|count| *count > COUNT * 9 / 10), "{kinds:#?}");

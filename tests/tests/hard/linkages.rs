@@ -54,8 +54,8 @@ fn a_parallelogram_with_a_redundant_crank_swings_as_one_pendulum() {
 
 #[test]
 fn a_parallelogram_through_its_dead_point_ends_with_an_error_or_keeps_its_energy() {
-    // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each other. Thrown
-    // hard enough to go round, it goes through that point twice a turn.
+    // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each other. Let go
+    // near the top, it goes through that point on its way down.
     let (mut world, crank) = parallelogram(2, 3.0);
     let energy = world.energy().total();
     let mut worst: f64 = 0.0;

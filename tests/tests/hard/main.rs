@@ -6,6 +6,7 @@ mod chains;
 mod changes;
 mod extremes;
 mod grazing;
+mod ledger;
 mod linkages;
 mod narrow;
 mod reversal;
