@@ -22,6 +22,13 @@ fn within(what: &str, error: f64, allowed: f64) {
     assert!(error.abs() <= allowed, "{what}: {error:e}, {allowed:e} allowed");
 }
 
+/// How far below its start [m] a ball is that falls from rest and bounces without loss at a depth [m], at a time [s].
+fn bounced(depth: f64, time: f64) -> f64 {
+    let period = 2.0 * (2.0 * depth / halfgap_tests::mechanism::GRAVITY).sqrt();
+    let since_top = time - (time / period).round() * period;
+    0.5 * halfgap_tests::mechanism::GRAVITY * since_top * since_top
+}
+
 /// Counts the impacts up to a time [s].
 #[track_caller]
 fn impacts(world: &mut halfgap::World, until: f64) -> usize {
