@@ -86,7 +86,7 @@ fn of_two_discs() {
     compare("exact__two_discs_e1", 1.0, 2.0);
 }
 
-/// Twenty discs of a box without loss: neighbouring runs part exponentially, as in any gas of hard discs.
+/// Ten discs in a box without loss: neighbouring runs part exponentially, as in any gas of hard discs.
 #[test]
 fn chaos_is_named_with_the_time_until_which_the_answer_is_worth_something() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/discs_in_a_box.toml");
