@@ -1,6 +1,5 @@
-//! Mangled scene files are refused with a message or built; nothing panics.
+//! Mangled scene files are read or refused with a message; nothing panics.
 
-use halfgap::World;
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap_tests::random::Random;
 use halfgap_tests::{data, reference_scene_names};
@@ -124,31 +123,24 @@ fn with_other_token(random: &mut Random, text: &str) -> String {
     format!("{}{other}{}", &text[..from], &text[to..])
 }
 
-/// Parses and builds mangled texts; counts those that are still scenes.
+/// Parses mangled texts; counts those that are still scenes.
 fn run(format: SceneFormat) {
     let texts = texts(format);
     assert!(texts.len() > 5, "{} texts", texts.len());
-    let (mut parsed, mut built) = (0, 0);
+    let mut parsed = 0;
     for seed in 0..COUNT {
         let mut random = Random::new(seed);
         let mangled = mangle(&mut random, &texts[seed as usize % texts.len()]);
-        let outcome = catch_unwind(|| {
-            let scene = Scene::parse(&mangled, format).map_err(|error| error.to_string())?;
-            Ok::<bool, String>(World::from_scene(&scene).map_err(|error| error.to_string()).is_ok())
-        });
+        let outcome = catch_unwind(|| Scene::parse(&mangled, format).map_err(|error| error.to_string()));
         match outcome {
-            Ok(Ok(is_built)) => {
-                parsed += 1;
-                built += usize::from(is_built);
-            }
+            Ok(Ok(_)) => parsed += 1,
             Ok(Err(message)) => assert!(!message.is_empty(), "seed {seed}: refused without a word"),
             Err(_) => panic!("seed {seed} makes the reader panic:\n{mangled}"),
         }
     }
-    println!("{COUNT} texts: {parsed} parsed, {built} built");
+    println!("{COUNT} texts: {parsed} parsed");
     // Some changes are harmless, most are not: else nothing was tried.
     assert!(parsed > COUNT / 20 && parsed < COUNT * 9 / 10, "{parsed} parsed");
-    assert!(built > 100, "{built} built");
 }
 
 #[test]

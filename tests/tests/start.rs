@@ -50,3 +50,10 @@ fn a_tiny_overlap_is_lifted_to_the_target_gap() {
     assert!((gap - target).abs() < 1e-3 * target, "gap {gap}, target {target}");
     assert!(world.start_correction() > 1e-7);
 }
+
+#[test]
+fn the_background_has_a_name_where_an_error_needs_one() {
+    let world =
+        halfgap_tests::world_of("format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = { duration = 1.0 }");
+    assert_eq!(world.name(halfgap::BodyId::WORLD), "world");
+}
