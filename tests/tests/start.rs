@@ -50,3 +50,21 @@ fn a_tiny_overlap_is_lifted_to_the_target_gap() {
     assert!((gap - target).abs() < 1e-3 * target, "gap {gap}, target {target}");
     assert!(world.start_correction() > 1e-7);
 }
+
+#[test]
+fn the_background_has_a_name_where_an_error_needs_one() {
+    let world =
+        halfgap_tests::world_of("format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = { duration = 1.0 }");
+    assert_eq!(world.name(halfgap::BodyId::WORLD), "world");
+}
+
+#[test]
+fn a_mass_whose_inverse_overflows_is_refused() {
+    let scene = halfgap::scene::Scene::parse(
+        "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = { duration = 1.0 }\n\
+         [[body]]\nname = \"mote\"\nmass = 1e-309\nshape = { disc = { radius = 1.0 } }",
+        halfgap::scene::SceneFormat::Toml,
+    );
+    let error = halfgap::World::from_scene(&scene.expect("it can be read")).expect_err("nothing is so light");
+    assert!(error.to_string().contains("mote") && error.to_string().contains("inverse"), "{error}");
+}

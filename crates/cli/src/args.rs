@@ -43,6 +43,9 @@ pub(crate) struct RunOptions {
     /// Duration in seconds, instead of the scene's.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
+    /// Run the scene again at a tighter tolerance, and print by how much the answers differ.
+    #[arg(long)]
+    pub(crate) estimate_error: bool,
     /// No progress bar and no table.
     #[arg(long)]
     pub(crate) quiet: bool,

@@ -5,7 +5,7 @@ use crate::failure::{End, Failure};
 use crate::progress::Progress;
 use crate::{files, output, table};
 use halfgap::scene::SceneSource;
-use halfgap::{Record, RunPlan, RunResult, World, run as run_world};
+use halfgap::{Record, RunPlan, RunResult, World, estimate_error, run as run_world};
 
 pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     let source = SceneSource::read(&options.scene)?;
@@ -23,12 +23,17 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }
-    let record = if options.out.is_some() { Record::Everything } else { Record::Ends };
+    let everything = options.out.is_some() || options.estimate_error;
+    let record = if everything { Record::Everything } else { Record::Ends };
     let plan = RunPlan::of_scene(&scene, record);
     let progress = Progress::new(!options.quiet && !options.json, &scene.title);
     let report = run_world(&mut world, &plan, &mut |part| progress.set(part));
     progress.finish();
-    let result = RunResult::new(&world, &report);
+    let mut result = RunResult::new(&world, &report);
+    if options.estimate_error {
+        result.error_estimate =
+            Some(estimate_error(&scene, &plan, &world, &report).map_err(|error| source.locate(error))?);
+    }
     if let Some(folder) = &options.out {
         files::write_all(folder, &world, &report.recording, &result, options.pictures)?;
     }

@@ -1,6 +1,6 @@
 //! The table that `halfgap run` prints.
 
-use halfgap::{Ledger, RunResult};
+use halfgap::{Difference, ErrorEstimate, Ledger, RunResult};
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -17,6 +17,9 @@ pub(crate) fn of_result(result: &RunResult) -> String {
     push_states(&mut text, result);
     push_summary(&mut text, result);
     push_ledger(&mut text, &result.ledger);
+    if let Some(estimate) = &result.error_estimate {
+        push_estimate(&mut text, estimate);
+    }
     text
 }
 
@@ -85,6 +88,44 @@ fn push_ledger(text: &mut String, ledger: &Ledger) {
     if ledger.start_correction != 0.0 {
         let _ = writeln!(text, "  {:30} {:+.9e} J", "corrections before the start", ledger.start_correction);
     }
+}
+
+/// By how much a tighter run differs.
+fn push_estimate(text: &mut String, estimate: &ErrorEstimate) {
+    let (tolerance, tighter) = (estimate.tolerance, estimate.tighter_tolerance);
+    let _ = writeln!(text, "\nerror estimate: tolerance {tolerance:.1e} against {tighter:.1e}");
+    push_difference(text, "  largest", &estimate.largest);
+    push_difference(text, &format!("  at {:.4} s", estimate.compared_until), &estimate.end);
+    let times = estimate.event_time.map_or("none to compare".to_owned(), |time| format!("{time:.3e} s"));
+    let [impacts, of_tighter] = estimate.impacts;
+    let _ = writeln!(text, "  {:14} {times} ({impacts} impacts against {of_tighter})", "event times");
+    match (estimate.chaotic, estimate.trusted_until) {
+        (true, Some(time)) => {
+            let _ = writeln!(text, "  chaotic: the answer is worth something until {time:.4} s, no longer");
+        }
+        (true, None) => {
+            let _ =
+                writeln!(text, "  chaotic: the error grows faster than any tolerance could follow for long");
+        }
+        (false, Some(time)) => {
+            let _ = writeln!(
+                text,
+                "  the answer is worth something until {time:.4} s: the tolerance is too loose for more"
+            );
+        }
+        (false, None) => {}
+    }
+    if let Some(error) = &estimate.tighter_stopped {
+        let _ = writeln!(text, "  the tighter run stopped early: {error}");
+    }
+}
+
+fn push_difference(text: &mut String, when: &str, difference: &Difference) {
+    let Difference { position, angle, velocity, angular_velocity } = difference;
+    let _ = writeln!(
+        text,
+        "{when:16} {position:.3e} m, {angle:.3e} rad, {velocity:.3e} m/s, {angular_velocity:.3e} rad/s"
+    );
 }
 
 /// Ten digits: enough to read, few enough to compare by eye.

@@ -91,6 +91,21 @@ fn run_prints_one_json_object() {
 }
 
 #[test]
+fn run_estimates_its_error() {
+    let folder = Folder::new("estimate");
+    let scene = folder.write("flight.toml", FLIGHT);
+    let text = folder.plain(&halfgap(&["run", &scene, "--estimate-error"]).stdout);
+    assert!(text.contains("error estimate: tolerance 1.0e-8 against 1.0e-10\n"), "{text}");
+    assert!(text.contains("  largest        0.000e0 m, 0.000e0 rad, 0.000e0 m/s, 0.000e0 rad/s\n"), "{text}");
+    let estimate = &json(&halfgap(&["run", &scene, "--estimate-error", "--json"]))["error_estimate"];
+    assert_eq!(estimate["end"]["position"], 0.0);
+    assert_eq!(estimate["target_gaps"], serde_json::json!([5e-11, 5e-13]));
+    assert_eq!((&estimate["chaotic"], &estimate["trusted_until"]), (&false.into(), &serde_json::Value::Null));
+    let without = json(&halfgap(&["run", &scene, "--json"]));
+    assert!(without.get("error_estimate").is_none(), "{without}");
+}
+
+#[test]
 fn quiet_is_quiet() {
     let folder = Folder::new("quiet");
     let output = halfgap(&["run", &folder.write("flight.toml", FLIGHT), "--quiet"]);

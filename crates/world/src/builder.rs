@@ -310,6 +310,9 @@ fn check_body(body: &BodySpec) -> Result<(), WorldError> {
             if !(value > 0.0 && value.is_finite()) {
                 return bad(quantity, "positive and finite", value);
             }
+            if !(1.0 / value).is_normal() {
+                return bad(quantity, "of a size whose inverse is a number", value);
+            }
         }
     }
     if !(0.0..=1.0).contains(&body.elasticity) {

@@ -34,6 +34,8 @@ mod builder;
 #[cfg(feature = "scene")]
 mod check;
 mod connector;
+#[cfg(feature = "scene")]
+mod estimate;
 mod event;
 pub mod force;
 mod ledger;
@@ -59,6 +61,8 @@ pub use builder::{BodySpec, WorldBuilder};
 #[cfg(feature = "scene")]
 pub use check::{CheckReport, check};
 pub use connector::ConnectorSpec;
+#[cfg(feature = "scene")]
+pub use estimate::{Difference, ErrorEstimate, TimedDifference, estimate_error};
 pub use event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 pub use halfgap_collision::{
     Anchor, BodyId, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, RailError, RailPath,

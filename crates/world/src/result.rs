@@ -1,5 +1,6 @@
 //! The result of a run in short, and as JSON of the format `halfgap-result-1`.
 
+use crate::estimate::ErrorEstimate;
 use crate::ledger::Ledger;
 use crate::recording::Recording;
 use crate::run::RunReport;
@@ -59,6 +60,8 @@ pub struct RunResult {
     pub statistics: StatisticsResult,
     /// Where the energy went.
     pub ledger: Ledger,
+    /// How far it is from the truth, if that was estimated.
+    pub error_estimate: Option<ErrorEstimate>,
 }
 
 /// Energy at start and end.
@@ -103,6 +106,7 @@ impl RunResult {
             },
             statistics: StatisticsResult { world: world.statistics(), wall_seconds: report.wall_seconds },
             ledger: world.ledger(),
+            error_estimate: None,
         }
     }
 
@@ -115,7 +119,7 @@ impl RunResult {
 
 impl Serialize for RunResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut result = serializer.serialize_struct("RunResult", 8)?;
+        let mut result = serializer.serialize_struct("RunResult", 9)?;
         result.serialize_field("format", "halfgap-result-1")?;
         result.serialize_field("scene", &self.scene)?;
         result.serialize_field("status", &self.status)?;
@@ -124,6 +128,10 @@ impl Serialize for RunResult {
         result.serialize_field("energy", &self.energy)?;
         result.serialize_field("statistics", &self.statistics)?;
         result.serialize_field("ledger", &self.ledger)?;
+        match &self.error_estimate {
+            Some(estimate) => result.serialize_field("error_estimate", estimate)?,
+            None => result.skip_field("error_estimate")?,
+        }
         result.end()
     }
 }

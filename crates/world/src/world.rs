@@ -133,13 +133,13 @@ impl World {
         self.bodies().find(|&body| self.name(body) == name)
     }
 
-    /// A body's name.
+    /// A body's name; "world" for the background, which errors name too.
     ///
     /// # Panics
     /// As all look-ups here: if the world has no such body.
     #[must_use]
     pub fn name(&self, body: BodyId) -> &str {
-        &self.bodies[body.index()].name
+        if body.is_world() { BACKGROUND } else { &self.bodies[body.index()].name }
     }
 
     /// True for a body that nothing moves.

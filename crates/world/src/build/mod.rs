@@ -2,7 +2,7 @@
 
 mod connector;
 mod force;
-mod settings;
+pub(crate) mod settings;
 
 use crate::builder::{BodySpec, WorldBuilder};
 use crate::scene::{BodyData, EdgeData, FieldPath, PathData, Scene, SceneError, ShapeData, WORLD};

@@ -6,7 +6,7 @@ use crate::settings::{Integrator, Stabilization, WorldSettings};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
 /// The settings that a scene asks for.
-pub(super) fn of_run(run: &RunData) -> WorldSettings {
+pub(crate) fn of_run(run: &RunData) -> WorldSettings {
     WorldSettings {
         start_time: run.start_time,
         tolerance: run.tolerance,

@@ -1,0 +1,99 @@
+//! The same scene, to be run more exactly.
+
+use crate::build::settings::of_run;
+use crate::scene::{RunData, Scene, SceneError};
+use crate::world::World;
+
+/// By how much tolerance and thresholds shrink.
+const FACTOR: f64 = 100.0;
+/// By how much they shrink where the step is fixed: it shrinks too, and the run takes so many times as long.
+const FIXED_STEP_FACTOR: f64 = 10.0;
+/// A tolerance that asks for a few roundings a step; below it nothing becomes more exact.
+const TIGHTEST: f64 = 1e-15;
+/// Where the target gap cannot shrink to this part it grows by this factor instead: what it adds to the error is in
+/// proportion to it, so that either way the difference is at least half the error.
+const GAP_FACTOR: f64 = 2.0;
+
+/// The scene of a world at a tighter tolerance; what it gives in place of derived thresholds shrinks alike.
+///
+/// A step that is only a bound on an adaptive one stays: the tolerance decides.
+pub(super) fn tightened(scene: &Scene, world: &World) -> Result<Scene, SceneError> {
+    let run = &scene.run;
+    let step = of_run(run).fixed_step();
+    let factor = if step.is_some() { FIXED_STEP_FACTOR } else { FACTOR };
+    let shrunk = |value: Option<f64>| value.map(|value| value / factor);
+    let gap = world.tolerances().target_gap;
+    let other_gap = other_gap(gap, factor, least_gap(scene)?);
+    let run = RunData {
+        tolerance: (run.tolerance / factor).max(TIGHTEST.min(run.tolerance)),
+        target_gap: Some(other_gap),
+        accuracy: run.accuracy.map(|accuracy| accuracy * other_gap / gap),
+        velocity_tol: shrunk(run.velocity_tol),
+        time_step: step.map(|step| step / factor).or(run.time_step),
+        ..run.clone()
+    };
+    Ok(Scene { run, ..scene.clone() })
+}
+
+/// The target gap [m] to compare with one [m], if the coordinates allow no less than the least one [m].
+fn other_gap(gap: f64, factor: f64, least: f64) -> f64 {
+    if least <= gap / GAP_FACTOR { least.max(gap / factor) } else { GAP_FACTOR * gap }
+}
+
+/// The smallest target gap [m] that the coordinates allow.
+fn least_gap(scene: &Scene) -> Result<f64, SceneError> {
+    let run = RunData {
+        tolerance: TIGHTEST,
+        target_gap: None,
+        accuracy: None,
+        velocity_tol: None,
+        ..scene.run.clone()
+    };
+    Ok(World::from_scene(&Scene { run, ..scene.clone() })?.tolerances().target_gap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneFormat;
+
+    /// The run of a scene of one disc of 1 m, tightened.
+    fn run(fields: &str) -> RunData {
+        let text = format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 1.0, {fields} }}\n\
+             [[body]]\nname = \"disc\"\nmass = 1.0\nshape = {{ disc = {{ radius = 1.0 }} }}\n"
+        );
+        let scene = Scene::parse(&text, SceneFormat::Toml).expect("a fine scene");
+        let world = World::from_scene(&scene).expect("a fine world");
+        tightened(&scene, &world).expect("a fine world at a tighter tolerance").run
+    }
+
+    #[test]
+    fn everything_that_is_given_shrinks() {
+        let run =
+            run("tolerance = 1e-6, target_gap = 1e-2, accuracy = 1e-3, velocity_tol = 0.5, time_step = 0.1");
+        assert_eq!((run.tolerance, run.target_gap), (1e-6 / 100.0, Some(1e-2 / 100.0)));
+        assert!((run.accuracy.expect("it was given") - 1e-5).abs() < 1e-18);
+        assert_eq!(run.velocity_tol, Some(0.5 / 100.0));
+        assert_eq!(run.time_step, Some(0.1), "it bounds an adaptive step");
+    }
+
+    #[test]
+    fn a_fixed_step_shrinks_to_a_tenth() {
+        let run = run("integrator = \"euler\", velocity_tol = 0.5");
+        assert_eq!((run.time_step, run.velocity_tol), (Some(0.025 / 10.0), Some(0.5 / 10.0)));
+    }
+
+    #[test]
+    fn a_tolerance_of_rounding_stays() {
+        assert_eq!(run("tolerance = 1e-14").tolerance, 1e-15);
+        assert_eq!(run("tolerance = 1e-16").tolerance, 1e-16);
+    }
+
+    #[test]
+    fn a_gap_that_cannot_shrink_grows() {
+        assert_eq!(other_gap(2.0, 100.0, 1e-3), 0.02);
+        assert_eq!(other_gap(2.0, 100.0, 0.5), 0.5);
+        assert_eq!(other_gap(2.0, 100.0, 1.5), 4.0);
+    }
+}

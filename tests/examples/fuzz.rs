@@ -1,0 +1,171 @@
+//! Runs generated scenes and counts what became of them.
+//!
+//! ```text
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 100000 --seed 1
+//! cargo run --release -p halfgap-tests --example fuzz -- --scene 4711      # prints the scene of a seed
+//! cargo run --release -p halfgap-tests --example fuzz -- --billiard 4711   # the same without forces, ties and loss
+//! cargo run --release -p halfgap-tests --example fuzz -- --shrink 4711     # prints a smaller one that fails alike
+//! ```
+//!
+//! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.
+
+use halfgap_tests::generate::{billiard_of_seed, scene_of_seed};
+use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
+use halfgap_tests::shrink::shrink;
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+/// A scene that says nothing for so long hangs.
+const HANGS: Duration = Duration::from_secs(20);
+/// Seeds listed for each kind.
+const LISTED: usize = 8;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |name: &str, default: u64| {
+        let place = arguments.iter().position(|argument| argument == name);
+        place.map_or(default, |place| arguments[place + 1].parse().expect("a number follows the option"))
+    };
+    let has = |name: &str| arguments.iter().any(|argument| argument == name);
+    let (first, count) = (number("--seed", 1), number("--count", 1000));
+    if has("--scene") {
+        println!("{:#}", scene_of_seed(number("--scene", 1)));
+    } else if has("--billiard") {
+        println!("{:#}", billiard_of_seed(number("--billiard", 1)));
+    } else if has("--shrink") {
+        print_shrunk(number("--shrink", 1));
+    } else if has("--worker") {
+        work(first, count);
+    } else {
+        let failed = supervise(first, count, number("--jobs", 2));
+        std::process::exit(i32::from(failed));
+    }
+}
+
+fn print_shrunk(seed: u64) {
+    silence_panics();
+    let least = shrink(&scene_of_seed(seed), Budget::default());
+    eprintln!("{:?}", trial(&least.to_string(), Budget::default()));
+    println!("{least:#}");
+}
+
+/// Runs scenes and writes a line before and after each.
+fn work(first: u64, count: u64) {
+    silence_panics();
+    let mut out = std::io::stdout().lock();
+    let mut say = |line: String| {
+        let told = writeln!(out, "{line}").and_then(|()| out.flush());
+        told.expect("somebody listens");
+    };
+    for seed in first..first + count {
+        say(format!("start {seed}"));
+        let verdict = trial(&scene_of_seed(seed).to_string(), Budget::default());
+        let what = match &verdict {
+            Verdict::Broken(broken) => format!("\t{}", broken.what.replace('\n', " ")),
+            Verdict::Shallow(why) | Verdict::Stopped(why) | Verdict::Refused(why) => {
+                format!("\t{}", why.replace('\n', " "))
+            }
+            Verdict::Finished => String::new(),
+        };
+        say(format!("end {}{what}", verdict.kind()));
+    }
+}
+
+/// Seeds by kind, each with the first words about it.
+type Found = BTreeMap<String, Vec<(u64, String)>>;
+
+/// Lets processes run all scenes; true if one failed.
+fn supervise(first: u64, count: u64, jobs: u64) -> bool {
+    let started = Instant::now();
+    let share = count.div_ceil(jobs);
+    let threads: Vec<_> = (0..jobs)
+        .map(|job| {
+            let from = first + job * share;
+            let to = (from + share).min(first + count);
+            std::thread::spawn(move || run_all(from, to))
+        })
+        .collect();
+    let mut found = Found::new();
+    for thread in threads {
+        for (kind, seeds) in thread.join().expect("a supervisor does not panic") {
+            found.entry(kind).or_default().extend(seeds);
+        }
+    }
+    report(&found);
+    println!("{count} scenes from seed {first} in {:.0?}", started.elapsed());
+    found.keys().any(|kind| kind.starts_with("BROKEN"))
+}
+
+fn report(found: &Found) {
+    for (kind, seeds) in found {
+        println!("{:7} {kind}", seeds.len());
+        for (seed, what) in
+            seeds.iter().filter(|(_, what)| !what.is_empty() || kind.starts_with("BROKEN")).take(LISTED)
+        {
+            let short: String = what.chars().take(200).collect();
+            println!("          seed {seed}: {short}");
+        }
+    }
+}
+
+/// Runs the scenes of the seeds from one up to another, in as many processes as it takes.
+fn run_all(mut from: u64, to: u64) -> Found {
+    let mut found = Found::new();
+    while from < to {
+        let (mut child, lines) = spawn(from, to - from);
+        let mut running = None;
+        loop {
+            match lines.recv_timeout(HANGS) {
+                Ok(line) => from = note(&line, from, &mut running, &mut found),
+                Err(end) => {
+                    if let Some(seed) = running {
+                        found
+                            .entry(format!("BROKEN process: {end:?}"))
+                            .or_default()
+                            .push((seed, String::new()));
+                        from = seed + 1;
+                    }
+                    break;
+                }
+            }
+        }
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+    found
+}
+
+/// Notes a line of a process; the answer is the first seed that has not been run.
+fn note(line: &str, from: u64, running: &mut Option<u64>, found: &mut Found) -> u64 {
+    if let Some(seed) = line.strip_prefix("start ") {
+        *running = seed.parse().ok();
+        return from;
+    }
+    let (Some(end), Some(seed)) = (line.strip_prefix("end "), running.take()) else { return from };
+    let (kind, what) = end.split_once('\t').unwrap_or((end, ""));
+    found.entry(kind.to_owned()).or_default().push((seed, what.to_owned()));
+    seed + 1
+}
+
+fn spawn(first: u64, count: u64) -> (Child, Receiver<String>) {
+    let program = std::env::current_exe().expect("this program has a path");
+    let mut child = Command::new(program)
+        .args(["--worker", "--seed", &first.to_string(), "--count", &count.to_string()])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("a process can be started");
+    let output = child.stdout.take().expect("it is piped");
+    let (sender, receiver) = channel();
+    std::thread::spawn(move || {
+        for line in BufReader::new(output).lines() {
+            let Ok(line) = line else { break };
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    (child, receiver)
+}

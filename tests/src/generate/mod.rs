@@ -1,0 +1,259 @@
+//! Scenes from seeds: a dozen bodies at most, of all shapes, tied and pushed in all ways, with extreme but legal numbers.
+//!
+//! A scene is made as JSON, as a file would hold it: what a seed makes can be written down, run by the command and made
+//! smaller. `shapes` makes the shapes, `ties` the connectors and forces.
+
+mod shapes;
+mod ties;
+
+use crate::random::Random;
+use serde_json::{Value, json};
+use shapes::Outline;
+
+/// Chances that a scene is of some kind.
+const ROOM: f64 = 0.45;
+const ROUND_ROOM: f64 = 0.6;
+const FLOOR: f64 = 0.85;
+const SCALED: f64 = 0.2;
+const FAR_AWAY: f64 = 0.05;
+/// Tries to find a free place for a body.
+const TRIES: usize = 60;
+
+/// A body as far as the rest of a scene must know it.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    name: String,
+    position: [f64; 2],
+    angle: f64,
+    center_of_mass: [f64; 2],
+    radius: f64,
+    mass: f64,
+}
+
+impl Placed {
+    /// Shape coordinates of a point given in world coordinates.
+    fn to_shape(&self, point: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.angle.sin_cos();
+        let [x, y] = [point[0] - self.position[0], point[1] - self.position[1]];
+        [cos * x + sin * y + self.center_of_mass[0], cos * y - sin * x + self.center_of_mass[1]]
+    }
+}
+
+/// Units of a scene: what is 1 m, 1 s and the origin of an ordinary one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Units {
+    length: f64,
+    time: f64,
+    origin: [f64; 2],
+}
+
+/// The scene of a seed.
+#[must_use]
+pub fn scene_of_seed(seed: u64) -> Value {
+    let mut random = Random::new(seed);
+    let units = units(&mut random);
+    let room = random.between(2.0, 6.0);
+    let mut bodies = walls(&mut random, &units, room);
+    let count = 1 + random.below(12);
+    let mut placed: Vec<Placed> = Vec::new();
+    for index in 0..count {
+        if let Some((body, place)) = body(&mut random, &units, room, index, &placed) {
+            bodies.push(body);
+            placed.push(place);
+        }
+    }
+    let connectors = ties::connectors(&mut random, &units, &placed);
+    // Bodies that are joined may pass through each other, and their centres through the pole of a 1/r^2 force.
+    let attract = connectors.is_empty();
+    let forces = ties::forces(&mut random, &units, &placed, attract);
+    json!({
+        "format": "halfgap-scene-1",
+        "title": format!("seed {seed}"),
+        "run": run(&mut random, &units),
+        "body": bodies,
+        "connector": connectors,
+        "force": forces,
+    })
+}
+
+/// The scene of a seed without forces, connectors and loss: bodies that fly and collide, and never rest on each other.
+#[must_use]
+pub fn billiard_of_seed(seed: u64) -> Value {
+    let mut scene = scene_of_seed(seed);
+    scene["connector"] = json!([]);
+    scene["force"] = json!([]);
+    for body in scene["body"].as_array_mut().into_iter().flatten() {
+        body["elasticity"] = json!(1.0);
+    }
+    scene
+}
+
+fn units(random: &mut Random) -> Units {
+    let scaled = random.chance(SCALED);
+    let mut scale = |range: f64| if scaled { random.power_of_ten(-range, range) } else { 1.0 };
+    let (length, time) = (scale(5.0), scale(3.0));
+    let far = if random.chance(FAR_AWAY) { length * random.power_of_ten(1.0, 6.0) } else { 0.0 };
+    Units { length, time, origin: [far, random.between(-1.0, 1.0) * far] }
+}
+
+fn run(random: &mut Random, units: &Units) -> Value {
+    let law = random.one_of(&[
+        "hybrid",
+        "hybrid",
+        "hybrid",
+        "simultaneous",
+        "serial_separate",
+        "serial_grouped",
+        "serial_separate_lastpass",
+        "serial_grouped_lastpass",
+    ]);
+    let mut run = json!({
+        "duration": units.time * random.between(0.5, 4.0),
+        "tolerance": random.power_of_ten(-12.0, -4.0),
+        "impact_law": law,
+    });
+    if random.chance(0.15) {
+        run["seed"] = json!(random.below(1000));
+    }
+    if random.chance(0.05) {
+        run["start_time"] = json!(units.time * random.between(-1e3, 1e3));
+    }
+    if random.chance(0.05) {
+        run["integrator"] = json!("dormand_prince5");
+    }
+    run
+}
+
+/// Fixed bodies about the place.
+fn walls(random: &mut Random, units: &Units, room: f64) -> Vec<Value> {
+    let elasticity = 1.0;
+    let wall = |name: &str, shape: Value, at: [f64; 2]| {
+        json!({
+            "name": name, "fixed": true, "shape": shape, "elasticity": elasticity,
+            "position": [units.origin[0] + units.length * at[0], units.origin[1] + units.length * at[1]],
+        })
+    };
+    let block = |width: f64, height: f64| json!({ "block": { "width": width * units.length, "height": height * units.length } });
+    let (draw, outer) = (random.unit(), 2.0 * room + 2.0);
+    if draw < ROOM {
+        vec![
+            wall("floor", block(outer, 1.0), [0.0, -room - 0.5]),
+            wall("ceiling", block(outer, 1.0), [0.0, room + 0.5]),
+            wall("left", block(1.0, outer), [-room - 0.5, 0.0]),
+            wall("right", block(1.0, outer), [room + 0.5, 0.0]),
+        ]
+    } else if draw < ROUND_ROOM {
+        let ring = json!({ "ring": { "outer": units.length * (1.5 * room + 1.0), "inner": units.length * 1.5 * room } });
+        vec![wall("room", ring, [0.0, 0.0])]
+    } else if draw < FLOOR {
+        vec![wall("floor", block(20.0 * room, 1.0), [0.0, -room - 0.5])]
+    } else {
+        Vec::new()
+    }
+}
+
+/// A body in a free place, if there is one.
+fn body(
+    random: &mut Random,
+    units: &Units,
+    room: f64,
+    index: usize,
+    placed: &[Placed],
+) -> Option<(Value, Placed)> {
+    let size = units.length
+        * if random.chance(0.1) { random.power_of_ten(-3.0, 0.0) } else { random.between(0.2, 1.0) };
+    let outline = shapes::shape(random, size);
+    let position = place(random, units, room, &outline, placed)?;
+    let name = format!("body{index}");
+    let angle = if random.chance(0.3) { 0.0 } else { random.between(-4.0, 4.0) };
+    let mass = if random.chance(0.1) { random.power_of_ten(-6.0, 6.0) } else { random.between(0.1, 3.0) };
+    let speed = units.length / units.time;
+    let fast = if random.chance(0.05) { random.power_of_ten(0.0, 2.0) } else { 1.0 };
+    let spin = if random.chance(0.05) { random.power_of_ten(0.0, 3.0) } else { 1.0 };
+    let fixed = random.chance(0.06);
+    let elasticity = match random.below(4) {
+        0 => 0.0,
+        1 => 1.0,
+        _ => random.unit(),
+    };
+    let mut body = json!({
+        "name": name,
+        "shape": outline.shape,
+        "position": position,
+        "angle": angle,
+        "center_of_mass": outline.center,
+        "elasticity": elasticity,
+    });
+    if fixed {
+        body["fixed"] = json!(true);
+    } else {
+        body["mass"] = json!(mass);
+    }
+    if !fixed && random.chance(0.6) {
+        body["velocity"] =
+            json!([speed * fast * random.between(-3.0, 3.0), speed * fast * random.between(-3.0, 3.0)]);
+        if random.chance(0.7) {
+            body["angular_velocity"] = json!(spin * random.between(-3.0, 3.0) / units.time);
+        }
+    }
+    let radius = outline.radius;
+    Some((body, Placed { name, position, angle, center_of_mass: outline.center, radius, mass }))
+}
+
+/// A place where the circle about a body meets no other; now and then it just touches another or the floor.
+fn place(
+    random: &mut Random,
+    units: &Units,
+    room: f64,
+    outline: &Outline,
+    placed: &[Placed],
+) -> Option<[f64; 2]> {
+    let free = room * units.length - outline.radius;
+    for _ in 0..TRIES {
+        let mut at = [random.between(-free, free), random.between(-free, free)];
+        if random.chance(0.2) {
+            at[1] = -free;
+        }
+        let mut position = [units.origin[0] + at[0], units.origin[1] + at[1]];
+        if random.chance(0.3) && !placed.is_empty() {
+            let other = &placed[random.below(placed.len())];
+            let (apart, way) = (other.radius + outline.radius, random.between(0.0, 6.2));
+            position = [other.position[0] + apart * way.cos(), other.position[1] + apart * way.sin()];
+        }
+        let inside = (0..2).all(|axis| (position[axis] - units.origin[axis]).abs() <= free);
+        let apart = |other: &Placed| {
+            let [x, y] = [position[0] - other.position[0], position[1] - other.position[1]];
+            // A rounding of the distance is an overlap that is lifted at the start.
+            x.hypot(y) * (1.0 + 1e-12) >= other.radius + outline.radius
+        };
+        if free > 0.0 && inside && placed.iter().all(apart) {
+            return Some(position);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use halfgap::World;
+    use halfgap::scene::{Scene, SceneFormat};
+
+    #[test]
+    fn a_seed_makes_one_scene() {
+        assert_eq!(scene_of_seed(7), scene_of_seed(7));
+        assert_ne!(scene_of_seed(7), scene_of_seed(8));
+    }
+
+    #[test]
+    fn scenes_are_legal_and_most_can_be_built() {
+        let mut built = 0;
+        for seed in 0..300 {
+            let text = scene_of_seed(seed).to_string();
+            let scene =
+                Scene::parse(&text, SceneFormat::Json).unwrap_or_else(|error| panic!("{seed}: {error}"));
+            built += usize::from(World::from_scene(&scene).is_ok());
+        }
+        assert!(built > 240, "{built} of 300");
+    }
+}

@@ -1,0 +1,338 @@
+//! What must hold whatever the scene: runs a scene step by step and looks.
+//!
+//! No panic, no number that is none, no penetration, no energy from nothing, connectors together, and an end within the
+//! budget: finished, or a clean error. Everything is judged from outside: distances by the geometry alone, energy from the
+//! states.
+
+use halfgap::geometry::{DVec2, Pose, Relation};
+use halfgap::scene::{ConnectorData, Scene, SceneFormat};
+use halfgap::{BodyId, ConnectorId, World};
+use std::any::Any;
+use std::cell::RefCell;
+use std::f64::consts::TAU;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+/// States looked at in each run.
+const LOOKS: u32 = 50;
+/// How far the energy books may be from closing, in tolerances and parts of the energy turned over.
+const ENERGY_TOLERANCES: f64 = 1e4;
+const ENERGY_ROUNDING: f64 = 1e-9;
+/// How far a connector may be off, in tolerances and in roundings of the coordinates.
+const CONNECTOR_TOLERANCES: f64 = 10.0;
+const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
+
+/// Ways in which a body is shifted to see how deep it is.
+const DIRECTIONS: u32 = 16;
+
+/// What a run may cost.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// Events.
+    pub events: u64,
+    /// Time that goes by meanwhile.
+    pub wall: Duration,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { events: 300_000, wall: Duration::from_secs(3) }
+    }
+}
+
+/// How a run went.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// To its end, and all held.
+    Finished,
+    /// To its end, but bodies overlapped by less than the target gap.
+    Shallow(String),
+    /// The scene could not be built: a clean error.
+    Refused(String),
+    /// It stopped early with an error.
+    Stopped(String),
+    /// Something did not hold.
+    Broken(Broken),
+}
+
+/// What did not hold: its kind, and what was seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Broken {
+    /// A word or two by which failures are counted.
+    pub kind: String,
+    /// When, who and how much.
+    pub what: String,
+}
+
+impl Verdict {
+    /// By which runs are counted: failures by their kind, errors by their words without numbers and names.
+    #[must_use]
+    pub fn kind(&self) -> String {
+        match self {
+            Self::Finished => "finished".to_owned(),
+            Self::Shallow(_) => "finished, with overlaps within the target gap".to_owned(),
+            Self::Refused(why) => format!("refused: {}", without_numbers(why)),
+            Self::Stopped(why) => format!("stopped: {}", without_numbers(why)),
+            Self::Broken(broken) => format!("BROKEN {}", broken.kind),
+        }
+    }
+
+    /// True if an invariant is broken.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        matches!(self, Self::Broken(_))
+    }
+}
+
+fn without_numbers(text: &str) -> String {
+    let mut inside = false;
+    let plain = text.chars().filter(|&c| {
+        inside ^= c == '"';
+        !inside && c != '"' && !c.is_ascii_digit() && !"-.".contains(c)
+    });
+    plain.collect::<String>().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+thread_local! {
+    static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Keeps panics from being printed; their messages are told as failures.
+pub fn silence_panics() {
+    std::panic::set_hook(Box::new(|info| {
+        let text = info.to_string().replace('\n', " ");
+        LAST_PANIC.with(|last| last.replace(text));
+    }));
+}
+
+/// What the run panics with when its budget is spent.
+struct Spent(String);
+
+/// Runs a scene, given as JSON.
+#[must_use]
+pub fn trial(json: &str, budget: Budget) -> Verdict {
+    match catch_unwind(AssertUnwindSafe(|| run(json, budget))) {
+        Ok(verdict) => verdict,
+        Err(payload) => Verdict::Broken(broken_by(payload.as_ref())),
+    }
+}
+
+fn broken_by(payload: &(dyn Any + Send)) -> Broken {
+    if let Some(Spent(what)) = payload.downcast_ref() {
+        return Broken { kind: "slow".to_owned(), what: what.clone() };
+    }
+    let what = LAST_PANIC.with(|last| last.take());
+    let place = what.split_whitespace().find(|word| word.contains(".rs:")).unwrap_or("somewhere");
+    Broken { kind: format!("panic {}", place.trim_end_matches(':')), what }
+}
+
+fn run(json: &str, budget: Budget) -> Verdict {
+    let scene = match Scene::parse(json, SceneFormat::Json) {
+        Ok(scene) => scene,
+        Err(error) => return Verdict::Refused(error.to_string()),
+    };
+    let started = Instant::now();
+    let mut world = match World::from_scene(&scene) {
+        Ok(world) => world,
+        Err(error) => return Verdict::Refused(error.to_string()),
+    };
+    let mut inspector = Inspector::new(&scene, &world);
+    let mut events = 0;
+    for look in 0..=LOOKS {
+        let time = scene.run.start_time + scene.run.duration * f64::from(look) / f64::from(LOOKS);
+        let outcome = world.advance_to(time, &mut |_| {
+            events += 1;
+            spend(events, started, budget);
+        });
+        if let Err(broken) = inspector.look(&world) {
+            return Verdict::Broken(broken);
+        }
+        if let Err(error) = outcome {
+            return Verdict::Stopped(error.to_string());
+        }
+        spend(events, started, budget);
+    }
+    inspector.shallow.map_or(Verdict::Finished, Verdict::Shallow)
+}
+
+/// Panics with [`Spent`] once too much was.
+fn spend(events: u64, started: Instant, budget: Budget) {
+    let wall = started.elapsed();
+    if events > budget.events || wall > budget.wall {
+        std::panic::panic_any(Spent(format!("{events} events in {wall:.1?}")));
+    }
+}
+
+/// What is looked at.
+struct Inspector {
+    /// Pairs that may not penetrate.
+    pairs: Vec<(BodyId, BodyId)>,
+    /// What each connector is.
+    connectors: Vec<&'static str>,
+    tolerance: f64,
+    turned_over: f64,
+    start_potential: f64,
+    /// Energy [J] that is nothing: that of all masses at a coordinate in the duration, times rounding.
+    no_energy: f64,
+    /// The first overlap that was less deep than the target gap.
+    shallow: Option<String>,
+}
+
+impl Inspector {
+    fn new(scene: &Scene, world: &World) -> Self {
+        let bodies: Vec<BodyId> = world.bodies().collect();
+        let pairs = bodies.iter().enumerate().flat_map(|(index, &a)| {
+            let others = bodies[index + 1..].iter().map(move |&b| (a, b));
+            others.filter(|&(a, b)| may_collide(scene, world, a, b))
+        });
+        Self {
+            pairs: if scene.run.collisions { pairs.collect() } else { Vec::new() },
+            connectors: scene.connectors.iter().map(ConnectorData::key).collect(),
+            tolerance: scene.run.tolerance,
+            turned_over: 0.0,
+            start_potential: world.energy().potential,
+            no_energy: no_energy(scene, world),
+            shallow: None,
+        }
+    }
+
+    fn look(&mut self, world: &World) -> Result<(), Broken> {
+        let broken = |kind: &str, what: String| {
+            Err(Broken { kind: kind.to_owned(), what: format!("t = {} s: {what}", world.time()) })
+        };
+        let mut coordinate: f64 = 0.0;
+        for body in world.bodies() {
+            let state = world.state(body);
+            coordinate = coordinate.max(state.position.abs().max_element());
+            let spin = [state.angle, state.angular_velocity];
+            if !(state.position.is_finite()
+                && state.velocity.is_finite()
+                && spin.iter().all(|x| x.is_finite()))
+            {
+                return broken("not finite", format!("{}: {state:?}", world.name(body)));
+            }
+        }
+        for &(a, b) in &self.pairs {
+            if let Some(relation) = penetration(world, a, b) {
+                let (depth, names) = (depth(world, a, b), [a, b].map(|body| world.name(body)));
+                let gap = world.tolerances().target_gap;
+                let what = format!("{names:?}: {relation:?}, about {depth:.0e} m deep, gap {gap:.1e} m");
+                if depth > gap {
+                    return broken("penetration", what);
+                }
+                self.shallow.get_or_insert(format!("t = {} s: {what}", world.time()));
+            }
+        }
+        let allowed = (CONNECTOR_TOLERANCES * self.tolerance + CONNECTOR_ROUNDINGS) * coordinate;
+        for connector in (0..).map(ConnectorId).take(self.connectors.len()) {
+            let error = world.connector_error(connector);
+            // Not a number is not within either.
+            if error.is_nan() || error > allowed {
+                let kind = self.connectors[connector.index()];
+                return broken("connector off", format!("{kind} {} is off by {error:e} m", connector.0));
+            }
+        }
+        self.look_at_energy(world).or_else(|(kind, what)| broken(kind, what))
+    }
+
+    fn look_at_energy(&mut self, world: &World) -> Result<(), (&'static str, String)> {
+        let ledger = world.ledger();
+        let work: f64 = ledger.laws.iter().map(|law| law.work).sum();
+        let turned = ledger.now.kinetic
+            + (ledger.now.potential - self.start_potential).abs()
+            + ledger.laws.iter().map(|law| law.work.abs()).sum::<f64>();
+        self.turned_over = self.turned_over.max(turned);
+        let potential = ledger.now.potential.abs().max(self.start_potential.abs());
+        let allowed = (ENERGY_TOLERANCES * self.tolerance + ENERGY_ROUNDING) * self.turned_over
+            + CONNECTOR_ROUNDINGS * potential
+            + self.no_energy;
+        let gained = ledger.now.total() - ledger.start - work;
+        if gained > allowed {
+            return Err(("energy gained", format!("{gained:e} J, {allowed:e} J allowed: {ledger:?}")));
+        }
+        let error = ledger.integration_error();
+        if error.is_nan() || error.abs() > allowed {
+            return Err(("energy books", format!("{error:e} J, {allowed:e} J allowed: {ledger:?}")));
+        }
+        Ok(())
+    }
+}
+
+/// How two bodies lie to each other, if they are not apart.
+fn penetration(world: &World, a: BodyId, b: BodyId) -> Option<Relation> {
+    let pose = |body| world.state(body).pose();
+    let (first, second) = (world.shape(a), world.shape(b));
+    let (box_a, box_b) = (first.bounds_at(&pose(a)), second.bounds_at(&pose(b)));
+    if box_a.min.cmpgt(box_b.max).any() || box_b.min.cmpgt(box_a.max).any() {
+        return None;
+    }
+    let relation = first.distance(&pose(a), second, &pose(b)).relation;
+    (relation != Relation::Apart).then_some(relation)
+}
+
+/// Order of magnitude [m] of the least shift of a body that frees it of another.
+fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
+    let (of_a, of_b) = (world.state(a).pose(), world.state(b).pose());
+    let frees = |depth: f64| {
+        (0..DIRECTIONS).any(|direction| {
+            let way = DVec2::from_angle(f64::from(direction) * TAU / f64::from(DIRECTIONS));
+            let shifted = Pose { position: of_a.position + depth * way, ..of_a };
+            world.shape(a).distance(&shifted, world.shape(b), &of_b).relation == Relation::Apart
+        })
+    };
+    let size = world.shape(a).reach().max(world.shape(b).reach());
+    let gap = world.tolerances().target_gap;
+    let mut depths = [gap].into_iter().chain((-16..1).map(|power| size * 10f64.powi(power)));
+    depths.find(|&depth| frees(depth)).unwrap_or(f64::INFINITY)
+}
+
+fn no_energy(scene: &Scene, world: &World) -> f64 {
+    let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
+    let coordinate =
+        world.bodies().map(|body| world.state(body).position.abs().max_element() + world.shape(body).reach());
+    let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
+    CONNECTOR_ROUNDINGS * masses.sum::<f64>() * speed * speed
+}
+
+fn may_collide(scene: &Scene, world: &World, a: BodyId, b: BodyId) -> bool {
+    if world.is_fixed(a) && world.is_fixed(b) {
+        return false;
+    }
+    let passes = |a: BodyId, b: BodyId| {
+        let name = world.name(b);
+        scene.bodies[a.index()].passes_through.iter().any(|other| other == name)
+    };
+    let is = |body: BodyId, name: &str| world.name(body) == name;
+    let joined = scene.connectors.iter().any(|connector| {
+        let (first, second) = connector.points();
+        let Some(second) = second else { return false };
+        let both = (is(a, &first.body) && is(b, &second.body)) || (is(b, &first.body) && is(a, &second.body));
+        let joins = matches!(connector, ConnectorData::Pin(_) | ConnectorData::Slot(_));
+        both && joins && !connector.options().collide
+    });
+    !joined && !passes(a, b) && !passes(b, a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world_of;
+
+    #[test]
+    fn what_overlaps_is_seen() {
+        let disc = "shape = { disc = { radius = 1.0 } }\nmass = 1.0\n";
+        let world = world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 1.0, collisions = false }}\n\
+             [[body]]\nname = \"a\"\n{disc}[[body]]\nname = \"b\"\n{disc}position = [1.5, 0.0]\n\
+             [[body]]\nname = \"c\"\n{disc}position = [3.6, 0.0]\n"
+        ));
+        assert_eq!(penetration(&world, BodyId(0), BodyId(1)), Some(Relation::Crossing));
+        assert_eq!(penetration(&world, BodyId(1), BodyId(2)), None);
+    }
+
+    #[test]
+    fn errors_are_counted_without_names_and_numbers() {
+        let verdict = Verdict::Stopped("at 1.5 s in an impact of \"body1\": cycled 30 times".to_owned());
+        assert_eq!(verdict.kind(), "stopped: at s in an impact of : cycled times");
+    }
+}

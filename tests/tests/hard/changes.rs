@@ -1,0 +1,94 @@
+//! Contacts that change from feature to feature, and that end.
+
+use super::within;
+use halfgap::geometry::{DVec2, Shape};
+use halfgap::{BodyId, Event, World};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, block, disc, thrown};
+
+/// The tolerance of these cases.
+const TOLERANCE: f64 = 1e-10;
+
+#[test]
+fn a_disc_slides_from_line_to_convex_arc_and_leaves_where_theory_says() {
+    // A rounded block: its top is straight, its corner an arc of 1 m. The disc comes along the top too slowly to fly off.
+    let mut shop = Workshop::new(TOLERANCE);
+    let hill = Shape::rounded_block(6.0, 6.0, 1.0).expect("a fine block");
+    shop.fixed("hill", hill, DVec2::new(-3.0, -3.0));
+    let speed = 1.0;
+    let ball = shop.dull("disc", disc(0.5), 1.0, thrown(-2.0, 0.5, DVec2::new(speed, 0.0)));
+    let mut world = shop.build();
+    let (time, normal) = last_end(&mut world, 3.0);
+    // About the arc's centre at a radius of 1.5 m: cos = 2/3 + v^2/(3 g R).
+    let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * 1.5);
+    within("disc leaves a convex arc: cosine", normal.y - cosine, 1e-8);
+    within(
+        "disc leaves a convex arc: speed kept until then [m/s]",
+        release_speed(&world, ball, time) - (GRAVITY * 1.5 * cosine).sqrt(),
+        1e-8,
+    );
+}
+
+/// Speed [m/s] that a falling body had at a time, from its energy now.
+fn release_speed(world: &World, body: BodyId, time: f64) -> f64 {
+    let state = world.state(body);
+    let fallen = world.time() - time;
+    (state.velocity + DVec2::new(0.0, GRAVITY * fallen)).length()
+}
+
+/// The last contact that ends up to a time [s]: when, and its normal. One that passes to the next feature ends too.
+fn last_end(world: &mut World, until: f64) -> (f64, DVec2) {
+    let mut last = None;
+    world
+        .advance_to(until, &mut |event| {
+            if let Event::ContactEnds(end) = event {
+                last = Some((end.time, end.contact.normal));
+            }
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    last.expect("the contact ends")
+}
+
+#[test]
+fn a_slow_disc_turns_about_the_corner_of_a_table_before_it_leaves() {
+    let mut shop = Workshop::new(TOLERANCE);
+    shop.fixed("table", block(6.0, 1.0), DVec2::new(-3.0, -0.5));
+    let speed = 1.0;
+    shop.dull("disc", disc(0.5), 1.0, thrown(-1.0, 0.5, DVec2::new(speed, 0.0)));
+    let mut world = shop.build();
+    let (_, normal) = last_end(&mut world, 3.0);
+    // Once its centre is past the corner it goes round it at 0.5 m: cos = 2/3 + v^2/(3 g r).
+    let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * 0.5);
+    within("slow disc leaves a corner: cosine", normal.y.abs() - cosine, 1e-8);
+}
+
+#[test]
+fn a_fast_disc_flies_off_the_end_of_a_table() {
+    let mut shop = Workshop::new(TOLERANCE);
+    shop.fixed("table", block(6.0, 1.0), DVec2::new(-3.0, -0.5));
+    // Faster than sqrt(g r): gravity cannot hold it to the corner.
+    let speed = 3.0;
+    let ball = shop.dull("disc", disc(0.5), 1.0, thrown(-1.5, 0.5, DVec2::new(speed, 0.0)));
+    let mut world = shop.build();
+    let start = world.state(ball).position.y;
+    let (time, _) = last_end(&mut world, 1.0);
+    within("fast disc off a table: time of leaving [s]", time - 0.5, 1e-9);
+    let fall = 0.5 * GRAVITY * 0.25;
+    let expected = DVec2::new(1.5, start - fall);
+    within("fast disc off a table: its parabola [m]", (world.state(ball).position - expected).length(), 1e-9);
+}
+
+#[test]
+fn a_block_slides_over_an_edge_and_turns_only_then() {
+    let mut shop = Workshop::new(TOLERANCE);
+    shop.fixed("table", block(6.0, 1.0), DVec2::new(-3.0, -0.5));
+    let body = shop.dull("block", block(1.0, 0.4), 1.0, thrown(-1.0, 0.2, DVec2::new(1.0, 0.0)));
+    let mut world = shop.build();
+    advance(&mut world, 0.999);
+    within("block to an edge: turned before its middle is there [rad]", world.state(body).angle, 1e-11);
+    within("block to an edge: still on its way [m]", world.state(body).position.x + 0.001, 1e-11);
+    let start = world.energy().total();
+    advance(&mut world, 1.3);
+    assert!(world.state(body).angle < -0.05, "it tips: {}", world.state(body).angle);
+    // Without friction and bounce-free contacts that only slide nothing is lost.
+    within("block to an edge: energy while tipping [J]", world.energy().total() - start, 1e-8);
+}

@@ -1,0 +1,80 @@
+//! The books: energy closes, and what nothing fixed acts on keeps momentum and angular momentum.
+
+use super::within;
+use halfgap::geometry::{DVec2, Shape};
+use halfgap::scene::Scene;
+use halfgap::{Anchor, BodyState, ConnectorKind, World};
+use halfgap_tests::mechanism::{Workshop, advance, block, disc, thrown};
+use halfgap_tests::reference_scene;
+
+/// The energy that the books leave open, as a part of the largest kinetic energy met.
+fn open_part(scene: &mut Scene, tolerance: f64) -> f64 {
+    scene.set_tolerance(tolerance, "tolerance").expect("a fine tolerance");
+    let mut world = World::from_scene(scene).expect("a world that can be built");
+    let mut turned_over: f64 = 0.0;
+    for look in 1..=100 {
+        advance(&mut world, scene.run.duration * f64::from(look) / 100.0);
+        turned_over = turned_over.max(world.energy().kinetic);
+    }
+    world.ledger().integration_error().abs() / turned_over
+}
+
+#[test]
+fn the_energy_books_close_to_the_tolerance() {
+    for name in
+        ["ball_bounce", "disc_in_bowl", "double_pendulum", "newtons_cradle", "pendulum", "two_discs_e1"]
+    {
+        let mut scene = reference_scene(&format!("exact__{name}"));
+        for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
+            let what = format!(
+                "energy books of {name} at tolerance {tolerance:.0e}, part of the energy turned over"
+            );
+            within(&what, open_part(&mut scene, tolerance), 10.0 * tolerance);
+        }
+    }
+}
+
+/// Momentum [N s] and angular momentum [N m s] about the origin.
+fn momenta(world: &World) -> (DVec2, f64) {
+    let (mut linear, mut angular) = (DVec2::ZERO, 0.0);
+    for body in world.bodies() {
+        let Some(inertia) = world.inertia(body) else { continue };
+        let state = world.state(body);
+        linear += inertia.mass * state.velocity;
+        angular +=
+            inertia.mass * state.position.perp_dot(state.velocity) + inertia.moment * state.angular_velocity;
+    }
+    (linear, angular)
+}
+
+#[test]
+fn bodies_that_nothing_holds_keep_momentum_and_angular_momentum() {
+    // A rod ties two of them, a spring three, and all collide: the ring holds the discs together for a while.
+    let mut shop = Workshop::weightless(1e-10);
+    let ring = shop.body("ring", Shape::ring(3.0, 2.8).expect("a ring"), 5.0, BodyState::default());
+    let spinning = BodyState { angular_velocity: 3.0, ..thrown(0.2, 1.0, DVec2::new(1.0, -0.5)) };
+    let block = shop.settler("block", block(1.0, 0.4), 1.0, spinning, 0.5);
+    let left = shop.body("left", disc(0.4), 2.0, thrown(-1.0, -0.5, DVec2::new(0.5, 1.5)));
+    let right = shop.dull("right", disc(0.3), 0.5, thrown(1.0, -0.5, DVec2::new(-1.0, 0.3)));
+    let end = |body| Anchor { body, point: DVec2::ZERO };
+    shop.connect(ConnectorKind::Rod { a: end(left), b: end(right), length: 2.0 }, 0.0);
+    let spring = halfgap::force::Spring::new("spring", [end(ring), end(block)], 0.5, 20.0);
+    shop.builder.add_force(std::sync::Arc::new(spring));
+    let mut world = shop.build();
+    let (linear, angular) = momenta(&world);
+    advance(&mut world, 10.0);
+    let impacts = world.statistics().impacts;
+    assert!(impacts > 10, "{impacts} impacts");
+    let (linear_now, angular_now) = momenta(&world);
+    within("free bodies, 10 s of impacts: momentum [N s]", (linear_now - linear).length(), 1e-8);
+    within("free bodies, 10 s of impacts: angular momentum [N m s]", angular_now - angular, 1e-8);
+}
+
+#[test]
+fn a_gear_in_a_ring_of_teeth_keeps_its_energy() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/gear_in_ring.toml");
+    let mut scene = Scene::read(path).expect("a scene to look at");
+    scene.set_duration(5.0, "duration").expect("a fine duration");
+    let open = open_part(&mut scene, 1e-8);
+    within("gear in a ring of teeth, 5 s: energy books, part of the energy turned over", open, 1e-7);
+}

@@ -1,0 +1,40 @@
+//! Hard cases, one module a theme: each is named for its claim and derives what it expects.
+//!
+//! `docs/stability.md` lists what is reached: run with `-- --nocapture --test-threads 1` to see the numbers.
+
+mod chains;
+mod changes;
+mod extremes;
+mod grazing;
+mod ledger;
+mod linkages;
+mod narrow;
+mod reversal;
+mod ropes;
+mod scaling;
+mod simultaneous;
+mod unsolvable;
+
+/// Tells how far off something is, and fails if that is more than allowed.
+#[track_caller]
+fn within(what: &str, error: f64, allowed: f64) {
+    println!("REACHED | {what} | {allowed:.0e} | {error:.1e}");
+    assert!(error.abs() <= allowed, "{what}: {error:e}, {allowed:e} allowed");
+}
+
+/// How far below its start [m] a ball is that falls from rest and bounces without loss at a depth [m], at a time [s].
+fn bounced(depth: f64, time: f64) -> f64 {
+    let period = 2.0 * (2.0 * depth / halfgap_tests::mechanism::GRAVITY).sqrt();
+    let since_top = time - (time / period).round() * period;
+    0.5 * halfgap_tests::mechanism::GRAVITY * since_top * since_top
+}
+
+/// Counts the impacts up to a time [s].
+#[track_caller]
+fn impacts(world: &mut halfgap::World, until: f64) -> usize {
+    let mut count = 0;
+    world
+        .advance_to(until, &mut |event| count += usize::from(event.impact().is_some()))
+        .unwrap_or_else(|error| panic!("{error}"));
+    count
+}

@@ -1,0 +1,117 @@
+//! Shapes that nearly fit, and shapes that are nearly nothing.
+
+use super::{impacts, within};
+use halfgap::BodyState;
+use halfgap::geometry::{DVec2, Shape};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+
+#[test]
+fn a_disc_in_a_ring_wider_by_1e_9_stays_in_and_keeps_its_energy() {
+    let clearance = 1e-9;
+    let mut shop = Workshop::weightless(1e-8);
+    let ring = Shape::ring(2.0, 1.0 + clearance).expect("a fine ring");
+    shop.fixed("ring", ring, DVec2::ZERO);
+    let speed = 1e-6;
+    let ball = shop.body("disc", disc(1.0), 1.0, thrown(0.0, 0.0, DVec2::new(0.6 * speed, 0.8 * speed)));
+    let mut world = shop.build();
+    let mut count = 0;
+    let mut furthest: f64 = 0.0;
+    for piece in 1..=200 {
+        count += impacts(&mut world, 1e-4 * f64::from(piece));
+        furthest = furthest.max(world.state(ball).position.length());
+    }
+    // Twice the clearance is crossed in 2e-3 s.
+    assert!((9..=25).contains(&count), "{count} impacts");
+    within("disc in a ring of radius 1 + 1e-9: off its middle [m]", furthest, clearance);
+    within(
+        "disc in a ring of radius 1 + 1e-9: speed",
+        world.state(ball).velocity.length() / speed - 1.0,
+        1e-12,
+    );
+}
+
+#[test]
+fn a_disc_hangs_in_a_ring_wider_by_1e_9_and_swings() {
+    // A pendulum of 1e-9 m: at rest at the lowest point, moved aside by a tenth of its length it swings. Too fast to
+    // follow (its frequency is sqrt(g/1e-9) = 1e5 rad/s) but not to hold.
+    let clearance = 1e-9;
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("ring", Shape::ring(2.0, 1.0 + clearance).expect("a fine ring"), DVec2::ZERO);
+    let ball = shop.dull("disc", disc(1.0), 1.0, at_rest(0.0, 0.0));
+    let mut world = shop.build();
+    advance(&mut world, 1e-2);
+    within(
+        "disc hangs in a ring of radius 1 + 1e-9: off its middle [m]",
+        world.state(ball).position.length(),
+        clearance,
+    );
+    let forces = world.contact_forces();
+    assert_eq!(forces.len(), 1);
+    within("disc hangs in a ring of radius 1 + 1e-9: force [N]", forces[0].force - GRAVITY, 1e-6);
+}
+
+#[test]
+fn a_block_that_is_askew_by_1e_9_comes_to_rest_flat() {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
+    let state = BodyState { angle: 1e-9, ..at_rest(0.0, 1.0) };
+    let body = shop.dull("block", block(2.0, 1.0), 1.0, state);
+    let mut world = shop.build();
+    advance(&mut world, 3.0);
+    let state = world.state(body);
+    within("block askew by 1e-9 rad at rest: angle [rad]", state.angle, 1e-10);
+    within("block askew by 1e-9 rad at rest: spin [rad/s]", state.angular_velocity, 1e-12);
+    assert_eq!(world.contact_forces().len(), 2);
+}
+
+#[test]
+fn two_blocks_askew_by_1e_9_meet_face_to_face() {
+    let mut shop = Workshop::weightless(1e-8);
+    let bodies = [(-2.0, 0.0, 1.0), (2.0, 1e-9, -1.0)].map(|(x, angle, speed)| {
+        let state = BodyState { angle, ..thrown(x, 0.0, DVec2::new(speed, 0.0)) };
+        shop.body(if x < 0.0 { "left" } else { "right" }, block(1.0, 1.0), 1.0, state)
+    });
+    let mut world = shop.build();
+    advance(&mut world, 4.0);
+    let energy = world.energy().kinetic;
+    within("blocks face to face, askew by 1e-9 rad: energy [J]", energy - 1.0, 1e-13);
+    let [left, right] = bodies.map(|body| world.state(body));
+    assert!(left.velocity.x < 0.0 && right.velocity.x > 0.0, "{left:?} {right:?}");
+    within(
+        "blocks face to face, askew by 1e-9 rad: momentum [N s]",
+        (left.velocity + right.velocity).length(),
+        1e-14,
+    );
+}
+
+/// A triangle with a corner of one degree, its length 1 m, the corner at the lower end.
+fn needle() -> Shape {
+    let half = 0.5f64.to_radians().tan();
+    Shape::polygon(&[DVec2::new(0.0, 0.0), DVec2::new(half, 1.0), DVec2::new(-half, 1.0)]).expect("a needle")
+}
+
+#[test]
+fn a_needle_falls_on_its_point_and_bounces_straight() {
+    let mut shop = Workshop::new(1e-10);
+    shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
+    let body = shop.body("needle", needle(), 1.0, at_rest(0.0, 2.0 / 3.0 + 1.25));
+    let mut world = shop.build();
+    advance(&mut world, 1.0);
+    let state = world.state(body);
+    within("needle of 1 degree on its point: height [m]", state.position.y - (2.0 / 3.0 + 1.25), 1e-9);
+    within("needle of 1 degree on its point: spin [rad/s]", state.angular_velocity, 1e-10);
+}
+
+#[test]
+fn two_needles_that_meet_point_to_point_keep_energy_and_momentum() {
+    let mut shop = Workshop::weightless(1e-10);
+    let up = shop.body("up", needle(), 1.0, thrown(0.0, 1.0, DVec2::new(0.0, -1.0)));
+    let down = BodyState { angle: std::f64::consts::PI, ..thrown(1e-3, -1.0, DVec2::new(0.0, 1.0)) };
+    let down = shop.body("down", needle(), 1.0, down);
+    let mut world = shop.build();
+    advance(&mut world, 3.0);
+    let momentum = world.state(up).velocity + world.state(down).velocity;
+    assert!(world.statistics().impacts > 0);
+    within("needles point to point: momentum [N s]", momentum.length(), 1e-14);
+    within("needles point to point: energy [J]", world.energy().kinetic - 1.0, 1e-13);
+}

@@ -1,0 +1,113 @@
+//! Things that happen at one moment.
+
+use super::{impacts, within};
+use halfgap::geometry::DVec2;
+use halfgap::{BodyId, ImpactLaw, WorldBuilder, WorldSettings};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+
+#[test]
+fn a_block_that_lands_flat_on_two_corners_does_not_turn() {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
+    let body = shop.settler("block", block(2.0, 1.0), 1.0, at_rest(0.3, 1.75), 0.5);
+    let mut world = shop.build();
+    // It falls 1.25 m in 0.5 s, and is up again at a quarter of that after as long a half of it.
+    assert_eq!(impacts(&mut world, 0.75), 1);
+    let state = world.state(body);
+    within("block flat on two corners: turned [rad]", state.angle, 1e-15);
+    within("block flat on two corners: spin [rad/s]", state.angular_velocity, 1e-14);
+    within("block flat on two corners: height [m]", state.position.y - (0.5 + 0.25 * 1.25), 1e-9);
+    advance(&mut world, 10.0);
+    let state = world.state(body);
+    within("block flat on two corners, at rest: turned [rad]", state.angle, 1e-12);
+    within("block flat on two corners, at rest: moved aside [m]", state.position.x - 0.3, 1e-11);
+}
+
+fn world_with(law: ImpactLaw) -> WorldBuilder {
+    WorldBuilder::new(WorldSettings { impact_law: law, ..WorldSettings::default() })
+}
+
+fn add(builder: &mut WorldBuilder, name: &str, x: f64, y: f64, speed: f64) -> BodyId {
+    let state = thrown(x, y, DVec2::new(speed, 0.0));
+    builder.add(halfgap::BodySpec::movable(name, disc(0.5), 1.0, state))
+}
+
+#[test]
+fn three_discs_at_once_share_as_the_books_say() {
+    // The middle disc meets two that touch, at 30 degrees to its way. At once: it turns back with a fifth of its speed,
+    // and each of the two leaves along its normal with 2 sqrt(3)/5 of it (momentum and energy).
+    let mut builder = world_with(ImpactLaw::Simultaneous);
+    let gap = 1e-10;
+    let striker = add(&mut builder, "striker", -3.0, 0.0, 1.0);
+    let half = 0.5 + 0.25 * gap;
+    let pair = [add(&mut builder, "upper", 0.0, half, 0.0), add(&mut builder, "lower", 0.0, -half, 0.0)];
+    let mut world = builder.build().expect("a fine world");
+    assert_eq!(impacts(&mut world, 4.0), 1);
+    within("three discs at once: striker [m/s]", world.state(striker).velocity.x + 0.2, 1e-9);
+    within("three discs at once: striker aside [m/s]", world.state(striker).velocity.y, 1e-14);
+    let along = DVec2::from_angle(std::f64::consts::FRAC_PI_6) * (2.0 * 3f64.sqrt() / 5.0);
+    within("three discs at once: upper [m/s]", (world.state(pair[0]).velocity - along).length(), 1e-9);
+    let mirrored = world.state(pair[0]).velocity - world.state(pair[1]).velocity * DVec2::new(1.0, -1.0);
+    within("three discs at once: asymmetry [m/s]", mirrored.length(), 1e-14);
+}
+
+/// Strikers and resting discs in a row, all a target gap apart: speeds after the impact.
+fn cradle(strikers: usize, resting: usize) -> Vec<f64> {
+    let mut builder = world_with(ImpactLaw::Hybrid);
+    let pitch = 1.0 + 0.5e-10;
+    let bodies: Vec<BodyId> = (0..strikers + resting)
+        .map(|index| {
+            let moving = index < strikers;
+            let x = index as f64 * pitch - if moving { 1.0 } else { 0.0 };
+            add(&mut builder, &format!("disc{index}"), x, 0.0, if moving { 1.0 } else { 0.0 })
+        })
+        .collect();
+    let mut world = builder.build().expect("a fine world");
+    advance(&mut world, 1.5);
+    bodies.iter().map(|&body| world.state(body).velocity.x).collect()
+}
+
+#[test]
+fn as_many_discs_leave_a_cradle_as_strike_it() {
+    for (strikers, resting) in [(1, 4), (2, 3), (3, 2), (3, 5)] {
+        let speeds = cradle(strikers, resting);
+        let off = speeds
+            .iter()
+            .enumerate()
+            .map(|(index, speed)| (speed - if index >= resting { 1.0 } else { 0.0 }).abs());
+        let what = format!("cradle, {strikers} strike {resting}: speeds [m/s]");
+        within(&what, off.fold(0.0, f64::max), 1e-13);
+    }
+}
+
+#[test]
+fn the_last_of_twenty_discs_leaves_with_the_speed_of_the_first() {
+    let speeds = cradle(1, 19);
+    within("20 discs in a row: the last [m/s]", speeds[19] - 1.0, 1e-13);
+    within(
+        "20 discs in a row: the others [m/s]",
+        speeds[..19].iter().map(|v| v.abs()).fold(0.0, f64::max),
+        1e-13,
+    );
+}
+
+#[test]
+fn a_symmetric_fall_into_a_wedge_stays_symmetric() {
+    // Two slopes of 45 degrees; a disc falls on both at once without bounce and rests in the wedge.
+    let mut shop = Workshop::new(1e-8);
+    for (name, side) in [("left", -1.0), ("right", 1.0)] {
+        let mut spec = halfgap::BodySpec::fixed(name, block(10.0, 1.0), DVec2::new(3.0 * side, 3.0));
+        spec.state.angle = side * std::f64::consts::FRAC_PI_4;
+        shop.builder.add(spec);
+    }
+    let ball = shop.dull("ball", disc(0.5), 2.0, at_rest(0.0, 4.0));
+    let mut world = shop.build();
+    advance(&mut world, 5.0);
+    within("disc in a wedge: off the middle [m]", world.state(ball).position.x, 1e-12);
+    within("disc in a wedge: velocity [m/s]", world.state(ball).velocity.length(), 1e-12);
+    let forces = world.contact_forces();
+    assert_eq!(forces.len(), 2);
+    let each = 2.0 * GRAVITY / 2f64.sqrt();
+    let off = forces.iter().map(|row| (row.force - each).abs()).fold(0.0, f64::max);
+    within("disc in a wedge: forces [N]", off, 1e-11);
+}
