@@ -1,0 +1,17 @@
+//! Speed against error: halfgap and its peers on scenes whose answers are known.
+//!
+//! `scene` is the neutral description, `scenes` a file each, `reference` how answers are computed independently of every
+//! engine, `engines` a file each, `measure` one run, `sweep` all of them, `csv` the table. The bench `speed_vs_error` drives it:
+//!
+//! ```text
+//! cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]...
+//! ```
+
+#![forbid(unsafe_code)]
+
+pub mod csv;
+pub mod engines;
+pub mod measure;
+pub mod scene;
+pub mod scenes;
+pub mod sweep;
