@@ -53,9 +53,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if !options.only.is_empty() && !options.only.iter().any(|name| scene.name.contains(name)) {
             continue;
         }
-        let found = sweep::halfgap_rows(&scene, &options.effort);
-        found.iter().for_each(print);
-        rows.extend(found);
+        for sweep in [sweep::halfgap_rows, sweep::rapier_rows, sweep::box2d_rows] {
+            let found = sweep(&scene, &options.effort);
+            found.iter().for_each(print);
+            rows.extend(found);
+        }
     }
     std::fs::write(options.out.join("runs.csv"), csv::table(&rows))?;
     Ok(())

@@ -12,6 +12,7 @@
 pub mod csv;
 pub mod engines;
 pub mod measure;
+mod reference;
 pub mod scene;
 pub mod scenes;
 pub mod sweep;

@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 /// How often a run is repeated.
 #[derive(Clone, Copy, Debug)]
 pub struct Repeats {
+    /// A run that takes longer is given up.
+    pub longest: Duration,
     /// At least so often.
     pub least: usize,
     /// At most so often.
@@ -21,9 +23,11 @@ pub struct Repeats {
 
 impl Repeats {
     /// For a report.
-    pub const THOROUGH: Self = Self { least: 3, most: 101, patience: Duration::from_millis(400) };
+    pub const THOROUGH: Self =
+        Self { longest: Duration::from_secs(60), least: 3, most: 101, patience: Duration::from_millis(400) };
     /// For a look.
-    pub const QUICK: Self = Self { least: 1, most: 11, patience: Duration::from_millis(20) };
+    pub const QUICK: Self =
+        Self { longest: Duration::from_secs(5), least: 1, most: 11, patience: Duration::from_millis(20) };
 }
 
 /// What a run cost and how far it was off.
@@ -50,7 +54,7 @@ pub struct Measurement {
 /// # Errors
 /// The engine cannot run it to its end.
 pub fn measure(engine: &dyn Engine, scene: &Scene, repeats: &Repeats) -> Result<Measurement, EngineError> {
-    let mut measurement = first_pass(engine, scene)?;
+    let mut measurement = first_pass(engine, scene, repeats)?;
     let mut walls = Vec::new();
     let started = Instant::now();
     while walls.len() < repeats.least || (walls.len() < repeats.most && started.elapsed() < repeats.patience)
@@ -63,7 +67,8 @@ pub fn measure(engine: &dyn Engine, scene: &Scene, repeats: &Repeats) -> Result<
 }
 
 /// Runs a scene once, with a look at every time of the grid.
-fn first_pass(engine: &dyn Engine, scene: &Scene) -> Result<Measurement, EngineError> {
+fn first_pass(engine: &dyn Engine, scene: &Scene, repeats: &Repeats) -> Result<Measurement, EngineError> {
+    let started = Instant::now();
     let mut session = engine.start(scene)?;
     let mut states = Vec::new();
     session.write_states(&mut states);
@@ -73,6 +78,9 @@ fn first_pass(engine: &dyn Engine, scene: &Scene) -> Result<Measurement, EngineE
     let times = (scene.duration / scene.check_grid).round() as u64;
     for time in (1..=times).map(|index| index as f64 * scene.check_grid) {
         session.advance(time)?;
+        if started.elapsed() > repeats.longest {
+            return Err(EngineError::TooSlow { seconds: repeats.longest.as_secs_f64(), time });
+        }
         session.write_states(&mut states);
         penetration = penetration.max(session.penetration());
         connector_error = connector_error.max(scene.connector_error(&states));

@@ -123,7 +123,7 @@ impl Session for Running {
         Some(self.world.statistics().impacts)
     }
 
-    fn penetration(&self) -> f64 {
+    fn penetration(&mut self) -> f64 {
         self.world.statistics().smallest_gap.map_or(0.0, |gap| (-gap).max(0.0))
     }
 }

@@ -1,6 +1,9 @@
 //! The engines that are measured, behind one trait: build a scene, advance it, read states.
 
+pub mod box2d;
 pub mod halfgap;
+pub mod rapier;
+mod segments;
 
 use crate::scene::Scene;
 use ::halfgap::BodyState;
@@ -22,6 +25,14 @@ pub enum EngineError {
     /// It stopped early.
     #[error("stopped early: {0}")]
     Stopped(String),
+    /// It was given up.
+    #[error("given up after {seconds} s at t = {time} s")]
+    TooSlow {
+        /// The patience it had [s].
+        seconds: f64,
+        /// How far it got [s].
+        time: f64,
+    },
 }
 
 /// An engine with its settings.
@@ -60,5 +71,5 @@ pub trait Session {
     fn events(&self) -> Option<u64>;
 
     /// The deepest overlap [m] that the engine itself sees at the present time, or has seen since the start.
-    fn penetration(&self) -> f64;
+    fn penetration(&mut self) -> f64;
 }
