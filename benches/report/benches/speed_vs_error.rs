@@ -1,27 +1,52 @@
 //! Runs every scene with every engine and writes table and plots to `target/speed-vs-error`.
 //!
-//! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--out FOLDER]`
+//! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
+//! [--merge FILE]... [--passes N]`
+//!
+//! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an earlier table,
+//! and `--passes` goes through everything so many times: of equal runs the least time is kept, for a machine may be busy.
 
-use halfgap_report::sweep::{Effort, Row};
-use halfgap_report::{csv, scenes, sweep};
+use halfgap_report::scene::Scene;
+use halfgap_report::sweep::{Effort, Row, merge};
+use halfgap_report::{csv, levels, plot, scenes, sweep};
+use std::error::Error;
+use std::fs;
 use std::path::PathBuf;
+
+type Sweep = fn(&Scene, &Effort) -> Vec<Row>;
+
+/// The engines and how each is swept.
+const SWEEPS: [(&str, Sweep); 3] =
+    [("halfgap", sweep::halfgap_rows), ("rapier", sweep::rapier_rows), ("box2d", sweep::box2d_rows)];
 
 struct Options {
     effort: Effort,
     only: Vec<String>,
+    engine: Option<String>,
     out: PathBuf,
+    merge: Vec<PathBuf>,
+    passes: usize,
 }
 
 fn options() -> Result<Options, String> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../target/speed-vs-error");
-    let mut options = Options { effort: Effort::thorough(), only: Vec::new(), out: folder };
+    let mut options = Options {
+        effort: Effort::thorough(),
+        only: Vec::new(),
+        engine: None,
+        out: PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../target/speed-vs-error"),
+        merge: Vec::new(),
+        passes: 1,
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} wants a value"));
         match word.as_str() {
             "--quick" => options.effort = Effort::quick(),
             "--only" => options.only.push(value()?),
+            "--engine" => options.engine = Some(value()?),
             "--out" => options.out = value()?.into(),
+            "--merge" => options.merge.push(value()?.into()),
+            "--passes" => options.passes = value()?.parse().map_err(|_| "--passes wants a number")?,
             // What cargo adds.
             "--bench" => {}
             other => return Err(format!("unknown option {other}")),
@@ -31,34 +56,61 @@ fn options() -> Result<Options, String> {
 }
 
 fn print(row: &Row) {
-    let (scene, engine, settings) = (&row.scene, row.engine, &row.settings);
+    let (scene, engine, settings) = (&row.scene, &row.engine, &row.settings);
     match &row.outcome {
         Ok(run) => {
             let error = run.error.map_or("-".to_owned(), |error| format!("{error:.1e}"));
-            let milliseconds = 1e3 * run.wall_per_second;
+            let (milliseconds, steps) = (1e3 * run.wall_per_second, run.steps);
             println!(
-                "{scene:20} {engine:8} {settings:40} {milliseconds:12.4} ms/s  error {error:>8}  steps {}",
-                run.steps
+                "{scene:20} {engine:8} {settings:50} {milliseconds:12.4} ms/s  error {error:>8}  steps {steps}"
             );
         }
-        Err(why) => println!("{scene:20} {engine:8} {settings:40} {why}"),
+        Err(why) => println!("{scene:20} {engine:8} {settings:50} {why}"),
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let options = options()?;
-    std::fs::create_dir_all(&options.out)?;
+fn run_all(options: &Options, scenes: &[Scene]) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut rows = Vec::new();
-    for scene in scenes::all() {
-        if !options.only.is_empty() && !options.only.iter().any(|name| scene.name.contains(name)) {
-            continue;
-        }
-        for sweep in [sweep::halfgap_rows, sweep::rapier_rows, sweep::box2d_rows] {
-            let found = sweep(&scene, &options.effort);
+    for file in &options.merge {
+        merge(&mut rows, csv::read(&fs::read_to_string(file)?)?);
+    }
+    for scene in std::iter::repeat_n(scenes, options.passes).flatten() {
+        for (engine, sweep) in SWEEPS {
+            if options.engine.as_ref().is_some_and(|only| only != engine) {
+                continue;
+            }
+            let found = sweep(scene, &options.effort);
             found.iter().for_each(print);
-            rows.extend(found);
+            merge(&mut rows, found);
+            // A long sweep that is broken off leaves what it has.
+            fs::write(options.out.join("runs.csv"), csv::table(&rows))?;
         }
     }
-    std::fs::write(options.out.join("runs.csv"), csv::table(&rows))?;
+    Ok(rows)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = options()?;
+    fs::create_dir_all(&options.out)?;
+    let is_wanted =
+        |name: &str| options.only.is_empty() || options.only.iter().any(|part| name.contains(part));
+    let scenes = scenes::wanted(is_wanted);
+    for scene in &scenes {
+        println!(
+            "{}: {}; {}, good to {:.0e} m",
+            scene.name, scene.about, scene.reference, scene.reference_error
+        );
+    }
+    let rows = run_all(&options, &scenes)?;
+    let answered = scenes.iter().filter(|scene| scene.has_answer());
+    let names: Vec<String> = answered.map(|scene| scene.name.clone()).collect();
+    fs::write(options.out.join("runs.csv"), csv::table(&rows))?;
+    for name in &names {
+        fs::write(options.out.join(format!("{name}.svg")), plot::scene(&rows, name)?)?;
+    }
+    fs::write(options.out.join("overview.svg"), plot::overview(&rows, &names)?)?;
+    let tables = format!("{}\n{}", levels::table(&rows, &names), levels::piles(&rows));
+    fs::write(options.out.join("tables.md"), &tables)?;
+    println!("\n{tables}");
     Ok(())
 }

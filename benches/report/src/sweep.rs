@@ -6,6 +6,7 @@ use crate::engines::halfgap::Halfgap;
 use crate::engines::rapier::{Joints, Rapier, Tuning};
 use crate::measure::{Measurement, Repeats, measure};
 use crate::scene::Scene;
+use glam::DVec2;
 
 /// A run that was measured, or why there is none.
 #[derive(Clone, Debug)]
@@ -13,15 +14,47 @@ pub struct Row {
     /// Name of the scene.
     pub scene: String,
     /// Name of the engine.
-    pub engine: &'static str,
+    pub engine: String,
     /// Its version.
-    pub version: &'static str,
+    pub version: String,
     /// Its settings.
     pub settings: String,
     /// How far the known states themselves may be off [m].
     pub reference_error: f64,
     /// What was measured, or what kept it from that.
     pub outcome: Result<Measurement, String>,
+}
+
+impl Row {
+    /// Time [s] per simulated second and error [m], if the run was done and its answer is known.
+    #[must_use]
+    pub fn time_and_error(&self) -> Option<(f64, f64)> {
+        let run = self.outcome.as_ref().ok()?;
+        Some((run.wall_per_second, run.error?))
+    }
+}
+
+/// Adds rows; a run that is there already keeps the lesser time.
+pub fn merge(rows: &mut Vec<Row>, more: Vec<Row>) {
+    for row in more {
+        let same = |old: &&mut Row| {
+            old.scene == row.scene
+                && old.engine == row.engine
+                && old.version == row.version
+                && old.settings == row.settings
+        };
+        match rows.iter_mut().find(same) {
+            Some(old) => keep_faster(old, row),
+            None => rows.push(row),
+        }
+    }
+}
+
+fn keep_faster(old: &mut Row, new: Row) {
+    let time = |row: &Row| row.outcome.as_ref().map_or(f64::INFINITY, |run| run.wall_per_second);
+    if time(&new) < time(old) {
+        *old = new;
+    }
 }
 
 /// How thorough a sweep is.
@@ -46,7 +79,7 @@ impl Effort {
         let tolerances = (3..=12).map(|digits| 10_f64.powi(-digits)).collect();
         Self {
             repeats: Repeats::THOROUGH,
-            longest_run: 6.0,
+            longest_run: 8.0,
             tolerances,
             segments: vec![64, 256, 1024],
             variants: 3,
@@ -71,8 +104,8 @@ impl Effort {
 pub fn run(engine: &dyn Engine, scene: &Scene, effort: &Effort) -> Row {
     Row {
         scene: scene.name.clone(),
-        engine: engine.name(),
-        version: engine.version(),
+        engine: engine.name().to_owned(),
+        version: engine.version().to_owned(),
         settings: engine.settings(),
         reference_error: scene.reference_error,
         outcome: measure(engine, scene, &effort.repeats).map_err(|error| error.to_string()),
@@ -112,8 +145,11 @@ fn refine(make: &dyn Fn(u32) -> Box<dyn Engine>, scene: &Scene, effort: &Effort,
 #[must_use]
 pub fn rapier_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     let mut rows = Vec::new();
+    // Reduced coordinates take no velocities at the start.
+    let at_rest = scene.bodies.iter().all(|body| body.start.velocity == DVec2::ZERO);
+    let is_linkage = !scene.connectors.is_empty() && !scene.collisions && at_rest;
     let joints: &[Joints] =
-        if scene.connectors.is_empty() { &[Joints::Impulse] } else { &[Joints::Impulse, Joints::Multibody] };
+        if is_linkage { &[Joints::Impulse, Joints::Multibody] } else { &[Joints::Impulse] };
     let variants = [(Tuning::Stock, 4), (Tuning::Accurate, 4), (Tuning::Accurate, 16)];
     for &segments in segments(scene, effort) {
         for &joints in joints {

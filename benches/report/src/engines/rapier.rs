@@ -161,7 +161,12 @@ impl Running {
                     .contacts_enabled(false)
                     .local_anchor1(vector(a.point))
                     .local_anchor2(vector(b.point));
-                (self.handle(a), self.handle(b), joint.into())
+                let (from, to) = (self.handle(a), self.handle(b));
+                let mut joint: GenericJoint = joint.into();
+                // In reduced coordinates a joint starts where its frames coincide.
+                let turn = self.bodies[from].rotation().inverse() * *self.bodies[to].rotation();
+                joint.local_frame1.rotation = turn;
+                (from, to, joint)
             }
             Connector::Guide { body, point, axis } => {
                 let joint = PrismaticJointBuilder::new(vector(*axis)).local_anchor1(vector(*point));

@@ -13,9 +13,6 @@ pub(crate) struct Double {
 }
 
 impl Double {
-    /// Relative rounding of one operation.
-    pub(crate) const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
-
     /// The sum of two numbers, exactly.
     #[must_use]
     pub(crate) fn sum(a: f64, b: f64) -> Self {
@@ -101,13 +98,16 @@ impl Div for Double {
 mod tests {
     use super::*;
 
+    /// Relative rounding of one operation.
+    const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
+
     #[test]
     fn thirds_and_roots_have_thirty_digits() {
         let (one, three) = (Double::from(1.0), Double::from(3.0));
         let rest = one / three * three - one;
-        assert!(rest.value().abs() < 4.0 * Double::EPSILON, "{rest:?}");
+        assert!(rest.value().abs() < 4.0 * EPSILON, "{rest:?}");
         let root = Double::from(2.0).sqrt();
-        assert!((root * root - Double::from(2.0)).value().abs() < 8.0 * Double::EPSILON);
+        assert!((root * root - Double::from(2.0)).value().abs() < 8.0 * EPSILON);
         assert!(root.low != 0.0);
     }
 }

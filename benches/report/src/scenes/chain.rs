@@ -136,8 +136,7 @@ mod tests {
 
     #[test]
     fn two_links_are_the_double_pendulum_of_the_tests() {
-        let known = super::super::exact::scenes();
-        let known = known.iter().find(|scene| scene.name == "double_pendulum").expect("it is there");
+        let known = super::super::exact::read("double_pendulum", 0.5);
         let angles: Vec<f64> = known.bodies.iter().map(|body| body.start.angle).collect();
         let times: Vec<f64> = known.checks.iter().map(|check| check.time).collect();
         let (checks, error) = Chain { links: 2, length: 1.0, width: 0.1 }.checks(&angles, &times);

@@ -11,21 +11,8 @@ use std::path::Path;
 /// What the states in the files are good to [m].
 const REFERENCE_ERROR: f64 = 1e-13;
 
-/// File names, and the grid [s] of their check times.
-const FILES: [(&str, f64); 6] = [
-    ("ball_bounce", 0.05),
-    ("two_discs_e1", 0.5),
-    ("newtons_cradle", 0.5),
-    ("pendulum", 0.5),
-    ("double_pendulum", 0.5),
-    ("disc_in_bowl", 0.5),
-];
-
-pub(super) fn scenes() -> Vec<Scene> {
-    FILES.iter().map(|(name, grid)| read(name, *grid)).collect()
-}
-
-fn read(name: &str, grid: f64) -> Scene {
+/// Reads a scene by its name, with the grid [s] of its check times.
+pub(super) fn read(name: &str, grid: f64) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/scenes");
     let data = halfgap::scene::Scene::read(folder.join(format!("exact__{name}.json")))
         .expect("the scenes of the tests can be read");
