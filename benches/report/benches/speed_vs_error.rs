@@ -1,14 +1,15 @@
 //! Runs every scene with every engine and writes table and plots to `target/speed-vs-error`.
 //!
 //! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
-//! [--merge FILE]... [--passes N]`
+//! [--merge FILE]... [--passes N] [--gas]`
 //!
 //! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an earlier table,
 //! and `--passes` goes through everything so many times: of equal runs the least time is kept, for a machine may be busy.
+//! `--gas` measures impacts per second of free bodies instead.
 
 use halfgap_report::scene::Scene;
 use halfgap_report::sweep::{Effort, Row, merge};
-use halfgap_report::{csv, levels, plot, scenes, sweep};
+use halfgap_report::{csv, gas, levels, plot, scenes, sweep};
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
@@ -26,6 +27,7 @@ struct Options {
     out: PathBuf,
     merge: Vec<PathBuf>,
     passes: usize,
+    gas: bool,
 }
 
 fn options() -> Result<Options, String> {
@@ -36,6 +38,7 @@ fn options() -> Result<Options, String> {
         out: PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../target/speed-vs-error"),
         merge: Vec::new(),
         passes: 1,
+        gas: false,
     };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
@@ -47,6 +50,7 @@ fn options() -> Result<Options, String> {
             "--out" => options.out = value()?.into(),
             "--merge" => options.merge.push(value()?.into()),
             "--passes" => options.passes = value()?.parse().map_err(|_| "--passes wants a number")?,
+            "--gas" => options.gas = true,
             // What cargo adds.
             "--bench" => {}
             other => return Err(format!("unknown option {other}")),
@@ -92,6 +96,11 @@ fn run_all(options: &Options, scenes: &[Scene]) -> Result<Vec<Row>, Box<dyn Erro
 fn main() -> Result<(), Box<dyn Error>> {
     let options = options()?;
     fs::create_dir_all(&options.out)?;
+    if options.gas {
+        let rows = gas::measure();
+        println!("{}", gas::table(&rows));
+        return Ok(fs::write(options.out.join("gas.svg"), plot::gas(&rows)?)?);
+    }
     let is_wanted =
         |name: &str| options.only.is_empty() || options.only.iter().any(|part| name.contains(part));
     let scenes = scenes::wanted(is_wanted);

@@ -2,7 +2,7 @@
 //!
 //! `scene` is the neutral description, `scenes` a file each, `reference` how answers are computed independently of every
 //! engine, `engines` a file each, `measure` one run, `sweep` all of them, `csv` the table of runs, `levels` the times per level
-//! of error, `plot` the pictures. The bench `speed_vs_error` drives it:
+//! of error, `plot` the pictures, `gas` impacts per second. The bench `speed_vs_error` drives it:
 //!
 //! ```text
 //! cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME]
@@ -12,6 +12,7 @@
 
 pub mod csv;
 pub mod engines;
+pub mod gas;
 pub mod levels;
 pub mod measure;
 pub mod plot;

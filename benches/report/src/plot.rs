@@ -2,6 +2,7 @@
 //!
 //! Faint dots are all runs; the line joins those than which none is both faster and better. Left and low is good.
 
+use crate::gas::GasRow;
 use crate::sweep::Row;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -16,6 +17,42 @@ const ENGINES: [(&str, RGBColor); 3] =
     [("halfgap", RGBColor(0, 114, 178)), ("rapier", RGBColor(213, 94, 0)), ("box2d", RGBColor(0, 158, 115))];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Cost of an impact over the number of discs, and a cost that grows as its logarithm, from the same start.
+///
+/// # Errors
+/// It cannot be drawn.
+pub fn gas(rows: &[GasRow]) -> Result<String, Box<dyn Error>> {
+    let discs = rows.iter().filter(|row| row.shape == "discs");
+    let costs: Vec<(f64, f64)> = discs.map(|row| (row.count as f64, 1e6 * row.per_impact)).collect();
+    let highest = costs.iter().map(|(_, cost)| *cost).fold(1.0, f64::max);
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, (600, 380)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let mut chart = ChartBuilder::on(&root)
+            .margin(10)
+            .x_label_area_size(40)
+            .y_label_area_size(50)
+            .build_cartesian_2d((80.0..12_500.0).log_scale(), 0.0..1.5 * highest)?;
+        let mut mesh = chart.configure_mesh();
+        mesh.disable_mesh().x_desc("discs in the box").y_desc("us per impact");
+        mesh.label_style(("sans-serif", 14)).draw()?;
+        let color = ENGINES[0].1;
+        chart.draw_series(LineSeries::new(costs.iter().copied(), color.stroke_width(2)))?;
+        chart.draw_series(costs.iter().map(|&cost| Circle::new(cost, 4, color.filled())))?;
+        if let Some(&(first, cost)) = costs.first() {
+            let logarithm = costs.iter().map(|&(count, _)| (count, cost * count.ln() / first.ln()));
+            chart
+                .draw_series(LineSeries::new(logarithm, BLACK.mix(0.4)))?
+                .label("growing as log N")
+                .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], BLACK.mix(0.4)));
+        }
+        chart.configure_series_labels().label_font(("sans-serif", 14)).draw()?;
+        root.present()?;
+    }
+    Ok(text)
+}
 
 /// Sizes [pixel] of a panel's parts.
 struct Style {
@@ -80,6 +117,7 @@ fn panel(area: &Area<'_>, rows: &[Row], name: &str, style: &Style) -> Result<(),
     let mut chart = ChartBuilder::on(area)
         .caption(name.replace('_', " "), ("sans-serif", style.title))
         .margin(6)
+        .margin_right(18)
         .x_label_area_size(2 * style.label + 6)
         .y_label_area_size(4 * style.label)
         .build_cartesian_2d((ERRORS.0..ERRORS.1).log_scale(), (TIMES.0..TIMES.1).log_scale())?;

@@ -81,7 +81,7 @@ impl Effort {
             repeats: Repeats::THOROUGH,
             longest_run: 8.0,
             tolerances,
-            segments: vec![64, 256, 1024],
+            segments: vec![64, 512, 4096],
             variants: 3,
         }
     }

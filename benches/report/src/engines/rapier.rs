@@ -182,7 +182,12 @@ impl Running {
             }
             Joints::Multibody => {
                 let inserted = self.multibody_joints.insert(from, to, joint, true);
-                inserted.map(|_| ()).ok_or(unsupported("closed loops in reduced coordinates"))
+                let handle = inserted.ok_or(unsupported("closed loops in reduced coordinates"))?;
+                // It damps such joints unless told otherwise.
+                if let Some((multibody, _)) = self.multibody_joints.get_mut(handle) {
+                    multibody.damping_mut().fill(0.0);
+                }
+                Ok(())
             }
         }
     }
