@@ -105,10 +105,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         |name: &str| options.only.is_empty() || options.only.iter().any(|part| name.contains(part));
     let scenes = scenes::wanted(is_wanted);
     for scene in &scenes {
-        println!(
-            "{}: {}; {}, good to {:.0e} m",
-            scene.name, scene.about, scene.reference, scene.reference_error
-        );
+        let answer = match scene.has_answer() {
+            true => format!("{}, good to {:.0e} m", scene.reference, scene.reference_error),
+            false => "nothing is known but its cost".to_owned(),
+        };
+        println!("{}: {}; {answer}", scene.name, scene.about);
     }
     let rows = run_all(&options, &scenes)?;
     let answered = scenes.iter().filter(|scene| scene.has_answer());

@@ -48,7 +48,8 @@ pub fn gas(rows: &[GasRow]) -> Result<String, Box<dyn Error>> {
                 .label("growing as log N")
                 .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], BLACK.mix(0.4)));
         }
-        chart.configure_series_labels().label_font(("sans-serif", 14)).draw()?;
+        let mut labels = chart.configure_series_labels();
+        labels.position(SeriesLabelPosition::UpperLeft).label_font(("sans-serif", 14)).draw()?;
         root.present()?;
     }
     Ok(text)
@@ -134,7 +135,7 @@ fn panel(area: &Area<'_>, rows: &[Row], name: &str, style: &Style) -> Result<(),
     mesh.draw()?;
     for (engine, color) in ENGINES {
         let runs = runs_of(rows, name, engine);
-        let dots = runs.iter().map(|&run| Circle::new(run, style.dot - 1, color.mix(0.3).filled()));
+        let dots = runs.iter().map(|&run| Circle::new(run, style.dot - 1, color.mix(0.5).filled()));
         chart.draw_series(dots)?;
         let best = frontier(runs);
         let line = chart.draw_series(LineSeries::new(best.iter().copied(), color.stroke_width(2)))?;
@@ -146,7 +147,7 @@ fn panel(area: &Area<'_>, rows: &[Row], name: &str, style: &Style) -> Result<(),
     if style.described {
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
+            .position(SeriesLabelPosition::LowerRight)
             .label_font(("sans-serif", style.label))
             .draw()?;
     }

@@ -4,12 +4,13 @@ use super::segments::corners;
 use super::{Engine, EngineError, Session};
 use crate::scene::{Body, Connector, End, Scene, Shape};
 use boxdd::prelude::{
-    BodyBuilder, BodyId, BodyType, ChainDef, ConstraintTuning, Filter, Foundation, JointBase, MassData,
-    Position, PrismaticJointDef, RevoluteJointDef, ShapeDef, SurfaceMaterial, Vec2, World, WorldBuilder,
-    shapes,
+    BodyBuilder, BodyId, BodyType, ChainDef, ConstraintTuning, Filter, Foundation, FoundationConfig,
+    JointBase, MassData, Position, PrismaticJointDef, RevoluteJointDef, ShapeDef, SurfaceMaterial, Vec2,
+    World, WorldBuilder, shapes,
 };
 use glam::DVec2;
 use halfgap::BodyState;
+use std::sync::Arc;
 
 /// No limit on speeds [m/s], in its single precision.
 const NO_LIMIT: f32 = 1e9;
@@ -69,7 +70,7 @@ struct Running {
 
 impl Running {
     fn new(settings: &Box2d, scene: &Scene) -> Result<Self, EngineError> {
-        let foundation = Foundation::initialize_default().map_err(refused)?;
+        let foundation = foundation()?;
         let definition = WorldBuilder::from(foundation.world_def())
             .gravity(vector(scene.gravity * f64::from(settings.scale)))
             .enable_sleep(false)
@@ -242,6 +243,16 @@ impl Session for Running {
         }
         deepest / self.scale
     }
+}
+
+/// The library itself, with its settings for all worlds. It writes a line to standard output wherever a disc meets many segments
+/// at once, which is no fault.
+fn foundation() -> Result<&'static Foundation, EngineError> {
+    if let Some(foundation) = Foundation::get() {
+        return Ok(foundation);
+    }
+    let silent = FoundationConfig::default().with_log_hook(Arc::new(|_| {}));
+    Foundation::initialize(silent).map_err(refused)
 }
 
 /// The state of a body that cannot be read any more: as wrong as can be.
