@@ -1,7 +1,9 @@
 //! The command line.
 
 use crate::solve::SolveArgs;
+use crate::vary::Vary;
 use clap::{Parser, Subcommand};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// Exact, fast 2D rigid-body mechanics.
@@ -20,6 +22,8 @@ pub(crate) enum Command {
     Run(RunOptions),
     /// Run scenes that have expected states, and compare.
     Check(CheckOptions),
+    /// Run a scene many times, one of its numbers varied, on all cores.
+    Sweep(SweepOptions),
     /// Solve one contact problem from a file and explain the answer.
     Solve(SolveArgs),
 }
@@ -62,4 +66,26 @@ pub(crate) struct CheckOptions {
     /// Relative accuracy, instead of the scenes'.
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct SweepOptions {
+    /// The scene, a .toml or .json file.
+    pub(crate) scene: PathBuf,
+    /// The number to vary and its values: N of them from A to B, evenly, ends included. FIELD is a place in the scene, such as
+    /// body.ball.elasticity, body[0].position[1] or run.tolerance.
+    #[arg(long, value_name = "FIELD=A..B/N", allow_hyphen_values = true)]
+    pub(crate) vary: Vary,
+    /// Write the table with the states at the end to this CSV file.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON object with all results instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// So many runs at a time; by default as many as there are cores.
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// No progress bar and no table.
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }

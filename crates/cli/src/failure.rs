@@ -37,6 +37,8 @@ pub(crate) enum Failure {
     Scene(SceneError),
     /// A file of the recording could not be written.
     Write(PathBuf, io::Error),
+    /// The threads of a sweep could not be started.
+    Threads(rayon::ThreadPoolBuildError),
 }
 
 impl Failure {
@@ -54,6 +56,7 @@ impl Failure {
         match self {
             Self::Scene(error) => describe(error),
             Self::Write(path, error) => format!("error: --out: cannot write {}: {error}", path.display()),
+            Self::Threads(error) => format!("error: --threads: {error}"),
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The `halfgap` command: runs and checks scene files, and solves contact problems.
+//! The `halfgap` command: runs, varies and checks scene files, and solves contact problems.
 //!
-//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `solve`) that returns how it ended,
+//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `sweep` with `vary`, `solve`) that returns how it ended,
 //! `failure` turns what went wrong into messages and exit codes, `output` writes to standard output.
 
 mod args;
@@ -11,7 +11,9 @@ mod output;
 mod progress;
 mod run;
 mod solve;
+mod sweep;
 mod table;
+mod vary;
 
 use args::{Args, Command};
 use clap::Parser;
@@ -21,6 +23,7 @@ fn main() -> ExitCode {
     let end = match Args::parse().command {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
+        Command::Sweep(options) => sweep::sweep(&options),
         Command::Solve(options) => return solve::run(&options),
     };
     match end {

@@ -129,7 +129,7 @@ fn push_difference(text: &mut String, when: &str, difference: &Difference) {
 }
 
 /// Ten digits: enough to read, few enough to compare by eye.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || PLAIN.contains(&size) { format!("{value:.9}") } else { format!("{value:.8e}") }
 }

@@ -330,3 +330,84 @@ fn a_tolerance_that_coordinates_do_not_allow_warns_and_runs() {
         "{message}"
     );
 }
+
+/// A ball on a floor, which it leaves with part of its speed.
+const BOUNCE: &str = r#"format = "halfgap-scene-1"
+title = "Bounce"
+run = { duration = 3.0 }
+
+[[body]]
+name = "floor"
+fixed = true
+shape = { block = { width = 10.0, height = 1.0 } }
+position = [0.0, -0.5]
+
+[[body]]
+name = "ball"
+shape = { disc = { radius = 0.5 } }
+mass = 1.0
+position = [0.0, 2.0]
+
+[[force]]
+gravity = { acceleration = [0.0, -9.81] }
+"#;
+
+#[test]
+fn sweep_gives_the_same_bits_on_many_threads_as_one_run_at_a_time() {
+    let folder = Folder::new("sweep");
+    let scene = folder.write("bounce.toml", BOUNCE);
+    let sweep = |threads: &str| {
+        let file = folder.path(&format!("{threads}.csv"));
+        let vary = "body.ball.elasticity=0.3..0.95/40";
+        let output =
+            halfgap(&["sweep", &scene, "--vary", vary, "--out", &file, "--threads", threads, "--quiet"]);
+        assert_eq!(output.status.code(), Some(0), "{}", folder.plain(&output.stderr));
+        assert!(output.stdout.is_empty() && output.stderr.is_empty());
+        std::fs::read_to_string(file).expect("the table was written")
+    };
+    let table = sweep("1");
+    assert_eq!(sweep("4"), table);
+    assert_eq!(table.lines().count(), 41);
+    // A run alone, of a file that says what the sweep put in.
+    let alone = BOUNCE.replace("name = \"ball\"", "name = \"ball\"\nelasticity = 0.3");
+    let alone = json(&halfgap(&["run", &folder.write("alone.toml", &alone), "--json"]));
+    let first: Vec<_> = table.lines().nth(1).expect("a first run").split(',').collect();
+    let height: f64 = first[8].parse().expect("a number");
+    let known = alone["bodies"]["ball"]["position"][1].as_f64().expect("a number");
+    assert_eq!(height.to_bits(), known.to_bits());
+    assert!(table.starts_with("body[1].elasticity,status,time,"), "{table}");
+}
+
+#[test]
+fn sweep_prints_a_table_or_json() {
+    let folder = Folder::new("sweep-print");
+    let scene = folder.write("bounce.toml", BOUNCE);
+    let arguments = ["sweep", &scene, "--vary", "run.tolerance=1e-6..1e-3/3"];
+    let output = halfgap(&arguments);
+    let text = folder.plain(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", folder.plain(&output.stderr));
+    assert_eq!(text.lines().count(), 4, "{text}");
+    assert!(text.contains("run.tolerance") && text.contains("done"), "{text}");
+    let object = json(&halfgap(&[&arguments[..], &["--json"]].concat()));
+    assert_eq!(object["format"], "halfgap-sweep-1");
+    assert_eq!(object["runs"][2]["value"], 1e-3);
+    assert_eq!(object["runs"][2]["result"]["status"], "done");
+}
+
+#[test]
+fn sweep_names_what_cannot_be_varied() {
+    let folder = Folder::new("sweep-wrong");
+    let scene = folder.write("bounce.toml", BOUNCE);
+    for (vary, why) in [
+        ("body.bal.elasticity=0..1/2", "body.bal.elasticity: there is no `bal`: there are floor, ball"),
+        ("body.ball.bounce=0..1/2", "body[1].bounce: unknown field `bounce`"),
+        ("body.ball.name=0..1/2", "body[1].name: is no number"),
+        ("body.ball.elasticity=0..2/3", "body[1].elasticity"),
+        ("elasticity", "FIELD=A..B/N"),
+    ] {
+        let output = halfgap(&["sweep", &scene, "--vary", vary]);
+        let message = folder.plain(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{vary}: {message}");
+        assert!(message.contains(why), "{vary}: {message}");
+    }
+}

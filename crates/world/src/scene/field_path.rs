@@ -1,6 +1,7 @@
 //! Places in a scene file, such as `body[1].shape.disc.radius`.
 
 use std::fmt;
+use std::str::FromStr;
 
 /// One step of a path: into a field of a table, or to an element of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,6 +62,57 @@ impl FromIterator<Step> for FieldPath {
     }
 }
 
+/// A text that is no path to a field.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a field is written like run.tolerance, body[0].position[1] or body.\"big ball\".mass, got {0}")]
+pub struct BadFieldPath(String);
+
+impl FromStr for FieldPath {
+    type Err = BadFieldPath;
+
+    /// Reads what `Display` writes.
+    fn from_str(text: &str) -> Result<Self, BadFieldPath> {
+        let bad = || BadFieldPath(text.to_owned());
+        let (mut path, mut rest) = (Self::top(), text);
+        while !rest.is_empty() {
+            let (step, after) = if let Some(inside) = rest.strip_prefix('[') {
+                read_element(inside)
+            } else {
+                let name = if path.is_top() { Some(rest) } else { rest.strip_prefix('.') };
+                name.and_then(read_name)
+            }
+            .ok_or_else(bad)?;
+            path = path.then(step);
+            rest = after;
+        }
+        if path.is_top() { Err(bad()) } else { Ok(path) }
+    }
+}
+
+/// The number of an element, and the text after its bracket.
+fn read_element(text: &str) -> Option<(Step, &str)> {
+    let (number, after) = text.split_once(']')?;
+    Some((Step::Element(number.parse().ok()?), after))
+}
+
+/// A name, bare or in quotes, and the text after it.
+fn read_name(text: &str) -> Option<(Step, &str)> {
+    let Some(quoted) = text.strip_prefix('"') else {
+        let end = text.find(['.', '[']).unwrap_or(text.len());
+        let (name, after) = text.split_at(end);
+        return is_bare(name).then(|| (Step::Field(name.to_owned()), after));
+    };
+    let (mut name, mut letters) = (String::new(), quoted.char_indices());
+    while let Some((at, letter)) = letters.next() {
+        match letter {
+            '"' => return Some((Step::Field(name), &quoted[at + 1..])),
+            '\\' => name.push(letters.next()?.1),
+            _ => name.push(letter),
+        }
+    }
+    None
+}
+
 impl fmt::Display for FieldPath {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (place, step) in self.steps.iter().enumerate() {
@@ -94,5 +146,19 @@ mod tests {
         let path = FieldPath::top().field("expected").element(2).field("bodies").field("big ball");
         assert_eq!(path.to_string(), "expected[2].bodies.\"big ball\"");
         assert_eq!(FieldPath::top().to_string(), "");
+    }
+
+    #[test]
+    fn a_path_is_read_as_it_is_written() {
+        for text in
+            ["run.tolerance", "body[0].position[1]", "body.\"big \\\"ball\".mass", "expected[2].bodies.a-b_3"]
+        {
+            assert_eq!(text.parse::<FieldPath>().map(|path| path.to_string()), Ok(text.to_owned()));
+        }
+        for text in
+            ["", ".run", "run.", "run..x", "body[x]", "body[1", "body.\"a", "big ball", "body[0]position"]
+        {
+            assert!(text.parse::<FieldPath>().is_err(), "{text}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
-//! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for messages, and
-//! `supported` refuses what is part of the format but not simulated yet. SI units, radians, counter-clockwise positive,
+//! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for messages,
+//! `varied` puts other numbers into one field, and `supported` refuses what is part of the format but not simulated yet. SI units, radians, counter-clockwise positive,
 //! y up.
 
 mod body;
@@ -17,6 +17,7 @@ mod shape;
 mod source;
 mod supported;
 mod validate;
+mod varied;
 mod vector;
 
 pub use body::{BodyData, WORLD};
@@ -26,7 +27,7 @@ pub use connector::{
 };
 pub use error::{Excerpt, Position, SceneError};
 pub use expected::{ExpectedData, ExpectedState};
-pub use field_path::{FieldPath, Step};
+pub use field_path::{BadFieldPath, FieldPath, Step};
 pub use force::{
     ConstantData, DampingData, ForceData, ForceFrame, GravityData, MutualGravityData, RotatingData,
     SpringData,
@@ -37,6 +38,7 @@ pub use shape::{
     ShapeData,
 };
 pub use source::{SceneFormat, SceneSource};
+pub use varied::VariedScene;
 pub use vector::Vector;
 
 use serde::Deserialize;

@@ -116,6 +116,18 @@ impl SceneSource {
         }
     }
 
+    /// The text as plain data, without a look at what it says.
+    pub(super) fn data(&self) -> Result<serde_json::Value, SceneError> {
+        match self.format {
+            SceneFormat::Toml => {
+                toml::from_str(&self.text).map_err(|error| self.syntax_error(error.message(), 0))
+            }
+            SceneFormat::Json => {
+                serde_json::from_str(&self.text).map_err(|error| self.syntax_error(&error.to_string(), 0))
+            }
+        }
+    }
+
     fn parse_toml(&self) -> Result<Scene, SceneError> {
         let syntax = |error: toml::de::Error| {
             let offset = error.span().map_or(0, |span| span.start);
@@ -172,7 +184,7 @@ fn offset_of(text: &str, line: usize, column: usize) -> usize {
     (line_start + column).saturating_sub(1)
 }
 
-fn field_path(path: &serde_path_to_error::Path) -> FieldPath {
+pub(super) fn field_path(path: &serde_path_to_error::Path) -> FieldPath {
     use serde_path_to_error::Segment;
     path.iter()
         .filter_map(|segment| match segment {
@@ -185,7 +197,7 @@ fn field_path(path: &serde_path_to_error::Path) -> FieldPath {
 }
 
 /// serde's words for types, in those of people who write scenes.
-fn plain(message: &str) -> String {
+pub(super) fn plain(message: &str) -> String {
     message
         .trim_end()
         .replace("expected f64", "expected a number")

@@ -1,0 +1,283 @@
+//! Box2D 3.2 by its bindings `boxdd`, built with positions in double precision; all else in it is single.
+
+use super::segments::corners;
+use super::{Engine, EngineError, Session};
+use crate::scene::{Body, Connector, End, Scene, Shape};
+use boxdd::prelude::{
+    BodyBuilder, BodyId, BodyType, ChainDef, ConstraintTuning, Filter, Foundation, FoundationConfig,
+    JointBase, MassData, Position, PrismaticJointDef, RevoluteJointDef, ShapeDef, SurfaceMaterial, Vec2,
+    World, WorldBuilder, shapes,
+};
+use glam::DVec2;
+use halfgap::BodyState;
+use std::sync::Arc;
+
+/// No limit on speeds [m/s], in its single precision.
+const NO_LIMIT: f32 = 1e9;
+/// Stock: the speed [m/s] at which overlaps are pushed apart.
+const PUSH_SPEED: f32 = 3.0;
+/// Stock: frequency [1/s] and damping ratio of contacts.
+const CONTACT_SPRING: (f32, f32) = (30.0, 10.0);
+/// Not stock: frequency of joints as a part of that of substeps, the most that Box2D itself allows for contacts.
+const JOINT_SHARE: f64 = 0.25;
+/// Stock: damping ratio of joints.
+const JOINT_DAMPING: f32 = 2.0;
+
+/// Box2D with its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct Box2d {
+    /// Steps per time of the scene's grid of checks.
+    pub steps_per_check: u32,
+    /// Parts of a step in which it solves.
+    pub substeps: i32,
+    /// Segments for a full circle where an outline has arcs.
+    pub segments: usize,
+    /// All lengths are multiplied by this. Its slop of 5 mm and other lengths are built in: at 100, they are a hundredth.
+    pub scale: f32,
+}
+
+impl Engine for Box2d {
+    fn name(&self) -> &'static str {
+        "box2d"
+    }
+
+    fn version(&self) -> &'static str {
+        "3.2.0 (boxdd 0.6.0)"
+    }
+
+    fn settings(&self) -> String {
+        let Self { steps_per_check, substeps, segments, scale } = self;
+        let segments = if *segments > 0 { format!(" segments {segments}") } else { String::new() };
+        format!("scale {scale} steps {steps_per_check} substeps {substeps}{segments}")
+    }
+
+    fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
+        Ok(Box::new(Running::new(self, scene)?))
+    }
+}
+
+struct Running {
+    world: World,
+    bodies: Vec<BodyId>,
+    ground: BodyId,
+    scale: f64,
+    step: f64,
+    substeps: i32,
+    steps: u64,
+    /// Stiffness of joints, if not stock.
+    joints: Option<ConstraintTuning>,
+}
+
+impl Running {
+    fn new(settings: &Box2d, scene: &Scene) -> Result<Self, EngineError> {
+        let foundation = foundation()?;
+        let definition = WorldBuilder::from(foundation.world_def())
+            .gravity(vector(scene.gravity * f64::from(settings.scale)))
+            .enable_sleep(false)
+            .enable_continuous(true)
+            .restitution_threshold(0.0)
+            .maximum_linear_speed(NO_LIMIT)
+            .build();
+        let mut world = foundation.create_world(definition.map_err(refused)?).map_err(refused)?;
+        if settings.scale > 1.0 {
+            world.set_contact_recycle_distance(0.0).map_err(refused)?;
+            let (hertz, damping) = CONTACT_SPRING;
+            world.set_contact_tuning(hertz, damping, PUSH_SPEED * settings.scale).map_err(refused)?;
+        }
+        let ground = BodyBuilder::from(foundation.body_def()).build().map_err(refused)?;
+        let ground = world.create_body(ground).map_err(refused)?;
+        let step = scene.check_grid / f64::from(settings.steps_per_check);
+        let hertz = JOINT_SHARE * f64::from(settings.substeps) / step;
+        let joints = (settings.scale > 1.0).then(|| ConstraintTuning::new(hertz as f32, JOINT_DAMPING));
+        let mut running = Self {
+            world,
+            bodies: Vec::new(),
+            ground,
+            scale: f64::from(settings.scale),
+            step,
+            substeps: settings.substeps,
+            steps: 0,
+            joints: joints.transpose().map_err(refused)?,
+        };
+        for body in &scene.bodies {
+            running.add_body(foundation, body, scene.collisions, settings.segments)?;
+        }
+        for connector in &scene.connectors {
+            running.add_connector(connector)?;
+        }
+        Ok(running)
+    }
+
+    fn add_body(
+        &mut self,
+        foundation: &'static Foundation,
+        body: &Body,
+        collides: bool,
+        segments: usize,
+    ) -> Result<(), EngineError> {
+        let (start, scale) = (&body.start, self.scale);
+        let kind = if body.inertia.is_some() { BodyType::Dynamic } else { BodyType::Static };
+        let position = start.position * scale;
+        let definition = BodyBuilder::from(foundation.body_def())
+            .body_type(kind)
+            .position(Position::new(position.x, position.y))
+            .angle(start.angle as f32)
+            .linear_velocity(vector(start.velocity * scale))
+            .angular_velocity(start.angular_velocity as f32)
+            .enable_sleep(false)
+            .enable_contact_recycling(false)
+            .allow_fast_rotation(true)
+            .build();
+        let id = self.world.create_body(definition.map_err(refused)?).map_err(refused)?;
+        self.add_shape(id, body, collides, segments).map_err(EngineError::Build)?;
+        if let Some(inertia) = body.inertia {
+            let moment = (inertia.moment * scale * scale) as f32;
+            let data = MassData::new(inertia.mass as f32, Vec2::new(0.0, 0.0), moment).map_err(refused)?;
+            self.world.body(id).and_then(|mut body| body.set_mass_data(data)).map_err(refused)?;
+        }
+        self.bodies.push(id);
+        Ok(())
+    }
+
+    fn add_shape(&mut self, id: BodyId, body: &Body, collides: bool, segments: usize) -> Result<(), String> {
+        let told = |error: boxdd::prelude::Error| error.to_string();
+        let material = SurfaceMaterial::default();
+        let material = material.with_friction(0.0).map_err(told)?;
+        let material = material.with_restitution(body.elasticity as f32).map_err(told)?;
+        let filter = if collides { Filter::default() } else { Filter { mask_bits: 0, ..Filter::default() } };
+        let definition = ShapeDef::builder().material(material).density(1.0).filter(filter);
+        let definition = definition.build().map_err(told)?;
+        let scale = self.scale;
+        let mut target = self.world.body(id).map_err(told)?;
+        match &body.shape {
+            Shape::Disc { radius } => {
+                target.create_centered_circle(&definition, (radius * scale) as f32).map_err(told)?;
+            }
+            Shape::Block { width, height } => {
+                let half = |size: &f64| (0.5 * size * scale) as f32;
+                let polygon = shapes::box_polygon(half(width), half(height)).map_err(told)?;
+                target.create_polygon(&definition, &polygon).map_err(told)?;
+            }
+            Shape::Outline(paths) => {
+                for corners in corners(paths, segments)? {
+                    let points = corners.iter().map(|&corner| vector(corner * scale));
+                    let chain = ChainDef::builder().points(points).is_loop(true).filter(filter);
+                    let chain = chain.single_material(&material).build().map_err(told)?;
+                    target.create_chain(&chain).map_err(told)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_connector(&mut self, connector: &Connector) -> Result<(), EngineError> {
+        let scale = self.scale;
+        match connector {
+            Connector::Pin(a, b) => {
+                let base = self.world.joint_base(self.id(a), self.id(b)).map_err(refused)?;
+                let (a, b) = (vector(a.point * scale), vector(b.point * scale));
+                let base = base.with_local_frame_components(a, 0.0, b, 0.0).map_err(refused)?;
+                let base = self.tuned(base.with_collide_connected(false));
+                self.world.create_revolute_joint(&RevoluteJointDef::new(base)).map_err(refused)?;
+            }
+            Connector::Guide { body, point, axis } => {
+                let base = self.world.joint_base(self.ground, self.bodies[*body]).map_err(refused)?;
+                let angle = axis.to_angle() as f32;
+                let (point, center) = (vector(*point * scale), Vec2::new(0.0, 0.0));
+                let base = base.with_local_frame_components(point, angle, center, angle);
+                let base = self.tuned(base.map_err(refused)?).with_collide_connected(true);
+                let joint = PrismaticJointDef::new(base);
+                self.world.create_prismatic_joint(&joint).map_err(refused)?;
+            }
+            Connector::Rod(..) => return Err(unsupported("stiff rods")),
+            Connector::Rail { .. } => return Err(unsupported("rails")),
+        }
+        Ok(())
+    }
+
+    fn tuned(&self, base: JointBase) -> JointBase {
+        match self.joints {
+            Some(tuning) => base.with_constraint_tuning(tuning),
+            None => base,
+        }
+    }
+
+    fn id(&self, end: &End) -> BodyId {
+        end.body.map_or(self.ground, |body| self.bodies[body])
+    }
+}
+
+impl Session for Running {
+    fn advance(&mut self, time: f64) -> Result<(), EngineError> {
+        let target = (time / self.step).round() as u64;
+        while self.steps < target {
+            let stepped = self.world.step(self.step as f32, self.substeps);
+            drop(stepped.map_err(|error| EngineError::Stopped(error.to_string()))?);
+            self.steps += 1;
+        }
+        Ok(())
+    }
+
+    fn write_states(&mut self, states: &mut Vec<BodyState>) {
+        states.clear();
+        for &id in &self.bodies {
+            states.push(state(&mut self.world, id, self.scale).unwrap_or(LOST));
+        }
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn events(&self) -> Option<u64> {
+        None
+    }
+
+    fn penetration(&mut self) -> f64 {
+        let mut deepest = 0.0_f64;
+        for &id in &self.bodies {
+            let contacts = self.world.body(id).and_then(|body| body.contact_data()).unwrap_or_default();
+            for point in contacts.iter().flat_map(|contact| contact.manifold.points()) {
+                deepest = deepest.max(-f64::from(point.separation));
+            }
+        }
+        deepest / self.scale
+    }
+}
+
+/// The library itself, with its settings for all worlds. It writes a line to standard output wherever a disc meets many segments
+/// at once, which is no fault.
+fn foundation() -> Result<&'static Foundation, EngineError> {
+    if let Some(foundation) = Foundation::get() {
+        return Ok(foundation);
+    }
+    let silent = FoundationConfig::default().with_log_hook(Arc::new(|_| {}));
+    Foundation::initialize(silent).map_err(refused)
+}
+
+/// The state of a body that cannot be read any more: as wrong as can be.
+const LOST: BodyState =
+    BodyState { position: DVec2::INFINITY, angle: 0.0, velocity: DVec2::INFINITY, angular_velocity: 0.0 };
+
+fn state(world: &mut World, id: BodyId, scale: f64) -> Result<BodyState, boxdd::prelude::Error> {
+    let body = world.body(id)?;
+    let (position, velocity) = (body.position()?, body.linear_velocity()?);
+    Ok(BodyState {
+        position: DVec2::new(position.x, position.y) / scale,
+        angle: f64::from(body.rotation()?.angle()),
+        velocity: DVec2::new(f64::from(velocity.x), f64::from(velocity.y)) / scale,
+        angular_velocity: f64::from(body.angular_velocity()?),
+    })
+}
+
+fn vector(vector: DVec2) -> Vec2 {
+    Vec2::new(vector.x as f32, vector.y as f32)
+}
+
+fn refused(error: impl std::fmt::Display) -> EngineError {
+    EngineError::Build(error.to_string())
+}
+
+fn unsupported(what: &'static str) -> EngineError {
+    EngineError::Unsupported { engine: "box2d", what }
+}

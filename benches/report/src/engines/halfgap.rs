@@ -1,0 +1,129 @@
+//! halfgap, with its one knob.
+
+use super::{Engine, EngineError, Session};
+use crate::scene::{Body, Connector, End, Scene, Shape};
+use glam::DVec2;
+use halfgap::{
+    Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath, SlotFrame, World,
+    WorldBuilder, WorldSettings, geometry,
+};
+use std::sync::Arc;
+
+/// halfgap at a tolerance.
+#[derive(Clone, Copy, Debug)]
+pub struct Halfgap {
+    /// Relative accuracy asked for.
+    pub tolerance: f64,
+}
+
+impl Engine for Halfgap {
+    fn name(&self) -> &'static str {
+        "halfgap"
+    }
+
+    fn version(&self) -> &'static str {
+        env!("CARGO_PKG_VERSION")
+    }
+
+    fn settings(&self) -> String {
+        format!("tolerance {:e}", self.tolerance)
+    }
+
+    fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
+        let world = build(scene, self.tolerance)?;
+        Ok(Box::new(Running { world }))
+    }
+}
+
+/// Builds a scene as a world.
+///
+/// # Errors
+/// What halfgap refuses.
+pub fn build(scene: &Scene, tolerance: f64) -> Result<World, EngineError> {
+    let settings = WorldSettings { tolerance, collisions: scene.collisions, ..WorldSettings::default() };
+    let mut builder = WorldBuilder::new(settings);
+    for body in &scene.bodies {
+        let id = builder.add(body_spec(body).map_err(refused)?);
+        if body.inertia.is_some() {
+            builder.add_gravity(id, scene.gravity);
+        }
+    }
+    for connector in &scene.connectors {
+        let connector = halfgap::Connector::new(connector_kind(connector)?, 0.0).map_err(refused)?;
+        builder.add_connector(ConnectorSpec::new(connector));
+    }
+    builder.build().map_err(refused)
+}
+
+fn refused(error: impl std::fmt::Display) -> EngineError {
+    EngineError::Build(error.to_string())
+}
+
+fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
+    let shape = match &body.shape {
+        Shape::Disc { radius } => geometry::Shape::disc(*radius)?,
+        Shape::Block { width, height } => geometry::Shape::block(*width, *height)?,
+        Shape::Outline(paths) => geometry::Shape::from_paths(paths)?,
+    };
+    let inertia = body.inertia.map(|inertia| Inertia { mass: inertia.mass, moment: inertia.moment });
+    Ok(BodySpec {
+        name: body.name.clone(),
+        shape,
+        center_of_mass: Some(DVec2::ZERO),
+        inertia,
+        state: body.start,
+        elasticity: body.elasticity,
+    })
+}
+
+fn id(body: usize) -> BodyId {
+    BodyId(u32::try_from(body).unwrap_or(u32::MAX))
+}
+
+fn anchor(end: &End) -> Anchor {
+    Anchor { body: end.body.map_or(BodyId::WORLD, id), point: end.point }
+}
+
+fn connector_kind(connector: &Connector) -> Result<ConnectorKind, EngineError> {
+    Ok(match connector {
+        Connector::Pin(a, b) => ConnectorKind::Pin { a: anchor(a), b: anchor(b) },
+        Connector::Rod(a, b, length) => ConnectorKind::Rod { a: anchor(a), b: anchor(b), length: *length },
+        Connector::Guide { body, point, axis } => ConnectorKind::Slot {
+            a: anchor(&End::world(*point)),
+            b: anchor(&End::body(*body, DVec2::ZERO)),
+            normal: axis.perp(),
+            frame: SlotFrame::World,
+        },
+        Connector::Rail { body, points } => ConnectorKind::Rail {
+            a: anchor(&End::body(*body, DVec2::ZERO)),
+            path: Arc::new(RailPath::through(points, false).map_err(refused)?),
+        },
+    })
+}
+
+struct Running {
+    world: World,
+}
+
+impl Session for Running {
+    fn advance(&mut self, time: f64) -> Result<(), EngineError> {
+        self.world.advance_to(time, &mut |_| {}).map_err(|error| EngineError::Stopped(error.to_string()))
+    }
+
+    fn write_states(&mut self, states: &mut Vec<BodyState>) {
+        states.clear();
+        states.extend(self.world.bodies().map(|body| self.world.state(body)));
+    }
+
+    fn steps(&self) -> u64 {
+        self.world.statistics().steps
+    }
+
+    fn events(&self) -> Option<u64> {
+        Some(self.world.statistics().impacts)
+    }
+
+    fn penetration(&mut self) -> f64 {
+        self.world.statistics().smallest_gap.map_or(0.0, |gap| (-gap).max(0.0))
+    }
+}

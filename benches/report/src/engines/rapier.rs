@@ -1,0 +1,299 @@
+//! Rapier in double precision, at fixed steps.
+
+use super::segments::corners;
+use super::{Engine, EngineError, Session};
+use crate::scene::{Body, Connector, End, Scene, Shape};
+use glam::DVec2;
+use halfgap::BodyState;
+use rapier2d_f64::prelude::*;
+
+/// The step [s] for which Rapier's lengths and frequencies were chosen.
+const STOCK_STEP: f64 = 1.0 / 60.0;
+
+/// What `Rapier` changes besides step and iterations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tuning {
+    /// All else as it comes.
+    Stock,
+    /// No slop, no recycled contacts; contacts looked for ahead and their softness in proportion to the step, so that they
+    /// vanish with it.
+    Accurate,
+}
+
+/// How `Rapier` ties bodies together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joints {
+    /// By impulses, as everything else.
+    Impulse,
+    /// In reduced coordinates: trees only.
+    Multibody,
+}
+
+/// Rapier with its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct Rapier {
+    /// Steps per time of the scene's grid of checks.
+    pub steps_per_check: u32,
+    /// Iterations of its solver.
+    pub iterations: usize,
+    /// Segments for a full circle where an outline has arcs.
+    pub segments: usize,
+    /// What else is changed.
+    pub tuning: Tuning,
+    /// How bodies are tied.
+    pub joints: Joints,
+}
+
+impl Engine for Rapier {
+    fn name(&self) -> &'static str {
+        "rapier"
+    }
+
+    fn version(&self) -> &'static str {
+        "0.36.1"
+    }
+
+    fn settings(&self) -> String {
+        let Self { iterations, steps_per_check, segments, tuning, joints } = self;
+        let tuning = match tuning {
+            Tuning::Stock => "stock",
+            Tuning::Accurate => "accurate",
+        };
+        let joints = match joints {
+            Joints::Impulse => "",
+            Joints::Multibody => " multibody",
+        };
+        let segments = if *segments > 0 { format!(" segments {segments}") } else { String::new() };
+        format!("{tuning}{joints} steps {steps_per_check} iterations {iterations}{segments}")
+    }
+
+    fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
+        Ok(Box::new(Running::new(self, scene)?))
+    }
+}
+
+struct Running {
+    pipeline: PhysicsPipeline,
+    parameters: IntegrationParameters,
+    gravity: Vector,
+    islands: IslandManager,
+    broad_phase: BroadPhaseBvh,
+    narrow_phase: NarrowPhase,
+    bodies: RigidBodySet,
+    colliders: ColliderSet,
+    impulse_joints: ImpulseJointSet,
+    multibody_joints: MultibodyJointSet,
+    soft_bodies: SoftBodySet,
+    ccd: CCDSolver,
+    handles: Vec<RigidBodyHandle>,
+    ground: RigidBodyHandle,
+    steps: u64,
+}
+
+impl Running {
+    fn new(settings: &Rapier, scene: &Scene) -> Result<Self, EngineError> {
+        let mut bodies = RigidBodySet::new();
+        let ground = bodies.insert(RigidBodyBuilder::fixed());
+        let mut running = Self {
+            pipeline: PhysicsPipeline::new(),
+            parameters: parameters(settings, scene.check_grid / f64::from(settings.steps_per_check)),
+            gravity: vector(scene.gravity),
+            islands: IslandManager::new(),
+            broad_phase: BroadPhaseBvh::new(),
+            narrow_phase: NarrowPhase::new(),
+            bodies,
+            colliders: ColliderSet::new(),
+            impulse_joints: ImpulseJointSet::new(),
+            multibody_joints: MultibodyJointSet::new(),
+            soft_bodies: SoftBodySet::new(),
+            ccd: CCDSolver::new(),
+            handles: Vec::new(),
+            ground,
+            steps: 0,
+        };
+        for body in &scene.bodies {
+            running.add_body(body, scene.collisions, settings.segments)?;
+        }
+        for connector in &scene.connectors {
+            running.add_connector(connector, settings.joints)?;
+        }
+        Ok(running)
+    }
+
+    fn add_body(&mut self, body: &Body, collides: bool, segments: usize) -> Result<(), EngineError> {
+        let start = &body.start;
+        let builder = match body.inertia {
+            None => RigidBodyBuilder::fixed(),
+            Some(inertia) => RigidBodyBuilder::dynamic().additional_mass_properties(MassProperties::new(
+                Vector::ZERO,
+                inertia.mass,
+                inertia.moment,
+            )),
+        };
+        let handle = self.bodies.insert(
+            builder
+                .translation(vector(start.position))
+                .rotation(start.angle)
+                .linvel(vector(start.velocity))
+                .angvel(start.angular_velocity)
+                .can_sleep(false)
+                .ccd_enabled(true),
+        );
+        for shape in colliders(&body.shape, segments)? {
+            let mut collider = shape
+                .density(0.0)
+                .friction(0.0)
+                .restitution(body.elasticity)
+                .restitution_combine_rule(CoefficientCombineRule::Min);
+            if !collides {
+                collider = collider.collision_groups(InteractionGroups::none());
+            }
+            self.colliders.insert_with_parent(collider, handle, &mut self.bodies);
+        }
+        self.handles.push(handle);
+        Ok(())
+    }
+
+    fn add_connector(&mut self, connector: &Connector, joints: Joints) -> Result<(), EngineError> {
+        let (from, to, joint): (_, _, GenericJoint) = match connector {
+            Connector::Pin(a, b) => {
+                let joint = RevoluteJointBuilder::new()
+                    .contacts_enabled(false)
+                    .local_anchor1(vector(a.point))
+                    .local_anchor2(vector(b.point));
+                let (from, to) = (self.handle(a), self.handle(b));
+                let mut joint: GenericJoint = joint.into();
+                // In reduced coordinates a joint starts where its frames coincide.
+                let turn = self.bodies[from].rotation().inverse() * *self.bodies[to].rotation();
+                joint.local_frame1.rotation = turn;
+                (from, to, joint)
+            }
+            Connector::Guide { body, point, axis } => {
+                let joint = PrismaticJointBuilder::new(vector(*axis)).local_anchor1(vector(*point));
+                (self.ground, self.handles[*body], joint.into())
+            }
+            Connector::Rod(..) => return Err(unsupported("rods")),
+            Connector::Rail { .. } => return Err(unsupported("rails")),
+        };
+        match joints {
+            Joints::Impulse => {
+                self.impulse_joints.insert(from, to, joint, true);
+                Ok(())
+            }
+            Joints::Multibody => {
+                let inserted = self.multibody_joints.insert(from, to, joint, true);
+                let handle = inserted.ok_or(unsupported("closed loops in reduced coordinates"))?;
+                // It damps such joints unless told otherwise.
+                if let Some((multibody, _)) = self.multibody_joints.get_mut(handle) {
+                    multibody.damping_mut().fill(0.0);
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn handle(&self, end: &End) -> RigidBodyHandle {
+        end.body.map_or(self.ground, |body| self.handles[body])
+    }
+
+    fn step(&mut self) {
+        self.pipeline.step(
+            self.gravity,
+            &self.parameters,
+            &mut self.islands,
+            &mut self.broad_phase,
+            &mut self.narrow_phase,
+            &mut self.bodies,
+            &mut self.colliders,
+            &mut self.impulse_joints,
+            &mut self.multibody_joints,
+            &mut self.soft_bodies,
+            &mut self.ccd,
+            &(),
+            &(),
+        );
+        self.steps += 1;
+    }
+}
+
+impl Session for Running {
+    fn advance(&mut self, time: f64) -> Result<(), EngineError> {
+        let target = (time / self.parameters.dt).round() as u64;
+        while self.steps < target {
+            self.step();
+        }
+        Ok(())
+    }
+
+    fn write_states(&mut self, states: &mut Vec<BodyState>) {
+        states.clear();
+        states.extend(self.handles.iter().map(|&handle| {
+            let body = &self.bodies[handle];
+            BodyState {
+                position: DVec2::new(body.translation().x, body.translation().y),
+                angle: body.rotation().angle(),
+                velocity: DVec2::new(body.linvel().x, body.linvel().y),
+                angular_velocity: body.angvel(),
+            }
+        }));
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn events(&self) -> Option<u64> {
+        None
+    }
+
+    fn penetration(&mut self) -> f64 {
+        let points = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
+        points.flat_map(|manifold| &manifold.points).map(|point| -point.dist).fold(0.0, f64::max)
+    }
+}
+
+fn parameters(settings: &Rapier, step: f64) -> IntegrationParameters {
+    let mut parameters = IntegrationParameters {
+        dt: step,
+        num_solver_iterations: settings.iterations,
+        ..IntegrationParameters::default()
+    };
+    parameters.min_ccd_dt = step / 100.0;
+    if settings.tuning == Tuning::Accurate {
+        let share = step / STOCK_STEP;
+        parameters.normalized_allowed_linear_error = 0.0;
+        parameters.normalized_prediction_distance *= share;
+        parameters.contact_recycling = false;
+        parameters.normalized_contact_recycle_distance = 0.0;
+        parameters.normalized_max_linear_velocity = Real::MAX;
+        parameters.contact_softness.natural_frequency /= share;
+        parameters.static_contact_softness.natural_frequency /= share;
+        parameters.warmstart_joints = true;
+    }
+    parameters
+}
+
+fn colliders(shape: &Shape, segments: usize) -> Result<Vec<ColliderBuilder>, EngineError> {
+    Ok(match shape {
+        Shape::Disc { radius } => vec![ColliderBuilder::ball(*radius)],
+        Shape::Block { width, height } => vec![ColliderBuilder::cuboid(0.5 * width, 0.5 * height)],
+        Shape::Outline(paths) => {
+            let paths = corners(paths, segments).map_err(EngineError::Build)?;
+            paths.iter().map(|corners| polyline(corners)).collect()
+        }
+    })
+}
+
+fn polyline(corners: &[DVec2]) -> ColliderBuilder {
+    let count = u32::try_from(corners.len()).unwrap_or(u32::MAX);
+    let sides = (0..count).map(|from| [from, (from + 1) % count]).collect();
+    ColliderBuilder::oriented_polyline(corners.iter().map(|&corner| vector(corner)).collect(), Some(sides))
+}
+
+fn vector(vector: DVec2) -> Vector {
+    Vector::new(vector.x, vector.y)
+}
+
+fn unsupported(what: &'static str) -> EngineError {
+    EngineError::Unsupported { engine: "rapier", what }
+}

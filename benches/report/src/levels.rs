@@ -1,0 +1,117 @@
+//! What each engine needs to reach an error, as a table in Markdown, beside the best of an independent suite.
+
+use crate::sweep::Row;
+use std::fmt::Write;
+
+/// The errors [m] that are asked for.
+const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-10];
+/// The engines, in the order of the columns.
+const ENGINES: [&str; 3] = ["halfgap", "rapier", "box2d"];
+
+/// The cheapest of nine engines and its letter at the levels 1e-2, 1e-3, 1e-4, 1e-6 and 1e-9 m: time [ms] per simulated
+/// second.
+type Bar = [Option<(f64, char)>; 5];
+
+/// An independent suite's measurement of the field, on a core of its own machine. Siconos event-driven, MuJoCo with RK4 in
+/// reduced coordinates, Chipmunk.
+const BARS: [(&str, Bar); 10] = [
+    ("ball_bounce", bar([0.057, 0.105, 0.105, 0.105, 0.123], b"CSSSS")),
+    ("two_discs_e1", bar([0.028; 5], b"SSSSS")),
+    ("newtons_cradle", bar([0.32, 4.4, 70.0, 0.0, 0.0], b"CCC  ")),
+    ("square_billiard", bar([0.16; 5], b"SSSSS")),
+    ("pendulum", bar([0.06, 0.16, 0.31, 0.63, 2.5], b"CMMMM")),
+    ("double_pendulum", bar([0.088, 0.088, 0.18, 0.70, 5.6], b"MMMMM")),
+    ("four_bar", bar([0.18, 0.67, 2.7, 21.0, 0.0], b"CMMM ")),
+    ("falling_chain", bar([1.1, 4.4, 4.4, 18.0, 72.0], b"MMMMM")),
+    ("disc_in_bowl", bar([0.24, 0.24, 0.38, 0.47, 0.97], b"SSSSS")),
+    ("disc_off_hill", bar([0.23, 0.54, 1.2, 1.2, 1.2], b"CMSSS")),
+];
+
+/// Times with the letters of their engines; a blank is a level that none reaches.
+const fn bar(times: [f64; 5], engines: &[u8; 5]) -> Bar {
+    let mut bar = [None; 5];
+    let mut index = 0;
+    while index < bar.len() {
+        if engines[index] != b' ' {
+            bar[index] = Some((times[index], engines[index] as char));
+        }
+        index += 1;
+    }
+    bar
+}
+
+/// The least time [ms] per simulated second in which an engine gets a scene to an error.
+fn cheapest(rows: &[Row], scene: &str, engine: &str, level: f64) -> Option<f64> {
+    let runs = rows.iter().filter(|row| row.scene == scene && row.engine == engine);
+    let runs = runs.filter_map(Row::time_and_error).filter(|(_, error)| *error <= level);
+    runs.map(|(time, _)| 1e3 * time).min_by(f64::total_cmp)
+}
+
+/// One line per scene and level that halfgap or a peer reaches.
+#[must_use]
+pub fn table(rows: &[Row], scenes: &[String]) -> String {
+    let mut text = String::from(
+        "| scene | error [m] | halfgap [ms/s] | Rapier | Box2D | the bar | bar or best peer / halfgap |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for scene in scenes {
+        let bars = BARS.iter().find(|(name, _)| name == scene).map(|(_, bar)| bar);
+        for (index, &level) in LEVELS.iter().enumerate() {
+            let bar = bars.and_then(|bar| bar.get(index).copied().flatten());
+            let times = ENGINES.map(|engine| cheapest(rows, scene, engine, level));
+            if times.iter().any(Option::is_some) || bar.is_some() {
+                push_line(&mut text, scene, level, times, bar);
+            }
+        }
+    }
+    text
+}
+
+fn push_line(text: &mut String, scene: &str, level: f64, times: [Option<f64>; 3], bar: Option<(f64, char)>) {
+    let shown = |time: Option<f64>| time.map_or("-".to_owned(), |time| number(time).to_string());
+    let [ours, rapier, box2d] = times;
+    let others = [rapier, box2d, bar.map(|(time, _)| time)].into_iter().flatten();
+    let ratio = match (ours, others.min_by(f64::total_cmp)) {
+        (Some(ours), Some(best)) => format!("{}", number(best / ours)),
+        (Some(_), None) => "only halfgap".to_owned(),
+        (None, _) => "not reached".to_owned(),
+    };
+    let bar = bar.map_or("-".to_owned(), |(time, engine)| format!("{time} {engine}"));
+    let _ = writeln!(
+        text,
+        "| {scene} | {level:e} | {} | {} | {} | {bar} | {ratio} |",
+        shown(ours),
+        shown(rapier),
+        shown(box2d)
+    );
+}
+
+/// Two significant digits.
+fn number(value: f64) -> f64 {
+    let unit = 10_f64.powf(value.abs().log10().floor() - 1.0);
+    let rounded = (value / unit).round() * unit;
+    // The shortest form of it: the product above has a tail.
+    format!("{rounded:.12}").parse().unwrap_or(rounded)
+}
+
+/// Time of scenes of which nothing else is known: one line per run.
+#[must_use]
+pub fn piles(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "| scene | engine | settings | ms per simulated second | deepest overlap [m] |\n|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let Row { scene, engine, settings, .. } = row;
+        let _ = match &row.outcome {
+            Ok(run) if run.error.is_none() => {
+                let time = number(1e3 * run.wall_per_second);
+                writeln!(text, "| {scene} | {engine} | {settings} | {time} | {:.1e} |", run.penetration)
+            }
+            Err(why) if why.starts_with("given up") => {
+                writeln!(text, "| {scene} | {engine} | {settings} | {why} | - |")
+            }
+            _ => Ok(()),
+        };
+    }
+    text
+}

@@ -1,0 +1,22 @@
+//! Speed against error: halfgap and its peers on scenes whose answers are known.
+//!
+//! `scene` is the neutral description, `scenes` a file each, `reference` how answers are computed independently of every
+//! engine, `engines` a file each, `measure` one run, `sweep` all of them, `csv` the table of runs, `levels` the times per level
+//! of error, `plot` the pictures, `gas` impacts per second. The bench `speed_vs_error` drives it:
+//!
+//! ```text
+//! cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME]
+//! ```
+
+#![forbid(unsafe_code)]
+
+pub mod csv;
+pub mod engines;
+pub mod gas;
+pub mod levels;
+pub mod measure;
+pub mod plot;
+mod reference;
+pub mod scene;
+pub mod scenes;
+pub mod sweep;

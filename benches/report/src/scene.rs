@@ -1,0 +1,274 @@
+//! A scene as every engine gets it: bodies, connectors, gravity, and the states that a perfect run would reach.
+//!
+//! Nothing here is of one engine: how arcs are cut into segments, or thresholds derived, is for the engines' modules.
+
+use glam::DVec2;
+use halfgap::BodyState;
+use halfgap::geometry::PathSpec;
+
+/// A scene with what is known of its answer.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name of files and of rows: lower case, underscores.
+    pub name: String,
+    /// One line for people.
+    pub about: String,
+    /// The bodies; what refers to a body does so by its place here.
+    pub bodies: Vec<Body>,
+    /// What ties bodies together.
+    pub connectors: Vec<Connector>,
+    /// Acceleration of all movable bodies [m/s^2].
+    pub gravity: DVec2,
+    /// False if bodies pass through each other.
+    pub collisions: bool,
+    /// When it ends [s]; it starts at 0.
+    pub duration: f64,
+    /// All check times are multiples of this [s], and so may be those of steps.
+    pub check_grid: f64,
+    /// States that are known, in order of time.
+    pub checks: Vec<Check>,
+    /// How the checks were computed.
+    pub reference: String,
+    /// How far the checks themselves may be off [m].
+    pub reference_error: f64,
+}
+
+/// A body. The origin of its shape's coordinates is its centre of mass.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: Shape,
+    /// Mass and moment; `None` for a fixed body.
+    pub inertia: Option<Inertia>,
+    /// State at the start.
+    pub start: BodyState,
+    /// Share of the closing speed with which it leaves an impact. All bodies of a scene that collide have the same, for
+    /// engines differ in how they combine two.
+    pub elasticity: f64,
+}
+
+/// Mass and moment of inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertia {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Moment of inertia about the centre of mass [kg m^2].
+    pub moment: f64,
+}
+
+impl Inertia {
+    /// Radius of gyration [m].
+    #[must_use]
+    pub fn gyration(&self) -> f64 {
+        (self.moment / self.mass).sqrt()
+    }
+}
+
+/// The shape of a body.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A disc about the origin.
+    Disc {
+        /// Its radius [m].
+        radius: f64,
+    },
+    /// A rectangle about the origin.
+    Block {
+        /// Size along x [m].
+        width: f64,
+        /// Size along y [m].
+        height: f64,
+    },
+    /// What closed paths of lines and arcs surround; only discs may collide with it.
+    Outline(Vec<PathSpec>),
+}
+
+/// One end of a connector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// The body; `None` for the background.
+    pub body: Option<usize>,
+    /// The point in the body's coordinates, or in those of the world [m].
+    pub point: DVec2,
+}
+
+/// What ties bodies together.
+#[derive(Clone, Debug)]
+pub enum Connector {
+    /// Keeps two points together.
+    Pin(End, End),
+    /// Keeps two points exactly a length [m] apart.
+    Rod(End, End, f64),
+    /// Keeps the centre of a body on a line through a point of the world, along a unit vector.
+    Guide {
+        /// The body.
+        body: usize,
+        /// A point of the line [m].
+        point: DVec2,
+        /// Its direction.
+        axis: DVec2,
+    },
+    /// Keeps the centre of a body on the natural cubic spline through points [m].
+    Rail {
+        /// The body.
+        body: usize,
+        /// The points.
+        points: Vec<DVec2>,
+    },
+}
+
+/// Known states at one time.
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// The time [s].
+    pub time: f64,
+    /// Bodies and their states.
+    pub states: Vec<(usize, BodyState)>,
+}
+
+impl Scene {
+    /// A scene of the given bodies in which nothing is known yet.
+    #[must_use]
+    pub fn new(name: &str, about: &str, bodies: Vec<Body>) -> Self {
+        Self {
+            name: name.to_owned(),
+            about: about.to_owned(),
+            bodies,
+            connectors: Vec::new(),
+            gravity: DVec2::ZERO,
+            collisions: true,
+            duration: 0.0,
+            check_grid: 0.0,
+            checks: Vec::new(),
+            reference: String::new(),
+            reference_error: 0.0,
+        }
+    }
+
+    /// Ends the scene at its last check, which all lie on a grid of times.
+    #[must_use]
+    pub fn with_checks(mut self, grid: f64, checks: Vec<Check>) -> Self {
+        self.duration = checks.last().map_or(0.0, |check| check.time);
+        self.check_grid = grid;
+        self.checks = checks;
+        self
+    }
+
+    /// Says how the checks were computed, and how far they may be off [m].
+    #[must_use]
+    pub fn with_reference(mut self, how: &str, error: f64) -> Self {
+        how.clone_into(&mut self.reference);
+        self.reference_error = error;
+        self
+    }
+
+    /// True if its answer is known; of other scenes only the time is measured.
+    #[must_use]
+    pub fn has_answer(&self) -> bool {
+        !self.checks.is_empty()
+    }
+
+    /// True if some shape has arcs that are no full circle, which engines of segments must cut up.
+    #[must_use]
+    pub fn has_outlines(&self) -> bool {
+        self.bodies.iter().any(|body| matches!(body.shape, Shape::Outline(_)))
+    }
+
+    /// Kinetic energy and that of gravity [J].
+    #[must_use]
+    pub fn energy(&self, states: &[BodyState]) -> f64 {
+        let energy = |body: &Body, state: &BodyState| {
+            body.inertia.map_or(0.0, |inertia| {
+                let kinetic = inertia.mass * state.velocity.length_squared()
+                    + inertia.moment * state.angular_velocity * state.angular_velocity;
+                0.5 * kinetic - inertia.mass * self.gravity.dot(state.position)
+            })
+        };
+        self.bodies.iter().zip(states).map(|(body, state)| energy(body, state)).sum()
+    }
+
+    /// How far states are from those of a check [m]: the largest error of a position, and of an angle times the radius
+    /// of gyration.
+    #[must_use]
+    pub fn error(&self, check: &Check, states: &[BodyState]) -> f64 {
+        let error = |(body, known): &(usize, BodyState)| {
+            let state = &states[*body];
+            let turn = (state.angle - known.angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU);
+            let lever = self.bodies[*body].inertia.map_or(0.0, |inertia| inertia.gyration());
+            let turned = lever * (turn - std::f64::consts::PI).abs();
+            (state.position - known.position).length().max(turned)
+        };
+        // A state that is not finite is infinitely wrong.
+        let worst = |worst: f64, error: f64| if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+        check.states.iter().map(error).fold(0.0, worst)
+    }
+
+    /// Where an end of a connector is [m].
+    #[must_use]
+    pub fn place(&self, end: &End, states: &[BodyState]) -> DVec2 {
+        end.body.map_or(end.point, |body| {
+            states[body].position + DVec2::from_angle(states[body].angle).rotate(end.point)
+        })
+    }
+
+    /// How far the worst connector is off [m]; rails are left out.
+    #[must_use]
+    pub fn connector_error(&self, states: &[BodyState]) -> f64 {
+        let error = |connector: &Connector| match connector {
+            Connector::Pin(a, b) => (self.place(a, states) - self.place(b, states)).length(),
+            Connector::Rod(a, b, length) => {
+                ((self.place(a, states) - self.place(b, states)).length() - length).abs()
+            }
+            Connector::Guide { body, point, axis } => (states[*body].position - *point).perp_dot(*axis).abs(),
+            Connector::Rail { .. } => 0.0,
+        };
+        self.connectors.iter().map(error).fold(0.0, f64::max)
+    }
+}
+
+impl Body {
+    /// A fixed body with the origin of its shape at a place [m].
+    #[must_use]
+    pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
+        let start = BodyState { position, ..BodyState::default() };
+        Self { name: name.to_owned(), shape, inertia: None, start, elasticity: 1.0 }
+    }
+
+    /// A disc of uniform density and a given mass [kg] that moves without turning.
+    #[must_use]
+    pub fn disc(name: &str, radius: f64, mass: f64, position: DVec2, velocity: DVec2) -> Self {
+        let start = BodyState { position, velocity, ..BodyState::default() };
+        let inertia = Some(Inertia { mass, moment: 0.5 * mass * radius * radius });
+        Self { name: name.to_owned(), shape: Shape::Disc { radius }, inertia, start, elasticity: 1.0 }
+    }
+
+    /// A rectangle of uniform density and a given mass [kg].
+    #[must_use]
+    pub fn block(name: &str, size: DVec2, mass: f64, start: BodyState) -> Self {
+        let inertia = Some(Inertia { mass, moment: mass * size.length_squared() / 12.0 });
+        let shape = Shape::Block { width: size.x, height: size.y };
+        Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0 }
+    }
+
+    /// The same body with another elasticity.
+    #[must_use]
+    pub fn with_elasticity(self, elasticity: f64) -> Self {
+        Self { elasticity, ..self }
+    }
+}
+
+impl End {
+    /// A point of a body [m].
+    #[must_use]
+    pub fn body(body: usize, point: DVec2) -> Self {
+        Self { body: Some(body), point }
+    }
+
+    /// A point of the world [m].
+    #[must_use]
+    pub fn world(point: DVec2) -> Self {
+        Self { body: None, point }
+    }
+}

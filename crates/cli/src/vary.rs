@@ -1,0 +1,83 @@
+//! What `halfgap sweep --vary` says: a field and the values it takes.
+
+use halfgap::scene::FieldPath;
+use std::str::FromStr;
+
+/// More runs than this are a slip of the finger.
+const MOST_VALUES: usize = 10_000_000;
+
+/// A field and evenly spaced values.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Vary {
+    pub(crate) field: FieldPath,
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+impl Vary {
+    /// The values in order; the ends are as given, to the last bit.
+    pub(crate) fn values(&self) -> Vec<f64> {
+        let last = self.count - 1;
+        let value = |index: usize| match index {
+            0 => self.from,
+            index if index == last => self.to,
+            index => self.from + (self.to - self.from) * (index as f64 / last as f64),
+        };
+        (0..self.count).map(value).collect()
+    }
+}
+
+impl FromStr for Vary {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = || {
+            let (field, range) = text.rsplit_once('=')?;
+            let (ends, count) = range.split_once('/')?;
+            let (from, to) = ends.split_once("..")?;
+            Some((field, from, to, count))
+        };
+        let (field, from, to, count) =
+            parts().ok_or("must be like body.ball.elasticity=0.1..0.9/9, FIELD=A..B/N")?;
+        let field = field.parse().map_err(|error| format!("{error}"))?;
+        let number = |text: &str| match text.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(format!("A and B must be finite numbers, got {text}")),
+        };
+        let (from, to) = (number(from)?, number(to)?);
+        match count.trim().parse() {
+            Ok(count @ 1..=MOST_VALUES) => Ok(Self { field, from, to, count }),
+            _ => Err(format!("N must be a whole number from 1 to {MOST_VALUES}, got {count}")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_even_and_include_the_ends() {
+        let vary: Vary = "run.tolerance=-1..0.5/4".parse().expect("it is well formed");
+        assert_eq!(vary.field.to_string(), "run.tolerance");
+        assert_eq!(vary.values(), [-1.0, -0.5, 0.0, 0.5]);
+        let one: Vary = "body[0].mass=1e-3..2/1".parse().expect("it is well formed");
+        assert_eq!(one.values(), [1e-3]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        for (text, why) in [
+            ("mass", "FIELD=A..B/N"),
+            ("mass=1..2", "FIELD=A..B/N"),
+            ("mass=1/2", "FIELD=A..B/N"),
+            ("body[=1..2/3", "a field is written like"),
+            ("mass=1..inf/3", "finite numbers, got inf"),
+            ("mass=1..2/0", "N must be a whole number from 1"),
+        ] {
+            let error = text.parse::<Vary>().expect_err("it is wrong");
+            assert!(error.contains(why), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! A scene in which one number takes other values.
+//!
+//! The text is kept as plain data; a value is put in its place and the whole is read and checked as a file would be.
+
+use super::Scene;
+use super::error::SceneError;
+use super::field_path::{FieldPath, Step};
+use super::source::{SceneSource, field_path, plain};
+use serde_json::{Number, Value};
+
+/// Whole numbers below this size are the same as integers and as floating-point numbers.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// A scene in which one number takes other values.
+#[derive(Clone, Debug)]
+pub struct VariedScene {
+    source: SceneSource,
+    data: Value,
+    field: FieldPath,
+}
+
+impl VariedScene {
+    /// The scene of a text, with the number at `field` to vary; an element of `body` may be named by its `name`, as in
+    /// `body.ball.elasticity`. A field that the text leaves out is varied too, if the format has it.
+    ///
+    /// # Errors
+    /// The scene is wrong as it is, there is no such field, or it is no number.
+    pub fn new(source: SceneSource, field: &FieldPath) -> Result<Self, SceneError> {
+        source.parse()?;
+        let data = source.data()?;
+        let field = resolved(&data, field).map_err(|error| source.locate(error))?;
+        Ok(Self { source, data, field })
+    }
+
+    /// The field, with elements by their place: `body[1].elasticity`.
+    #[must_use]
+    pub fn field(&self) -> &FieldPath {
+        &self.field
+    }
+
+    /// The scene with a value in the field.
+    ///
+    /// # Errors
+    /// The format has no such field, or the value is out of its range.
+    pub fn with(&self, value: f64) -> Result<Scene, SceneError> {
+        let located = |error: SceneError| {
+            let message = format!("{} (varied to {value})", error.message());
+            self.source.locate(SceneError::new(error.field().clone(), message))
+        };
+        let mut data = self.data.clone();
+        let number = number(value).ok_or_else(|| located(self.bad("must be finite")))?;
+        put(&mut data, self.field.steps(), number)
+            .ok_or_else(|| located(self.bad("there is no such field")))?;
+        let scene: Scene = serde_path_to_error::deserialize(data).map_err(|error| {
+            located(SceneError::new(field_path(error.path()), plain(&error.inner().to_string())))
+        })?;
+        scene.validate().map_err(located)?;
+        Ok(scene)
+    }
+
+    fn bad(&self, message: &str) -> SceneError {
+        SceneError::new(self.field.clone(), message)
+    }
+}
+
+/// A number that reads as any kind of number that it fits.
+fn number(value: f64) -> Option<Number> {
+    let is_whole =
+        value.fract() == 0.0 && value.abs() < LARGEST_WHOLE && !(value == 0.0 && value.is_sign_negative());
+    if is_whole { Some(Number::from(value as i64)) } else { Number::from_f64(value) }
+}
+
+/// The path with names of elements replaced by their places.
+fn resolved(data: &Value, field: &FieldPath) -> Result<FieldPath, SceneError> {
+    let (mut place, mut now) = (FieldPath::top(), Some(data));
+    for (index, step) in field.steps().iter().enumerate() {
+        let is_last = index + 1 == field.steps().len();
+        let missing = |what: String| SceneError::new(field.clone(), what);
+        match (now, step) {
+            (Some(Value::Object(table)), Step::Field(name)) => {
+                now = table.get(name);
+                if now.is_none() && !is_last {
+                    return Err(missing(format!("there is no `{name}` in the scene")));
+                }
+                place = place.field(name);
+            }
+            (Some(Value::Array(elements)), step) => {
+                let found = element(elements, step).ok_or_else(|| missing(absent(elements, step)))?;
+                now = elements.get(found);
+                place = place.element(found);
+            }
+            _ => return Err(missing(format!("`{place}` has no parts"))),
+        }
+    }
+    match now {
+        None | Some(Value::Number(_)) if !field.is_top() => Ok(place),
+        _ => Err(SceneError::new(place, "is no number and cannot be varied")),
+    }
+}
+
+/// The element at a place or of a name.
+fn element(elements: &[Value], step: &Step) -> Option<usize> {
+    match step {
+        Step::Element(index) => (*index < elements.len()).then_some(*index),
+        Step::Field(name) => {
+            let has_name = |element: &Value| element.get("name").and_then(Value::as_str) == Some(name);
+            elements.iter().position(has_name)
+        }
+    }
+}
+
+fn absent(elements: &[Value], step: &Step) -> String {
+    match step {
+        Step::Element(index) => format!("there is no element {index}: there are {}", elements.len()),
+        Step::Field(name) => {
+            let names: Vec<_> = elements.iter().filter_map(|element| element.get("name")?.as_str()).collect();
+            format!("there is no `{name}`: there are {}", names.join(", "))
+        }
+    }
+}
+
+/// Puts a number at a path; `None` if that leads nowhere.
+fn put(data: &mut Value, steps: &[Step], number: Number) -> Option<()> {
+    let Some((step, rest)) = steps.split_first() else {
+        *data = Value::Number(number);
+        return Some(());
+    };
+    let part = match (data, step) {
+        (Value::Object(table), Step::Field(name)) => table.entry(name).or_insert(Value::Null),
+        (Value::Array(elements), Step::Element(index)) => elements.get_mut(*index)?,
+        _ => return None,
+    };
+    put(part, rest, number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneFormat;
+
+    const TEXT: &str = r#"
+        format = "halfgap-scene-1"
+        title = "two discs"
+        run = { duration = 1 }
+
+        [[body]]
+        name = "left disc"
+        shape = { disc = { radius = 0.5 } }
+        mass = 1
+
+        [[body]]
+        name = "ball"
+        shape = { disc = { radius = 0.5 } }
+        mass = 1
+        position = [3, 0.5]
+    "#;
+
+    fn varied(field: &str) -> Result<VariedScene, SceneError> {
+        let field = field.parse().expect("a path");
+        VariedScene::new(SceneSource::new(TEXT, SceneFormat::Toml), &field)
+    }
+
+    #[test]
+    fn a_field_is_found_by_name_and_by_place() {
+        let scene = varied("body.ball.position[1]").expect("it is there");
+        assert_eq!(scene.field().to_string(), "body[1].position[1]");
+        let changed = scene.with(0.1).expect("a good place");
+        assert_eq!(changed.bodies[1].position.y, 0.1);
+        let unchanged = scene.with(0.5).expect("the same scene");
+        assert_eq!(unchanged, SceneSource::new(TEXT, SceneFormat::Toml).parse().expect("a good scene"));
+        let by_place = varied(r#"body[0].shape.disc.radius"#).and_then(|scene| scene.with(0.25));
+        assert!(by_place.is_ok_and(|scene| scene.bodies[0].shape != changed.bodies[0].shape));
+    }
+
+    #[test]
+    fn a_field_that_is_left_out_is_varied_too() {
+        let scene = varied("body.\"left disc\".elasticity").and_then(|scene| scene.with(0.25));
+        assert_eq!(scene.expect("elasticity is a field").bodies[0].elasticity, 0.25);
+        let seeded = varied("run.seed").and_then(|scene| scene.with(7.0));
+        assert_eq!(seeded.expect("seed is a whole number").run.seed, Some(7));
+    }
+
+    #[test]
+    fn what_cannot_be_varied_is_named() {
+        let message = |field: &str| {
+            varied(field).and_then(|scene| scene.with(-1.0)).expect_err("a bad field").to_string()
+        };
+        for (field, why) in [
+            ("body.bal.mass", "line 6: body.bal.mass: there is no `bal`: there are left disc, ball"),
+            ("body[2].mass", "body[2].mass: there is no element 2: there are 2"),
+            ("run.speed.x", "line 4: run.speed.x: there is no `speed` in the scene"),
+            ("run.duration.x", "`run.duration` has no parts"),
+            ("title", "line 3: title: is no number and cannot be varied"),
+            ("body.ball.bounce", "body[1].bounce: unknown field `bounce`"),
+        ] {
+            assert!(message(field).contains(why), "{}", message(field));
+        }
+        let mass = message("body.ball.mass");
+        assert_eq!(mass, "line 14: body[1].mass: must be positive, got -1 kg (varied to -1)");
+    }
+}
