@@ -2,7 +2,7 @@
 
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, World,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, Event, World,
     WorldBuilder, WorldSettings,
 };
 
@@ -133,6 +133,21 @@ pub fn thrown(x: f64, y: f64, velocity: DVec2) -> BodyState {
 /// If it stops early: the test fails.
 pub fn advance(world: &mut World, time: f64) {
     world.advance_to(time, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// Advances a world, and returns the time [s] at which the last contact has come to rest, with the bounces that were cut off.
+///
+/// # Panics
+/// If it stops early: the test fails.
+pub fn rest_time(world: &mut World, until: f64) -> f64 {
+    let mut last = 0.0;
+    let mut note = |event: &Event| {
+        if let Event::ContactBegins(begin) = event {
+            last = begin.time + begin.bouncing.unwrap_or(0.0);
+        }
+    };
+    world.advance_to(until, &mut note).unwrap_or_else(|error| panic!("{error}"));
+    last
 }
 
 /// Largest error of any connector now [m].

@@ -1,6 +1,6 @@
 //! Rest: bodies that lose their bounce stay where they are, at no cost.
 
-use halfgap::{Event, World};
+use halfgap_tests::mechanism::rest_time;
 use halfgap_tests::world_of;
 
 const FLOOR: &str = r#"
@@ -20,23 +20,11 @@ fn on_floor(body: &str) -> String {
     format!("{FLOOR}\n[[body]]\nname = \"body\"\nmass = 1.0\n{body}")
 }
 
-/// Runs to the given time and returns that at which the last contact has come to rest, with the bounces that it cut off.
-fn last_event(world: &mut World, until: f64) -> f64 {
-    let mut last = 0.0;
-    let mut note = |event: &Event| {
-        if let Event::ContactBegins(begin) = event {
-            last = begin.time + begin.bouncing.unwrap_or(0.0);
-        }
-    };
-    world.advance_to(until, &mut note).unwrap_or_else(|error| panic!("{error}"));
-    last
-}
-
 #[test]
 fn a_resting_contact_forms_where_a_ball_without_bounce_lands() {
     let mut world =
         world_of(&on_floor("shape = { disc = { radius = 0.5 } }\nposition = [0.0, 1.75]\nelasticity = 0.0"));
-    let rest = last_event(&mut world, 10.0);
+    let rest = rest_time(&mut world, 10.0);
     assert!((rest - 0.5).abs() < 1e-8, "at rest at {rest} s");
     assert_eq!(world.statistics().impacts, 1);
     let forces = world.contact_forces();
@@ -67,7 +55,7 @@ fn a_bouncing_ball_rests_when_the_geometric_series_ends() {
         );
         let mut world = world_of(&on_floor(&body));
         // A drop of 0.5 s, then bounces of 1, e, e^2, ... s.
-        let last = last_event(&mut world, 60.0);
+        let last = rest_time(&mut world, 60.0);
         let speed = world.tolerances().velocity_tol;
         assert!(
             (last - rest).abs() < 10.0 * speed / (1.0 - elasticity),

@@ -5,13 +5,13 @@
 
 use crate::closed::quadratic;
 use crate::detect::pair_tolerances;
-use crate::march::{MarchEnd, Pair, Slack, Window, contact_is_within, reach_circle};
+use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
 use crate::motion::Motion;
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 
-/// Part of the accuracy by which a contact may lie outside of its features and still fires.
-const VALIDITY_SHARE: f64 = 1.0 / 16.0;
+/// Part of the accuracy by which a corner may lean off a line and still fires.
+const LEAN_SHARE: f64 = 1.0 / 16.0;
 
 /// A shape in motion, as the search sees it.
 #[derive(Clone, Copy, Debug)]
@@ -241,9 +241,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let rule = self.rules.iter().find(|rule| rule.features == ids);
         let target = rule.map_or(Some(tolerances.target_gap), |rule| rule.target)?;
         let depth = tolerances.distance_tol().max(self.settings.depth);
-        let overrun = VALIDITY_SHARE * tolerances.accuracy;
-        let angles = [overrun / self.a.shape.lever(ids[0]), overrun / self.b.shape.lever(ids[1])];
-        let slack = Slack { angles, overrun };
+        let slack = [slack(a, self.a.shape.lever(ids[0]), b), slack(b, self.b.shape.lever(ids[1]), a)];
+        let slack = slack.map(|share| share * tolerances.accuracy);
         Some(Pair { kind, feature_a: a, feature_b: b, target, depth, slack })
     }
 
@@ -294,7 +293,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             feature_b: circle_b,
             target,
             depth: f64::INFINITY,
-            slack: Slack::NONE,
+            slack: [0.0; 2],
         };
         let offsets = [self.a.offset + start, self.b.offset + start];
         let (a, b) = ((circle_a, self.a.motion), (circle_b, self.b.motion));
@@ -377,6 +376,18 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             MarchEnd::Closes(_) => {}
             MarchEnd::NoneBefore(time) => progress.pause_at(time),
         }
+    }
+}
+
+/// Angle [rad/m] by which a corner may lean off a line, for each metre of the accuracy; nothing for all else.
+///
+/// Edges that lie flat on each other are parallel up to rounding: their corners are now within, now outside of their cones.
+/// A bound well above rounding keeps the search from asking at every tick of the clock. No corner fires too early by it: the
+/// next corner along the edge is nearer then.
+fn slack(feature: &Feature, lever: f64, other: &Feature) -> f64 {
+    match (feature, other) {
+        (Feature::Round(round), Feature::Line(_)) if round.radius == 0.0 => LEAN_SHARE / lever,
+        _ => 0.0,
     }
 }
 

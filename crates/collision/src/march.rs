@@ -101,24 +101,8 @@ pub(crate) struct Pair<'a> {
     pub(crate) target: f64,
     /// A pair deeper than this [m] lies behind.
     pub(crate) depth: f64,
-    pub(crate) slack: Slack,
-}
-
-/// By how much a contact may lie outside of its features and still counts as within them.
-///
-/// Edges that lie flat on each other are parallel up to rounding: their corners are now within, now outside of their
-/// cones. A bound well above rounding keeps the search from asking at every tick of the clock.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Slack {
-    /// Angles [rad] outside of the ranges of the two features.
-    pub(crate) angles: [f64; 2],
-    /// Distance [m] beyond the ends of a line.
-    pub(crate) overrun: f64,
-}
-
-impl Slack {
-    /// No more than rounding.
-    pub(crate) const NONE: Self = Self { angles: [0.0; 2], overrun: 0.0 };
+    /// Angles [rad] by which the contact may lie outside of the ranges of the two features and still counts as within.
+    pub(crate) slack: [f64; 2],
 }
 
 /// The round side of a pair, with the angle [rad] by which a contact may lie outside of its range.
@@ -170,12 +154,12 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let (a, b) = self.at(time);
         match (pair.kind, pair.feature_a, pair.feature_b) {
             (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
-                let slack = pair.slack.angles[0];
+                let slack = pair.slack[0];
                 let sides = ((round, &a, self.spin_a, slack), (line, &b, self.spin_b));
                 self.look_at_line(pair, sides, &self.acceleration, ahead)
             }
             (PairKind::LineRound, Feature::Line(line), Feature::Round(round)) => {
-                let slack = pair.slack.angles[1];
+                let slack = pair.slack[1];
                 let sides = ((round, &b, self.spin_b, slack), (line, &a, self.spin_a));
                 self.look_at_line(pair, sides, &self.acceleration.mirrored(), ahead)
             }
@@ -270,13 +254,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let rate = n.dot(e_rate) + w * n.perp().dot(e);
         let along_rate = n.perp().dot(e_rate) - w * n.dot(e);
         let size = gap.center.abs().max(b.pose.position.abs()).max_element() + e.length() + round.radius;
-        let beyond = overrun_for(
-            gap.along,
-            along_rate,
-            line,
-            in_any_direction,
-            rounding(size).max(pair.slack.overrun),
-        );
+        let beyond = overrun_for(gap.along, along_rate, line, in_any_direction, rounding(size));
         let excess = gap.excess(round, &a.pose);
         let turning = (a.angular_velocity - w).abs();
         let askew = (excess > rounding(1.0).max(slack)).then(|| {
@@ -306,7 +284,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         (direction_rate, u_max, a_max): (f64, f64, f64),
     ) -> Option<f64> {
         let [excess_a, excess_b] = gap.excess(round_a, &a.pose, round_b, &b.pose);
-        let [slack_a, slack_b] = pair.slack.angles.map(|slack| slack.max(direction_rounding(gap)));
+        let [slack_a, slack_b] = pair.slack.map(|slack| slack.max(direction_rounding(gap)));
         if excess_a <= slack_a && excess_b <= slack_b {
             return None;
         }
@@ -431,7 +409,7 @@ fn longer(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 
 /// True if the contact point of a pair lies within both of its features, up to its slack.
 pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
-    let [slack_a, slack_b] = pair.slack.angles;
+    let [slack_a, slack_b] = pair.slack;
     match (pair.feature_a, pair.feature_b) {
         (Feature::Round(a), Feature::Round(b)) => {
             let gap = CenterGap::measure(a, poses[0], b, poses[1], pair.kind == PairKind::Inner);
@@ -440,10 +418,10 @@ pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
             excess_a <= least.max(slack_a) && excess_b <= least.max(slack_b)
         }
         (Feature::Round(round), Feature::Line(line)) => {
-            is_within_line((round, poses[0], slack_a), (line, poses[1]), pair.slack.overrun)
+            is_within_line((round, poses[0], slack_a), (line, poses[1]))
         }
         (Feature::Line(line), Feature::Round(round)) => {
-            is_within_line((round, poses[1], slack_b), (line, poses[0]), pair.slack.overrun)
+            is_within_line((round, poses[1], slack_b), (line, poses[0]))
         }
         (Feature::Line(_), Feature::Line(_)) => false,
     }
@@ -452,12 +430,10 @@ pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
 fn is_within_line(
     (round, pose_round, slack): (&RoundFeature, &Pose, f64),
     (line, pose_line): (&LineFeature, &Pose),
-    overrun: f64,
 ) -> bool {
     let gap = LineGap::measure(round, pose_round, line, pose_line);
     let size = gap.center.abs().max(pose_line.position.abs()).max_element();
-    gap.overrun(line) <= rounding(size).max(overrun)
-        && gap.excess(round, pose_round) <= rounding(1.0).max(slack)
+    gap.overrun(line) <= rounding(size) && gap.excess(round, pose_round) <= rounding(1.0).max(slack)
 }
 
 /// The round feature that stands for a whole body far away: its reach about its centre of mass.

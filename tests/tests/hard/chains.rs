@@ -1,16 +1,9 @@
 //! Chains of events that end, or that do not.
 
 use super::{bounced, within};
+use halfgap::BodyState;
 use halfgap::geometry::DVec2;
-use halfgap::{BodyState, World};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
-
-/// Time [s] of the last event up to a time.
-fn last_event(world: &mut World, until: f64) -> f64 {
-    let mut last = 0.0;
-    world.advance_to(until, &mut |event| last = event.time()).unwrap_or_else(|error| panic!("{error}"));
-    last
-}
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, rest_time};
 
 #[test]
 fn a_ball_rests_when_its_geometric_series_ends_at_every_tolerance() {
@@ -20,7 +13,7 @@ fn a_ball_rests_when_its_geometric_series_ends_at_every_tolerance() {
         shop.settler("ball", disc(0.5), 1.0, at_rest(0.0, 1.75), 0.5);
         let mut world = shop.build();
         // Half a second down, then bounces of 2 v/g with v halved each time: 0.5 + 0.5 + 0.25 + ... s.
-        let rest = last_event(&mut world, 5.0);
+        let rest = rest_time(&mut world, 5.0);
         // Caught below the velocity tolerance v: what is left of the series is 2 v/(g (1 - e)) at most. The gap makes each
         // fall shorter by its size over the speed.
         let caught = 2.0 * world.tolerances().velocity_tol / (GRAVITY * 0.5);
@@ -37,7 +30,7 @@ fn a_block_clatters_to_rest_on_two_corners() {
         let state = BodyState { angle, ..at_rest(0.0, 0.8) };
         let body = shop.settler("block", block(2.0, 1.0), 1.0, state, 0.5);
         let mut world = shop.build();
-        let rest = last_event(&mut world, 20.0);
+        let rest = rest_time(&mut world, 20.0);
         println!("clatters until {rest} s: {:?}", world.statistics());
         assert!(rest < 10.0, "it clatters until {rest} s");
         let state = world.state(body);

@@ -457,11 +457,8 @@ impl RigidSystem {
 /// Cap on the corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
 
-/// Cap on the steps tried for one that keeps to its rows.
-const MOST_SHORTENINGS: usize = 8;
-
-/// A shorter step must bring the error of its rows down by this factor.
-const SHORTENING_GAIN: f64 = 0.5;
+/// Cap on the shorter steps tried for one that keeps to its rows.
+const MOST_SHORTENINGS: usize = 2;
 
 /// What a group's stepping uses beside its dynamics.
 pub(crate) struct Tools<'a> {
@@ -474,26 +471,29 @@ impl Dynamics<'_> {
     /// Extends the group by a step whose dense output keeps to the held rows, too: shorter ones are tried until it does.
     fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         let steps = tools.settings.steps;
-        let mut last = f64::INFINITY;
-        for _ in 0..MOST_SHORTENINGS {
+        let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
+        let (mut proposed, projected) = (None, self.group.projected);
+        for tries in 0.. {
+            self.group.projected = projected;
             self.extend(tools.stepper, &steps, tools.scales)?;
             self.end_on_rows(tools);
             self.evaluate_end();
             self.follow_rails();
             self.make_dense(tools.stepper);
-            let excess =
-                self.middle_excess(steps.length * steps.local_error, tools.settings.tolerances.accuracy);
-            let method = tools.stepper.method();
-            // What shorter steps do not mend is rounding, or rows that contradict each other.
-            let is_helped = excess < SHORTENING_GAIN * last;
-            if !tools.settings.projection || !method.is_adaptive() || !is_helped {
+            let excess = self.middle_excess(tools.settings.tolerances.accuracy);
+            let proposed = *proposed.get_or_insert(self.group.next_step);
+            if is_free {
                 break;
             }
-            self.limit_next_step(method.step_factor(excess));
+            if tries == MOST_SHORTENINGS && excess > 1.0 {
+                // What shorter steps do not mend is rounding, or rows that contradict each other.
+                self.group.next_step = proposed;
+                break;
+            }
+            self.limit_next_step(tools.stepper.method().step_factor(excess));
             if excess <= 1.0 {
                 break;
             }
-            last = excess;
         }
         Ok(())
     }

@@ -30,6 +30,9 @@ const RETREAT: f64 = 0.1;
 /// Part of the accuracy by which rounding may move a body along a step.
 const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 
+/// Part of its reach by which a body with contacts may move in one step.
+const WATCHED_SHARE: f64 = 0.5;
+
 /// Why a group could not be stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StepFailure {
@@ -60,7 +63,8 @@ impl Dynamics<'_> {
         scales: &mut Vec<f64>,
     ) -> Result<(), StepFailure> {
         self.set_scales(control, scales);
-        let limit = control.largest_step.unwrap_or(f64::INFINITY).min(self.longest_sound_step());
+        let longest = self.longest_sound_step().min(self.longest_watched_step());
+        let limit = control.largest_step.unwrap_or(f64::INFINITY).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);
@@ -121,6 +125,25 @@ impl Dynamics<'_> {
     fn longest_sound_step(&self) -> f64 {
         let rounding = f64::EPSILON * self.group.free_acceleration;
         (2.0 * ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / rounding).sqrt()
+    }
+
+    /// The longest step [s] along which forces of contacts are surely sampled well: they vary as bodies move by a part of
+    /// their size, and no error estimate sees them where nothing accelerates.
+    fn longest_watched_step(&self) -> f64 {
+        let group = &self.group;
+        if group.rows.iter().all(|row| row.bilateral) {
+            return f64::INFINITY;
+        }
+        let count = group.bodies.len();
+        let waits = group.bodies.iter().enumerate().map(|(place, &body)| {
+            let at = 3 * (count + place);
+            let velocity = DVec2::new(group.state[at], group.state[at + 1]).length();
+            let reach = self.reach(body);
+            let is_disc = self.physics.mechanism.flyers[body.index()].disc().is_some();
+            let speed = velocity + group.state[at + 2].abs() * reach;
+            if is_disc || speed == 0.0 { f64::INFINITY } else { WATCHED_SHARE * reach / speed }
+        });
+        waits.fold(f64::INFINITY, f64::min)
     }
 
     fn reach(&self, body: BodyId) -> f64 {

@@ -16,8 +16,6 @@ pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
 /// Part of the accuracy by which a held contact may be too near in the middle of a step.
 const MIDDLE_SHARE: f64 = 0.5;
-/// So many local errors [m] may a connector be off there.
-const MIDDLE_ERRORS: f64 = 10.0;
 
 impl Dynamics<'_> {
     /// The earliest event of the group itself on the segment, whose dense output and end forces are known.
@@ -90,10 +88,9 @@ impl Dynamics<'_> {
         self.stage.trial = trial;
     }
 
-    /// By how much held rows are off in the middle of the segment, where dense output is least exact, in units of what is
-    /// allowed: part of the accuracy for a contact, so that nothing overlaps, some local errors [m] for a connector. The
-    /// largest error of a connector is noted.
-    pub(crate) fn middle_excess(&mut self, local_error: f64, accuracy: f64) -> f64 {
+    /// By how much held contacts are too near in the middle of the segment, where dense output is least exact, in units of
+    /// what is allowed so that nothing overlaps. The largest error of a connector is noted.
+    pub(crate) fn middle_excess(&mut self, accuracy: f64) -> f64 {
         self.group.largest_error = 0.0;
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
@@ -101,15 +98,12 @@ impl Dynamics<'_> {
         }
         self.place_at(0.5 * self.group.span);
         for row in &self.group.rows {
-            let moment = self.physics.mechanism.measure(row, &self.stage.movings);
-            let error = moment.gap - row.gap;
-            let is_contact = matches!(row.source, RowSource::Contact(_));
-            if is_contact {
-                // A gap too large does no harm.
-                excess = excess.max(-error / (MIDDLE_SHARE * accuracy));
-            } else {
-                excess = excess.max(error.abs() / (MIDDLE_ERRORS * local_error));
-                self.group.largest_error = self.group.largest_error.max(error.abs());
+            let error = self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap;
+            match row.source {
+                RowSource::Contact(_) => excess = excess.max(-error / (MIDDLE_SHARE * accuracy)),
+                RowSource::Connector(..) => {
+                    self.group.largest_error = self.group.largest_error.max(error.abs());
+                }
             }
         }
         excess

@@ -6,7 +6,7 @@
 
 use crate::closed::quadratic;
 use crate::first_contact::SearchSettings;
-use crate::march::{MarchEnd, Pair, Slack, Window};
+use crate::march::{MarchEnd, Pair, Window};
 use crate::motion::Motion;
 use glam::DVec2;
 use halfgap_geometry::{DirectionRange, Feature, PairKind, RoundFeature};
@@ -54,7 +54,7 @@ pub fn rope_contact<A: Motion, B: Motion>(
         feature_b: &hollow,
         target: 0.0,
         depth: f64::INFINITY,
-        slack: Slack::NONE,
+        slack: [0.0; 2],
     };
     let offsets = [offset_a, offset_b];
     if let Some(search) = by_closed_form(&pair, motion_a, motion_b, offsets, from, span) {
