@@ -53,7 +53,9 @@ pub(crate) struct Stage {
     pub(crate) forces: Vec<f64>,
     pub(crate) changes: Vec<[f64; 3]>,
     /// Sum of the sizes of all rows' forces on each body [N].
-    gross: Vec<f64>,
+    pub(crate) gross: Vec<f64>,
+    /// Force [N] of each row below which it has none.
+    pub(crate) least: Vec<f64>,
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows.
     pub(crate) free_acceleration: f64,
     /// Rates of rows during a projection [m/s].

@@ -38,6 +38,8 @@ pub(crate) struct Settling {
     /// The rows to be held, with the record of each.
     pub(crate) held: Vec<(usize, HeldRow)>,
     laws: Vec<usize>,
+    /// Loads of the region's bodies [N].
+    gross: Vec<f64>,
     /// Bodies as the problem numbers them.
     bodies: Vec<halfgap_contact::BodyId>,
 }
@@ -59,6 +61,7 @@ impl Default for Settling {
             candidates: Vec::new(),
             held: Vec::new(),
             laws: Vec::new(),
+            gross: Vec::new(),
             bodies: Vec::new(),
         }
     }
@@ -174,10 +177,7 @@ impl RigidSystem {
     /// both sides of a body that just fits.
     fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
         let largest = settling.solution.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
-        let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| {
-            let flyer = self.flyer(body);
-            (DVec2::new(a[0], a[1]).length() + a[2].abs() * flyer.reach()) / flyer.body().inverse_mass
-        });
+        let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.load(body, a));
         largest > JAM * loads.sum::<f64>()
     }
 
@@ -237,19 +237,34 @@ impl RigidSystem {
     /// Holds the bilateral rows and those that carry a force.
     fn choose_rows(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
         let forces = &settling.solution.force;
-        let largest = forces.iter().fold(0.0f64, |most, force| most.max(force.abs()));
-        let of_bodies = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| {
-            let flyer = self.flyer(body);
-            (DVec2::new(a[0], a[1]).length() + a[2].abs() * flyer.reach()) / flyer.body().inverse_mass
-        });
-        let least = FORCE_SHARE * (largest + of_bodies.fold(0.0, f64::max));
+        // Loads [N] of each body: its own and those of its rows.
+        let mut gross = std::mem::take(&mut settling.gross);
+        gross.clear();
+        let bodies = region.bodies.iter().zip(&stage.accelerations);
+        gross.extend(bodies.map(|(&body, acceleration)| self.load(body, acceleration)));
+        for (&index, force) in settling.candidates.iter().zip(forces) {
+            for place in places_of(region, &region.records[index]) {
+                gross[place] += force.abs();
+            }
+        }
         for (place, &index) in settling.candidates.iter().enumerate() {
             let record = &mut region.records[index];
             record.response.force = Some(forces[place]);
-            if record.parties.bilateral || forces[place] > least {
-                settling.held.extend(self.held_row(record).map(|row| (index, row)));
+            let (bilateral, record) = (record.parties.bilateral, *record);
+            let loads = places_of(region, &record).map(|place| gross[place]);
+            let least = FORCE_SHARE * loads.fold(f64::INFINITY, f64::min);
+            if bilateral || forces[place] > least {
+                settling.held.extend(self.held_row(&record).map(|row| (index, row)));
             }
         }
+        settling.gross = gross;
+    }
+
+    /// Force [N] that gives a body an acceleration.
+    fn load(&self, body: BodyId, acceleration: &[f64; 3]) -> f64 {
+        let flyer = self.flyer(body);
+        let linear = DVec2::new(acceleration[0], acceleration[1]).length();
+        (linear + acceleration[2].abs() * flyer.reach()) / flyer.body().inverse_mass
     }
 
     fn held_row(&self, record: &Collision) -> Option<HeldRow> {
@@ -282,6 +297,12 @@ impl RigidSystem {
     pub(crate) fn physics(&self) -> Physics<'_> {
         Physics { mechanism: self.mechanism(), laws: &self.laws, extra: self.settings.extra }
     }
+}
+
+/// Places of the movable bodies of a record.
+fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item = usize> + use<'a> {
+    let bodies = [record.parties.primary.body, record.parties.normal.body];
+    bodies.into_iter().filter_map(|body| region.place(body))
 }
 
 fn spin([x, y, angular]: [f64; 3]) -> Spin {

@@ -11,7 +11,7 @@ use super::rows::{HeldRow, RowSource, moving_of};
 use crate::ode::Ode;
 use glam::DVec2;
 
-/// A force below this part of the group's largest is none: more than the rounding of nearly redundant contacts.
+/// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
 pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
 /// Part of the accuracy by which a held contact may be too near in the middle of a step.
@@ -27,13 +27,13 @@ impl Dynamics<'_> {
             }
         };
         if self.group.rows.iter().any(|row| !row.bilateral) {
-            let least = FORCE_SHARE * self.largest_force();
-            let samples = self.sample_forces(least);
+            self.find_least_forces();
+            let samples = self.sample_forces();
             for (row, values) in samples.iter().enumerate() {
                 if self.group.rows[row].bilateral {
                     continue;
                 }
-                let fall = first_fall(values, self.group.span, |offset| self.force_at(offset, row) + least);
+                let fall = first_fall(values, self.group.span, |offset| self.force_at(offset, row));
                 offer(fall, SegmentEnd::Release(row));
             }
             self.stage.samples = samples;
@@ -62,18 +62,30 @@ impl Dynamics<'_> {
         earliest
     }
 
-    /// The largest force [N] that acts on a body of the group or would give it its acceleration.
-    pub(crate) fn largest_force(&self) -> f64 {
-        let count = self.group.bodies.len();
-        let rows = self.group.forces.iter().chain(&self.group.end_forces);
-        let of_rows = rows.fold(0.0f64, |most, force| most.max(force.abs()));
-        let of_bodies = self.group.bodies.iter().enumerate().map(|(place, &body)| {
+    /// Finds for each row the force [N] below which it has none: part of the loads of the less loaded of its bodies, of
+    /// their accelerations and of all their rows.
+    fn find_least_forces(&mut self) {
+        let group = &*self.group;
+        let count = group.bodies.len();
+        let mut gross = std::mem::take(&mut self.stage.gross);
+        gross.clear();
+        gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
             let flyer = &self.physics.mechanism.flyers[body.index()];
             let at = 3 * (count + place);
-            let linear = DVec2::new(self.group.rates[at], self.group.rates[at + 1]).length();
-            (linear + self.group.rates[at + 2].abs() * flyer.reach()) / flyer.body().inverse_mass
-        });
-        of_rows + of_bodies.fold(0.0, f64::max)
+            let linear = DVec2::new(group.rates[at], group.rates[at + 1]).length();
+            (linear + group.rates[at + 2].abs() * flyer.reach()) / flyer.body().inverse_mass
+        }));
+        let places = |row: &HeldRow| row.bodies.map(|body| group.bodies.binary_search(&body).ok());
+        for (index, row) in group.rows.iter().enumerate() {
+            let force = group.forces[index].abs().max(group.end_forces[index].abs());
+            places(row).into_iter().flatten().for_each(|place| gross[place] += force);
+        }
+        self.stage.least.clear();
+        self.stage.least.extend(group.rows.iter().map(|row| {
+            let loads = places(row).into_iter().flatten().map(|place| gross[place]);
+            FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
+        }));
+        self.stage.gross = gross;
     }
 
     /// Places the group's bodies where they are at an offset [s] of the segment.
@@ -119,13 +131,14 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
+    /// Force [N] of a row at an offset [s], raised by what counts as none.
     fn force_at(&mut self, offset: f64, row: usize) -> f64 {
         self.evaluate_at(offset);
-        self.stage.forces[row]
+        self.stage.forces[row] + self.stage.least[row]
     }
 
-    /// The forces of all rows at the nodes, raised by `least`.
-    fn sample_forces(&mut self, least: f64) -> Vec<[f64; NODES]> {
+    /// The forces of all rows at the nodes, raised by what counts as none.
+    fn sample_forces(&mut self) -> Vec<[f64; NODES]> {
         let mut samples = std::mem::take(&mut self.stage.samples);
         samples.clear();
         samples.resize(self.group.rows.len(), [0.0; NODES]);
@@ -138,7 +151,7 @@ impl Dynamics<'_> {
                 _ if index + 1 == NODES => &self.group.end_forces,
                 _ => &self.stage.forces,
             };
-            for (sample, force) in samples.iter_mut().zip(forces) {
+            for ((sample, force), least) in samples.iter_mut().zip(forces).zip(&self.stage.least) {
                 sample[index] = force + least;
             }
         }
