@@ -1,9 +1,9 @@
 //! Contacts that change from feature to feature, and that end.
 
 use super::within;
-use halfgap::geometry::{DVec2, Shape};
-use halfgap::{BodyId, Event, World};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, block, disc, thrown};
+use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
+use halfgap::{BodyId, BodySpec, Event, World};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 
 /// The tolerance of these cases.
 const TOLERANCE: f64 = 1e-10;
@@ -91,4 +91,53 @@ fn a_block_slides_over_an_edge_and_turns_only_then() {
     assert!(world.state(body).angle < -0.05, "it tips: {}", world.state(body).angle);
     // Without friction and bounce-free contacts that only slide nothing is lost.
     within("block to an edge: energy while tipping [J]", world.energy().total() - start, 1e-8);
+}
+
+#[test]
+fn a_disc_slides_from_line_to_concave_arc_to_line_and_comes_as_high_as_it_was() {
+    let mut shop = Workshop::new(TOLERANCE);
+    let shape = valley();
+    let center = shape.mass_properties().centroid;
+    shop.builder.add(BodySpec::fixed("valley", shape, center));
+    // On the left slope, 0.5 m off it along its normal.
+    let start = DVec2::new(-3.0, 3.0 - 2.0 * 2f64.sqrt()) + 0.5 * DVec2::new(0.5f64.sqrt(), 0.5f64.sqrt());
+    let ball = shop.dull("disc", disc(0.5), 1.0, at_rest(start.x, start.y));
+    let mut world = shop.build();
+    let height = world.state(ball).position.y;
+    let turns = turning_time(&world, ball, 0.5, 3.0);
+    advance(&mut world, turns);
+    let state = world.state(ball);
+    within("disc in a valley: height on the other side [m]", state.position.y - height, 1e-9);
+    within("disc in a valley: mirrored place [m]", state.position.x + start.x, 1e-9);
+    // After as long again it is back, at rest.
+    advance(&mut world, 2.0 * turns);
+    within("disc in a valley: back at the start [m]", (world.state(ball).position - start).length(), 1e-8);
+    within("disc in a valley: energy [J]", world.ledger().integration_error(), 1e-8);
+}
+
+/// A block with a smooth valley on top: slopes of 45 degrees, tangent to an arc of 2 m about the origin below.
+fn valley() -> Shape {
+    let end = 2f64.sqrt();
+    let line = |x: f64, y: f64| EdgeSpec::Line { to: DVec2::new(x, y) };
+    let arc = EdgeSpec::Arc { to: DVec2::new(-end, -end), center: DVec2::ZERO, clockwise: true };
+    let edges = vec![
+        line(6.0, -3.0),
+        line(6.0, 6.0 - 2.0 * end),
+        line(end, -end),
+        arc,
+        line(-6.0, 6.0 - 2.0 * end),
+        line(-6.0, -3.0),
+    ];
+    Shape::from_paths(&[PathSpec { start: DVec2::new(-6.0, -3.0), edges }]).expect("a valley")
+}
+
+/// When a body moves no longer to the right [s]: bisected between two times.
+fn turning_time(world: &World, body: BodyId, mut early: f64, mut late: f64) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (early + late);
+        let mut there = world.clone();
+        advance(&mut there, middle);
+        if there.state(body).velocity.x > 0.0 { early = middle } else { late = middle }
+    }
+    early
 }
