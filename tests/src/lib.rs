@@ -65,3 +65,23 @@ pub fn reference_scene_names() -> Vec<String> {
     names.sort();
     names
 }
+
+/// A floor under gravity.
+const FLOOR: &str = r#"
+format = "halfgap-scene-1"
+title = "test"
+run = { duration = 10.0 }
+force = [{ gravity = { acceleration = [0.0, -10.0] } }]
+
+[[body]]
+name = "floor"
+fixed = true
+shape = { block = { width = 20.0, height = 1.0 } }
+position = [0.0, -0.5]
+"#;
+
+/// A scene file with one body, given by its other fields, above a floor whose top is at 0.
+#[must_use]
+pub fn on_floor(body: &str) -> String {
+    format!("{FLOOR}\n[[body]]\nname = \"body\"\nmass = 1.0\n{body}")
+}

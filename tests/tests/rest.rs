@@ -1,24 +1,7 @@
 //! Rest: bodies that lose their bounce stay where they are, at no cost.
 
 use halfgap_tests::mechanism::rest_time;
-use halfgap_tests::world_of;
-
-const FLOOR: &str = r#"
-format = "halfgap-scene-1"
-title = "test"
-run = { duration = 10.0 }
-force = [{ gravity = { acceleration = [0.0, -10.0] } }]
-
-[[body]]
-name = "floor"
-fixed = true
-shape = { block = { width = 20.0, height = 1.0 } }
-position = [0.0, -0.5]
-"#;
-
-fn on_floor(body: &str) -> String {
-    format!("{FLOOR}\n[[body]]\nname = \"body\"\nmass = 1.0\n{body}")
-}
+use halfgap_tests::{on_floor, world_of};
 
 #[test]
 fn a_resting_contact_forms_where_a_ball_without_bounce_lands() {

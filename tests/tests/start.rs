@@ -2,24 +2,7 @@
 
 use halfgap::World;
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap_tests::world_of;
-
-const FLOOR: &str = r#"
-format = "halfgap-scene-1"
-title = "test"
-run = { duration = 10.0 }
-force = [{ gravity = { acceleration = [0.0, -10.0] } }]
-
-[[body]]
-name = "floor"
-fixed = true
-shape = { block = { width = 20.0, height = 1.0 } }
-position = [0.0, -0.5]
-"#;
-
-fn on_floor(body: &str) -> String {
-    format!("{FLOOR}\n[[body]]\nname = \"body\"\nmass = 1.0\n{body}")
-}
+use halfgap_tests::{on_floor, world_of};
 
 fn build_error(toml: &str) -> String {
     let scene = Scene::parse(toml, SceneFormat::Toml).expect("a fine scene");
