@@ -13,6 +13,10 @@ use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 /// Part of the accuracy by which a corner may lean off a line and still fires.
 const LEAN_SHARE: f64 = 1.0 / 16.0;
 
+/// Part of the accuracy by which a contact may lie beyond the end of a line and still fires. The end is then farther away
+/// than the line by the square of this: nothing to be seen.
+const OVERRUN_SHARE: f64 = 1.0 / 1024.0;
+
 /// A shape in motion, as the search sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingShape<'a, M> {
@@ -243,7 +247,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let depth = tolerances.distance_tol().max(self.settings.depth);
         let slack = [slack(a, self.a.shape.lever(ids[0]), b), slack(b, self.b.shape.lever(ids[1]), a)];
         let slack = slack.map(|share| share * tolerances.accuracy);
-        Some(Pair { kind, feature_a: a, feature_b: b, target, depth, slack })
+        let overrun = OVERRUN_SHARE * tolerances.accuracy;
+        Some(Pair { kind, feature_a: a, feature_b: b, target, depth, slack, overrun })
     }
 
     fn by_windows(&self, from: f64, span: f64) -> Search {
@@ -294,6 +299,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             target,
             depth: f64::INFINITY,
             slack: [0.0; 2],
+            overrun: 0.0,
         };
         let offsets = [self.a.offset + start, self.b.offset + start];
         let (a, b) = ((circle_a, self.a.motion), (circle_b, self.b.motion));

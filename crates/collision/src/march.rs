@@ -103,6 +103,8 @@ pub(crate) struct Pair<'a> {
     pub(crate) depth: f64,
     /// Angles [rad] by which the contact may lie outside of the ranges of the two features and still counts as within.
     pub(crate) slack: [f64; 2],
+    /// Distance [m] beyond the ends of a line by which it still counts as within.
+    pub(crate) overrun: f64,
 }
 
 /// The round side of a pair, with the angle [rad] by which a contact may lie outside of its range.
@@ -254,7 +256,8 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let rate = n.dot(e_rate) + w * n.perp().dot(e);
         let along_rate = n.perp().dot(e_rate) - w * n.dot(e);
         let size = gap.center.abs().max(b.pose.position.abs()).max_element() + e.length() + round.radius;
-        let beyond = overrun_for(gap.along, along_rate, line, in_any_direction, rounding(size));
+        let beyond =
+            overrun_for(gap.along, along_rate, line, in_any_direction, rounding(size).max(pair.overrun));
         let excess = gap.excess(round, &a.pose);
         let turning = (a.angular_velocity - w).abs();
         let askew = (excess > rounding(1.0).max(slack)).then(|| {
@@ -418,10 +421,10 @@ pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
             excess_a <= least.max(slack_a) && excess_b <= least.max(slack_b)
         }
         (Feature::Round(round), Feature::Line(line)) => {
-            is_within_line((round, poses[0], slack_a), (line, poses[1]))
+            is_within_line((round, poses[0], slack_a), (line, poses[1]), pair.overrun)
         }
         (Feature::Line(line), Feature::Round(round)) => {
-            is_within_line((round, poses[1], slack_b), (line, poses[0]))
+            is_within_line((round, poses[1], slack_b), (line, poses[0]), pair.overrun)
         }
         (Feature::Line(_), Feature::Line(_)) => false,
     }
@@ -430,10 +433,12 @@ pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
 fn is_within_line(
     (round, pose_round, slack): (&RoundFeature, &Pose, f64),
     (line, pose_line): (&LineFeature, &Pose),
+    overrun: f64,
 ) -> bool {
     let gap = LineGap::measure(round, pose_round, line, pose_line);
     let size = gap.center.abs().max(pose_line.position.abs()).max_element();
-    gap.overrun(line) <= rounding(size) && gap.excess(round, pose_round) <= rounding(1.0).max(slack)
+    gap.overrun(line) <= rounding(size).max(overrun)
+        && gap.excess(round, pose_round) <= rounding(1.0).max(slack)
 }
 
 /// The round feature that stands for a whole body far away: its reach about its centre of mass.

@@ -25,20 +25,38 @@ pub(crate) fn node(index: usize, span: f64) -> f64 {
 /// The first offset in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
 ///
 /// A function that starts below zero must rise first. The answer lies behind the fall: there `f` is negative.
-pub(crate) fn first_fall(values: &[f64; NODES], span: f64, mut f: impl FnMut(f64) -> f64) -> Option<f64> {
+pub(crate) fn first_fall(values: &[f64; NODES], span: f64, f: impl FnMut(f64) -> f64) -> Option<f64> {
+    first_fall_before(values, span, None, f)
+}
+
+/// As [`first_fall`], but only a fall before a place matters, given as offset and value there.
+pub(crate) fn first_fall_before(
+    values: &[f64; NODES],
+    span: f64,
+    limit: Option<(f64, f64)>,
+    mut f: impl FnMut(f64) -> f64,
+) -> Option<f64> {
     if values.iter().any(|value| value.is_infinite()) {
         return None;
     }
     for index in 0..NODES - 1 {
-        let (from, to) = (node(index, span), node(index + 1, span));
+        let (from, mut to, mut end) = (node(index, span), node(index + 1, span), values[index + 1]);
+        match limit {
+            Some((offset, _)) if from >= offset => return None,
+            Some((offset, value)) if to > offset => (to, end) = (offset, value),
+            _ => {}
+        }
         if values[index] < 0.0 {
             continue;
         }
-        if values[index + 1] < 0.0 {
-            return Some(close((from, values[index]), (to, values[index + 1]), span, f));
+        if end < 0.0 {
+            return Some(close((from, values[index]), (to, end), span, f));
         }
         let Some(dip) = dip_between(values, index) else { continue };
         let place = span * (dip / (NODES - 1) as f64);
+        if place >= to {
+            continue;
+        }
         let value = f(place);
         if value < 0.0 {
             return Some(close((from, values[index]), (place, value), span, f));

@@ -67,6 +67,8 @@ pub(crate) struct Stage {
     pub(crate) trial_rates: Vec<f64>,
     /// Values of watched functions at the nodes.
     pub(crate) samples: Vec<[f64; NODES]>,
+    /// Their values at the earliest event found so far.
+    pub(crate) there: Vec<f64>,
     /// Evaluations so far.
     pub(crate) evaluations: u64,
     /// Solves of held rows so far.

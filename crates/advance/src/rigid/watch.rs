@@ -3,7 +3,7 @@
 //!
 //! Each is a function along the dense output whose first fall below zero is an event.
 
-use super::crossing::{NODES, first_fall, node};
+use super::crossing::{NODES, first_fall, first_fall_before, node};
 use super::dynamics::Dynamics;
 use super::group::{SegmentEnd, Stop};
 use super::law::Snapshot;
@@ -17,39 +17,55 @@ pub(crate) const FORCE_SHARE: f64 = 1e-9;
 /// Part of the accuracy by which a held contact may be too near in the middle of a step.
 const MIDDLE_SHARE: f64 = 0.5;
 
+/// Functions of the rows along a segment of which the first to fall below zero is an event.
+struct Watch {
+    /// Places the bodies at an offset [s], with all that reading needs.
+    place: fn(&mut Dynamics<'_>, f64),
+    /// The value of a row there.
+    read: fn(&Dynamics<'_>, usize) -> f64,
+    end: fn(usize) -> SegmentEnd,
+}
+
+const RELEASES: Watch = Watch {
+    place: |dynamics, offset| dynamics.evaluate_at(offset),
+    read: |dynamics, row| dynamics.pressure(row),
+    end: SegmentEnd::Release,
+};
+const CHANGES: Watch = Watch {
+    place: |dynamics, offset| dynamics.place_at(offset),
+    read: |dynamics, row| dynamics.room(row),
+    end: SegmentEnd::Change,
+};
+const SINKINGS: Watch = Watch {
+    place: |dynamics, offset| dynamics.place_at(offset),
+    read: |dynamics, row| dynamics.height(row),
+    end: SegmentEnd::Sink,
+};
+
 impl Dynamics<'_> {
     /// The earliest event of the group itself on the segment, whose dense output and end forces are known.
     pub(crate) fn find_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest: Option<(f64, SegmentEnd)> = None;
+        if self.group.rows.iter().any(|row| !row.bilateral) {
+            self.find_least_forces();
+            let samples = self.sample_forces();
+            self.find_first(&mut earliest, &samples, &RELEASES);
+            self.stage.samples = samples;
+        }
+        let can_change = |row: &HeldRow| self.physics.mechanism.can_change(row);
+        if self.group.rows.iter().any(can_change) {
+            let samples = self.sample(&CHANGES, self.group.rows.len());
+            self.find_first(&mut earliest, &samples, &CHANGES);
+            self.stage.samples = samples;
+        }
+        let samples = self.sample(&SINKINGS, self.group.leaning.len());
+        self.find_first(&mut earliest, &samples, &SINKINGS);
+        self.stage.samples = samples;
         let mut offer = |found: Option<f64>, end: SegmentEnd| {
             if let Some(offset) = found.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
                 earliest = Some((offset, end));
             }
         };
-        if self.group.rows.iter().any(|row| !row.bilateral) {
-            self.find_least_forces();
-            let samples = self.sample_forces();
-            for (row, values) in samples.iter().enumerate() {
-                if self.group.rows[row].bilateral {
-                    continue;
-                }
-                let fall = first_fall(values, self.group.span, |offset| self.force_at(offset, row));
-                offer(fall, SegmentEnd::Release(row));
-            }
-            self.stage.samples = samples;
-        }
-        let rooms = self.sample_rooms();
-        for (row, values) in rooms.iter().enumerate() {
-            let fall = first_fall(values, self.group.span, |offset| {
-                self.place_at(offset);
-                self.room(row)
-            });
-            offer(fall, SegmentEnd::Change(row));
-        }
-        self.stage.samples = rooms;
-        for row in 0..self.group.leaning.len() {
-            offer(self.find_sinking(row), SegmentEnd::Sink(row));
-        }
         for place in 0..self.group.stops.len() {
             offer(self.find_stop(self.group.stops[place]), SegmentEnd::Stop);
         }
@@ -131,12 +147,6 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
-    /// Force [N] of a row at an offset [s], raised by what counts as none.
-    fn force_at(&mut self, offset: f64, row: usize) -> f64 {
-        self.evaluate_at(offset);
-        self.stage.forces[row] + self.stage.least[row]
-    }
-
     /// The forces of all rows at the nodes, raised by what counts as none.
     fn sample_forces(&mut self) -> Vec<[f64; NODES]> {
         let mut samples = std::mem::take(&mut self.stage.samples);
@@ -151,29 +161,64 @@ impl Dynamics<'_> {
                 _ if index + 1 == NODES => &self.group.end_forces,
                 _ => &self.stage.forces,
             };
-            for ((sample, force), least) in samples.iter_mut().zip(forces).zip(&self.stage.least) {
-                sample[index] = force + least;
+            for (((sample, force), least), row) in
+                samples.iter_mut().zip(forces).zip(&self.stage.least).zip(&self.group.rows)
+            {
+                sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
             }
         }
         samples
     }
 
-    /// How far all rows are at the nodes from running off their features; nothing if none can.
-    fn sample_rooms(&mut self) -> Vec<[f64; NODES]> {
+    /// The values of all rows of a watch at the nodes.
+    fn sample(&mut self, watch: &Watch, rows: usize) -> Vec<[f64; NODES]> {
         let mut samples = std::mem::take(&mut self.stage.samples);
         samples.clear();
-        let can_change = |row: &HeldRow| self.physics.mechanism.can_change(row);
-        if !self.group.rows.iter().any(can_change) {
-            return samples;
-        }
-        samples.resize(self.group.rows.len(), [0.0; NODES]);
-        for index in 0..NODES {
-            self.place_at(node(index, self.group.span));
+        samples.resize(rows, [0.0; NODES]);
+        for index in 0..if rows > 0 { NODES } else { 0 } {
+            (watch.place)(self, node(index, self.group.span));
             for (row, sample) in samples.iter_mut().enumerate() {
-                sample[index] = self.room(row);
+                sample[index] = (watch.read)(self, row);
             }
         }
         samples
+    }
+
+    /// The earliest fall of any row of a watch, if it comes before what was found so far.
+    ///
+    /// To place the bodies costs more than to read a row: once a fall is found, all rows are read there, and those that have
+    /// not fallen by then need no search of their own.
+    fn find_first(
+        &mut self,
+        earliest: &mut Option<(f64, SegmentEnd)>,
+        samples: &[[f64; NODES]],
+        watch: &Watch,
+    ) {
+        if samples.is_empty() {
+            return;
+        }
+        let mut there = std::mem::take(&mut self.stage.there);
+        let mut read_at = None;
+        for (row, values) in samples.iter().enumerate() {
+            let limit = earliest.map(|(offset, _)| offset);
+            if limit != read_at
+                && let Some(offset) = limit
+            {
+                (watch.place)(self, offset);
+                there.clear();
+                there.extend((0..samples.len()).map(|row| (watch.read)(self, row)));
+                read_at = limit;
+            }
+            let limit = limit.map(|offset| (offset, there[row]));
+            let fall = first_fall_before(values, self.group.span, limit, |offset| {
+                (watch.place)(self, offset);
+                (watch.read)(self, row)
+            });
+            if let Some(offset) = fall.filter(|&offset| limit.is_none_or(|(least, _)| offset < least)) {
+                *earliest = Some((offset, (watch.end)(row)));
+            }
+        }
+        self.stage.there = there;
     }
 
     /// How far a row is from running off its features, without end for one that cannot.
@@ -181,19 +226,21 @@ impl Dynamics<'_> {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
-    /// When a contact that is touched without force has sunk to its least gap.
-    fn find_sinking(&mut self, row: usize) -> Option<f64> {
-        let span = self.group.span;
-        let values = std::array::from_fn(|index| self.height_at(row, node(index, span)));
-        first_fall(&values, span, |offset| self.height_at(row, offset))
-    }
-
-    /// Distance [m] of such a contact from its least gap, or that by which it lies outside of its features if this is more.
-    fn height_at(&mut self, row: usize, offset: f64) -> f64 {
-        self.place_at(offset);
+    /// Distance [m] of a contact that is touched without force from its least gap, or that by which it lies outside of its
+    /// features if this is more.
+    fn height(&self, row: usize) -> f64 {
         let (mechanism, row) = (&self.physics.mechanism, &self.group.leaning[row]);
         let height = mechanism.measure(row, &self.stage.movings).gap - row.gap;
         mechanism.room(row, &self.stage.movings).map_or(height, |room| height.max(-room))
+    }
+
+    /// Force [N] of a row, raised by what counts as none; without end for one of either sign.
+    fn pressure(&self, row: usize) -> f64 {
+        if self.group.rows[row].bilateral {
+            f64::INFINITY
+        } else {
+            self.stage.forces[row] + self.stage.least[row]
+        }
     }
 
     /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
