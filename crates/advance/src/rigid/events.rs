@@ -214,14 +214,16 @@ impl RigidSystem {
         self.collide(work)
     }
 
-    /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row carried an impulse.
+    /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
     fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
         let is_storm = self.at_tick || self.note_events(&work.region) || work.is_repeat;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, is_storm);
-        self.book_impact(&report, is_storm);
+        if outcome.is_ok() {
+            self.book_impact(&report, is_storm);
+        }
         self.last_impact = report;
         let happened = outcome?;
         self.counts.impacts += u64::from(happened);

@@ -113,6 +113,12 @@ impl Flyer {
         self.reach
     }
 
+    /// Force [N] that gives the body an acceleration (x, y, angle), with what turns it acting at its reach.
+    pub(crate) fn load(&self, acceleration: &[f64]) -> f64 {
+        let linear = DVec2::new(acceleration[0], acceleration[1]).length();
+        (linear + acceleration[2].abs() * self.reach()) / self.body().inverse_mass
+    }
+
     pub(crate) fn disc(&self) -> Option<f64> {
         self.disc
     }

@@ -177,7 +177,7 @@ impl RigidSystem {
     /// both sides of a body that just fits.
     fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
         let largest = settling.solution.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
-        let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.load(body, a));
+        let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.flyer(body).load(a));
         largest > JAM * loads.sum::<f64>()
     }
 
@@ -241,7 +241,7 @@ impl RigidSystem {
         let mut gross = std::mem::take(&mut settling.gross);
         gross.clear();
         let bodies = region.bodies.iter().zip(&stage.accelerations);
-        gross.extend(bodies.map(|(&body, acceleration)| self.load(body, acceleration)));
+        gross.extend(bodies.map(|(&body, acceleration)| self.flyer(body).load(acceleration)));
         for (&index, force) in settling.candidates.iter().zip(forces) {
             for place in places_of(region, &region.records[index]) {
                 gross[place] += force.abs();
@@ -258,13 +258,6 @@ impl RigidSystem {
             }
         }
         settling.gross = gross;
-    }
-
-    /// Force [N] that gives a body an acceleration.
-    fn load(&self, body: BodyId, acceleration: &[f64; 3]) -> f64 {
-        let flyer = self.flyer(body);
-        let linear = DVec2::new(acceleration[0], acceleration[1]).length();
-        (linear + acceleration[2].abs() * flyer.reach()) / flyer.body().inverse_mass
     }
 
     fn held_row(&self, record: &Collision) -> Option<HeldRow> {

@@ -9,7 +9,6 @@ use super::group::{SegmentEnd, Stop};
 use super::law::Snapshot;
 use super::rows::{HeldRow, RowSource, moving_of};
 use crate::ode::Ode;
-use glam::DVec2;
 
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
 pub(crate) const FORCE_SHARE: f64 = 1e-9;
@@ -86,10 +85,8 @@ impl Dynamics<'_> {
         let mut gross = std::mem::take(&mut self.stage.gross);
         gross.clear();
         gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
-            let flyer = &self.physics.mechanism.flyers[body.index()];
             let at = 3 * (count + place);
-            let linear = DVec2::new(group.rates[at], group.rates[at + 1]).length();
-            (linear + group.rates[at + 2].abs() * flyer.reach()) / flyer.body().inverse_mass
+            self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
         }));
         let places = |row: &HeldRow| row.bodies.map(|body| group.bodies.binary_search(&body).ok());
         for (index, row) in group.rows.iter().enumerate() {
