@@ -190,6 +190,12 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         self.settings.march_steps.max(1)
     }
 
+    /// The largest gap [m] at which any feature pair fires.
+    fn widest_target(&self) -> f64 {
+        let of_rules = self.rules.iter().filter_map(|rule| rule.target);
+        of_rules.fold(self.tolerances.target_gap, f64::max)
+    }
+
     /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
     fn directly(&self, from: f64, span: f64) -> Option<Search> {
         let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
@@ -290,7 +296,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     fn skip_far(&self, start: f64, span: f64) -> f64 {
         let circles = [reach_circle(self.a.shape.reach()), reach_circle(self.b.shape.reach())];
         let [circle_a, circle_b] = &circles;
-        let target = self.tolerances.target_gap;
+        let target = self.widest_target();
         // However deep the circles overlap, they do.
         let pair = Pair {
             kind: PairKind::Outer,
@@ -340,7 +346,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let moved = window.speed * half
             + turned(window.spin_a.speed, self.a.shape.reach())
             + turned(window.spin_b.speed, self.b.shape.reach());
-        let reach = self.tolerances.target_gap + moved;
+        let reach = self.widest_target() + moved;
         let mut progress = Progress::none_before(end);
         let mut tried = 0;
         self.a.shape.tree().visit_near_pairs(

@@ -9,6 +9,18 @@ const SMALLEST_FACTOR: f64 = 0.2;
 /// A step grows by this factor at most, since the estimate says little about much longer steps.
 const LARGEST_FACTOR: f64 = 6.0;
 
+/// Error norms below this tell nothing about a trend.
+const TELLING_ERROR: f64 = 1e-2;
+
+/// A step that was accepted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accepted {
+    /// Its length [s].
+    pub length: f64,
+    /// Its error norm.
+    pub error: f64,
+}
+
 impl Method {
     /// Factor from an accepted step to the next, after an error norm.
     ///
@@ -22,6 +34,20 @@ impl Method {
         }
         let factor = SAFETY * error_norm.powf(-1.0 / f64::from(order + 1));
         factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)
+    }
+
+    /// Factor from an accepted step to the next where the one before may be known, too: it foresees that an error which
+    /// grew from step to step goes on to grow.
+    ///
+    /// Source: Gustafsson's predictive controller as in Hairer and Wanner, "Solving Ordinary Differential Equations II",
+    /// IV.8, (8.25).
+    #[must_use]
+    pub fn factor_after(self, step: Accepted, before: Option<Accepted>) -> f64 {
+        let plain = self.step_factor(step.error);
+        let (Some(before), Some(order)) = (before, self.error_order()) else { return plain };
+        let [error, earlier] = [step.error, before.error].map(|error| error.max(TELLING_ERROR));
+        let trend = step.length / before.length * (earlier / error).powf(1.0 / f64::from(order + 1));
+        (plain * trend).clamp(SMALLEST_FACTOR, plain)
     }
 
     /// Factor for the step after one that was not accepted, or after one that was accepted only on another try: it does

@@ -49,6 +49,7 @@ mod start;
 mod stepper;
 mod tableau;
 
+pub use control::Accepted;
 pub use method::Method;
 pub use polynomial::{Jet, SegmentPolynomial, Spread};
 pub use stepper::Stepper;

@@ -27,6 +27,8 @@ pub(crate) struct EventWork {
     impact: Impact,
     pub(crate) settling: Settling,
     pub(crate) seeds: Vec<BodyId>,
+    /// Records of held contacts that open in a low hop.
+    hopping: Vec<usize>,
     /// The pair that fired has done so again and again without time going by.
     is_repeat: bool,
 }
@@ -133,6 +135,7 @@ impl RigidSystem {
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+        self.let_go(leader);
         self.continue_group(leader)?;
         let mut bodies = std::mem::take(&mut self.extended);
         bodies.clear();
@@ -140,7 +143,6 @@ impl RigidSystem {
         for &body in &bodies {
             self.renew_stay(body);
         }
-        self.let_go(leader);
         self.predict_all_of(&bodies, false);
         self.search_ropes_on(&bodies);
         self.extended = bodies;
@@ -184,19 +186,7 @@ impl RigidSystem {
                 any = true;
             }
         }
-        if !any {
-            return Ok(());
-        }
-        let mut report = ImpactReport::default();
-        let now = self.now;
-        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
-        for record in &mut work.region.records {
-            record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
-        }
-        outcome?;
-        self.book_impact(&report, true);
-        self.remeasure(&mut work.region, now);
-        Ok(())
+        if any { self.stop_bilaterally(work) } else { Ok(()) }
     }
 
     pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
@@ -235,10 +225,10 @@ impl RigidSystem {
     /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         self.note_rails(&work.region, self.now);
-        let mut stage = std::mem::take(&mut self.stage);
-        let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now);
-        self.stage = stage;
-        outcome?;
+        self.settle_region(work, true)?;
+        if self.still_hops(work)? {
+            self.settle_region(work, false)?;
+        }
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
         self.note_seen(&work.region);
@@ -249,6 +239,44 @@ impl RigidSystem {
         }
         self.predict_all_of(&work.region.bodies, true);
         self.predict_ropes(&work.region, &work.settling);
+        Ok(())
+    }
+
+    fn settle_region(&mut self, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
+        let mut stage = std::mem::take(&mut self.stage);
+        let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now, with_hops);
+        self.stage = stage;
+        outcome
+    }
+
+    /// Stops the held contacts that open, in no more than a low hop; true if there are any.
+    fn still_hops(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        let rest = self.rest_speed();
+        let records = &mut work.region.records;
+        work.hopping.clear();
+        work.hopping.extend(work.settling.held.iter().map(|&(index, _)| index));
+        work.hopping.retain(|&index| {
+            !records[index].parties.bilateral && records[index].motion.normal_velocity > rest
+        });
+        if work.hopping.is_empty() || work.region.at_start {
+            return Ok(false);
+        }
+        work.hopping.iter().for_each(|&index| records[index].parties.bilateral = true);
+        self.stop_bilaterally(work)?;
+        Ok(true)
+    }
+
+    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
+    fn stop_bilaterally(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let mut report = ImpactReport::default();
+        let now = self.now;
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
+        for record in &mut work.region.records {
+            record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
+        }
+        outcome?;
+        self.book_impact(&report, true);
+        self.remeasure(&mut work.region, now);
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! A group: bodies that share their steps because rows or force laws couple them.
 
 use super::rows::HeldRow;
-use crate::ode::SegmentPolynomial;
+use crate::ode::{Accepted, Method, SegmentPolynomial};
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::HeldRows;
@@ -40,6 +40,9 @@ pub(crate) struct Stop {
     pub(crate) slack: f64,
 }
 
+/// A group stays brief while its steps may grow by this factor.
+const BRIEF_GROWTH: f64 = 2.0;
+
 /// Bodies with a common segment.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Group {
@@ -74,6 +77,14 @@ pub(crate) struct Group {
     pub(crate) work_paths: Vec<SegmentPolynomial>,
     /// Length of the next step to try [s]; `None` if nothing is known.
     pub(crate) next_step: Option<f64>,
+    /// The same, of the method that is asked for, while a brief one goes on.
+    pub(crate) full_step: Option<f64>,
+    /// When the group was made.
+    pub(crate) made: Time,
+    /// The next event is near: a step of few stages reaches it.
+    pub(crate) is_brief: bool,
+    /// The last step of the group as it is now.
+    pub(crate) accepted: Option<Accepted>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
     pub(crate) free_acceleration: f64,
     /// Energy [J] that projections changed in this segment.
@@ -95,8 +106,20 @@ impl Group {
         self.works.clear();
         self.state.clear();
         self.rates.clear();
-        self.next_step = None;
+        (self.next_step, self.full_step) = (None, None);
+        self.is_brief = false;
+        self.accepted = None;
         self.event = None;
+    }
+
+    /// Goes back to the method that is asked for, if brief steps are held up by their errors.
+    pub(crate) fn end_brief(&mut self, method: Method) {
+        let grows = self.accepted.is_some_and(|step| method.step_factor(step.error) >= BRIEF_GROWTH);
+        if self.is_brief && !grows {
+            self.is_brief = false;
+            self.next_step = self.full_step;
+            self.accepted = None;
+        }
     }
 
     /// The body by which the group is found.

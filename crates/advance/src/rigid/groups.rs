@@ -10,8 +10,24 @@ use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settle::Settling;
 use super::system::RigidSystem;
+use crate::ode::{Method, Stepper};
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
+
+/// What the next group of a body may learn from its last.
+#[derive(Clone, Copy, Debug, Default)]
+struct Past {
+    /// Step [s] that was right.
+    step: Option<f64>,
+    /// How long [s] the group lasted.
+    lasted: f64,
+}
+
+/// A group whose bodies' last lasted less than a step by this factor is expected to be brief, too.
+const BRIEF: f64 = 4.0;
+
+/// A brief step is at least this part of a full one: to be cut short later costs less than to go on too often.
+const BRIEFEST: f64 = 1.0 / 32.0;
 
 /// All groups, found by their bodies, and what their stepping needs.
 #[derive(Clone, Debug, Default)]
@@ -23,8 +39,8 @@ pub(crate) struct Groups {
     /// Groups to be used again.
     #[expect(clippy::vec_box, reason = "groups go from here to `by_leader` without being copied")]
     pool: Vec<Box<Group>>,
-    /// Step [s] that was right for each body last.
-    step_of: Vec<Option<f64>>,
+    /// What is known of the last group of each body.
+    past_of: Vec<Past>,
     /// Union-find forest over the places of a region.
     parents: Vec<usize>,
     /// True for places of a region that need an integrator.
@@ -38,7 +54,7 @@ impl Groups {
         Self {
             by_leader: (0..body_count).map(|_| None).collect(),
             leader_of: vec![None; body_count],
-            step_of: vec![None; body_count],
+            past_of: vec![Past::default(); body_count],
             ..Self::default()
         }
     }
@@ -82,10 +98,10 @@ impl RigidSystem {
         group: &mut Group,
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
-        let start = group.start;
+        let (start, is_brief) = (group.start, group.is_brief);
         let mut stage = std::mem::take(&mut self.stage);
-        let mut stepper =
-            std::mem::replace(&mut self.stepper, crate::ode::Stepper::new(self.settings.method));
+        let of_system = if is_brief { &mut self.brief_stepper } else { &mut self.stepper };
+        let mut stepper = std::mem::replace(of_system, Stepper::new(of_system.method()));
         let mut scales = std::mem::take(&mut self.scales);
         let answer = {
             let physics = self.physics();
@@ -95,13 +111,14 @@ impl RigidSystem {
                 &mut Tools { stepper: &mut stepper, scales: &mut scales, settings: &self.settings },
             )
         };
-        (self.stage, self.stepper, self.scales) = (stage, stepper, scales);
+        (self.stage, self.scales) = (stage, scales);
+        *(if is_brief { &mut self.brief_stepper } else { &mut self.stepper }) = stepper;
         answer
     }
 
     /// Cuts the groups of a region at a time: their bodies fly on from the states that the integrator finds there.
     ///
-    /// A step is repeated up to the event, since dense output is less exact than the ends of steps. `refine` tells by how
+    /// Where dense output may err by much of what a step may, the step is repeated up to the event. `refine` tells by how
     /// much the time is off once the bodies are in place.
     pub(crate) fn cut_groups(
         &mut self,
@@ -139,7 +156,11 @@ impl RigidSystem {
         let offset = time.since(group.start).max(0.0);
         if offset != group.span {
             self.with_group(&mut group, |dynamics, tools| {
-                dynamics.repeat_to(tools.stepper, offset);
+                if dynamics.is_dense_exact() {
+                    dynamics.end_by_dense(offset);
+                } else {
+                    dynamics.repeat_to(tools.stepper, offset);
+                }
                 dynamics.end_on_rows(tools);
             });
         }
@@ -160,7 +181,8 @@ impl RigidSystem {
         }
         for &body in &group.bodies {
             self.groups.leader_of[body.index()] = None;
-            self.groups.step_of[body.index()] = group.next_step;
+            let step = if group.is_brief { group.full_step } else { group.next_step };
+            self.groups.past_of[body.index()] = Past { step, lasted: self.now.since(group.made) };
             self.counts.backups += 1;
         }
         self.queue.clear(self.group_source(leader));
@@ -195,11 +217,24 @@ impl RigidSystem {
                 self.groups.put(group);
             }
         }
+        let mut outcome = Ok(());
         for index in 0..self.groups.made.len() {
             let leader = self.groups.made[index];
-            self.start_group(leader)?;
+            if outcome.is_ok() {
+                outcome = self.start_group(leader);
+            } else {
+                self.drop_group(leader);
+            }
         }
-        Ok(())
+        outcome
+    }
+
+    /// Forgets a group that was never started: its bodies are in flight.
+    fn drop_group(&mut self, leader: BodyId) {
+        let Some(group) = self.groups.take(leader) else { return };
+        for &body in &group.bodies {
+            self.groups.leader_of[body.index()] = None;
+        }
     }
 
     /// Joins the places of a region that share their steps.
@@ -262,9 +297,21 @@ impl RigidSystem {
         group.laws.sort_unstable();
         group.laws.dedup();
         self.list_works(&mut group);
-        let steps = group.bodies.iter().filter_map(|body| self.groups.step_of[body.index()]);
-        group.next_step = steps.min_by(f64::total_cmp);
+        self.foresee(&mut group);
         group
+    }
+
+    /// Chooses the first step of a group by what its bodies did last.
+    fn foresee(&self, group: &mut Group) {
+        let pasts = group.bodies.iter().map(|body| self.groups.past_of[body.index()]);
+        group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);
+        let soon = BRIEF * pasts.map(|past| past.lasted).fold(0.0, f64::max);
+        if let Some(step) = group.next_step.filter(|&step| BRIEF * soon < step)
+            && self.settings.method == Method::default()
+        {
+            group.is_brief = true;
+            (group.next_step, group.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));
+        }
     }
 
     /// Lists the contacts of a group that are touched without force and neither close nor open.
@@ -281,13 +328,9 @@ impl RigidSystem {
             if rate.abs() <= self.rest_speed() {
                 let gap = self.sunk(gap);
                 let source = RowSource::Contact(touch.features);
-                group.leaning.push(HeldRow {
-                    source,
-                    bodies: touch.bodies,
-                    bilateral: false,
-                    gap,
-                    hint: None,
-                });
+                let bodies = touch.bodies;
+                let row = HeldRow { source, bodies, bilateral: false, gap, hint: None, leans: false };
+                group.leaning.push(self.leaning(row, self.now));
             }
         }
     }
@@ -348,7 +391,7 @@ impl RigidSystem {
     /// Starts a group's first segment from the states of its bodies.
     fn start_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
-        group.start = self.now;
+        (group.start, group.made) = (self.now, self.now);
         let count = group.bodies.len();
         let dimension = group.dimension();
         let inertia: Vec<_> = group.bodies.iter().map(|&body| self.inertia(body)).collect();
@@ -380,6 +423,7 @@ impl RigidSystem {
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
         self.book_works(&group);
         group.start = group.end();
+        group.end_brief(self.brief_stepper.method());
         let first_work = 2 * group.velocities();
         let group_mut = &mut *group;
         std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);

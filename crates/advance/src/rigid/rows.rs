@@ -12,6 +12,10 @@ use halfgap_geometry::{Feature, FeatureId, GapSample, Shape};
 /// rounding by which one that has run off is still detected, far less than what forces can feel.
 const CHANGE_SHARE: f64 = 1.0 / 64.0;
 
+/// Part of the accuracy by which a corner leans off its line that is said to: less than `CHANGE_SHARE`, at which it is
+/// told, so that it is told once.
+const LEAN_SHARE: f64 = 0.5 * CHANGE_SHARE;
+
 /// What makes a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowSource {
@@ -32,6 +36,8 @@ pub(crate) struct HeldRow {
     pub(crate) gap: f64,
     /// Piece of the rail, of a connector that has one.
     pub(crate) hint: Option<RailHint>,
+    /// A corner that leans off its line.
+    pub(crate) leans: bool,
 }
 
 /// A row at one moment.
@@ -112,23 +118,44 @@ impl Mechanism<'_> {
             RowSource::Contact(features) => {
                 let mut sample = self.sample(row.bodies, features, [&a, &b]);
                 let feature = |side: usize| self.shape(row.bodies[side]).feature(features[side]);
-                sample.find_excess([(feature(0), &a.pose), (feature(1), &b.pose)]);
-                let beyond =
-                    |side: usize, excess: f64| excess * self.shape(row.bodies[side]).lever(features[side]);
-                let outside =
-                    sample.overrun.max(beyond(0, sample.excess_primary)).max(beyond(1, sample.excess_normal));
+                let mut outside = sample.overrun;
+                if !row.leans {
+                    sample.find_excess([(feature(0), &a.pose), (feature(1), &b.pose)]);
+                    let lever = |side: usize| self.shape(row.bodies[side]).lever(features[side]);
+                    outside =
+                        outside.max(sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1));
+                }
                 Some(CHANGE_SHARE * self.tolerances.accuracy - outside)
             }
         }
     }
+
+    /// True if a row is a corner that leans off its line already: to lean further changes nothing.
+    pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
+        let RowSource::Contact(features) = row.source else { return false };
+        let of_sides = [0, 1].map(|side: usize| self.shape(row.bodies[side]).feature(features[side]));
+        if !is_corner_on_line(of_sides) {
+            return false;
+        }
+        let mut sample = self.sample(row.bodies, features, movings);
+        sample.find_excess([(of_sides[0], &movings[0].pose), (of_sides[1], &movings[1].pose)]);
+        let lever = |side: usize| self.shape(row.bodies[side]).lever(features[side]);
+        let outside = (sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1));
+        outside > LEAN_SHARE * self.tolerances.accuracy
+    }
 }
 
-/// True if a contact that is outside of its features has left them. A corner that leans a little off a line, so that the
-/// next corner along is nearer, still touches it: so a block rocks from one corner to the other.
+/// True if a contact that is outside of its features has left them.
 pub(crate) fn has_left(sample: &GapSample, features: [&Feature; 2]) -> bool {
+    sample.overrun > 0.0 || !is_corner_on_line(features)
+}
+
+/// True for a corner on a line. If it leans a little off the line, so that the next corner along is nearer, it still touches
+/// it: so a block rocks from one corner to the other.
+fn is_corner_on_line(features: [&Feature; 2]) -> bool {
     let any_line = features.iter().any(|feature| matches!(feature, Feature::Line(_)));
     let is_corner = |feature: &&Feature| matches!(feature, Feature::Round(round) if round.radius == 0.0);
-    sample.overrun > 0.0 || !any_line || !features.iter().any(is_corner)
+    any_line && features.iter().any(is_corner)
 }
 
 /// Distance [m] along a rail to the nearer end of the piece on which a point is.

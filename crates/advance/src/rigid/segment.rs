@@ -2,7 +2,7 @@
 
 use super::dynamics::{Dynamics, body_state};
 use super::rows::{RowSource, moving_of};
-use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
+use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
 use halfgap_collision::BodyId;
 
@@ -29,6 +29,12 @@ const PROJECTIONS: usize = 5;
 const RETREAT: f64 = 0.1;
 /// Part of the accuracy by which rounding may move a body along a step.
 const ROUNDING_SHARE: f64 = 1.0 / 8.0;
+
+/// Part of the accuracy by which a step of bodies in contact may err, lest what they fly by is hit too late.
+const CLEAR_SHARE: f64 = 0.5;
+
+/// Error norm of a step up to which its dense output counts as exact.
+const DENSE_ERROR: f64 = 0.1;
 
 /// Part of its reach by which a body with contacts may move in one step.
 const WATCHED_SHARE: f64 = 0.5;
@@ -85,12 +91,10 @@ impl Dynamics<'_> {
             }
             let method = stepper.method();
             if error <= 1.0 {
-                let factor = if rejected {
-                    method.step_factor_after_rejection(error)
-                } else {
-                    method.step_factor(error)
-                };
-                self.group.next_step = Some(step * factor);
+                let accepted = Accepted { length: step, error };
+                let before = self.group.accepted.replace(accepted);
+                let most = if rejected { 1.0 } else { f64::INFINITY };
+                self.group.next_step = Some(step * method.factor_after(accepted, before).min(most));
                 break Ok(());
             }
             (step, rejected) = (step * method.step_factor(error), true);
@@ -117,6 +121,22 @@ impl Dynamics<'_> {
                 stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, offset, &mut end);
         }
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
+        self.group.span = offset;
+    }
+
+    /// True if dense output errs by little of what a step may err by: it is of the order of the error estimate.
+    pub(crate) fn is_dense_exact(&self) -> bool {
+        self.group.accepted.is_some_and(|step| step.error <= DENSE_ERROR)
+    }
+
+    /// Ends the segment at an offset [s] within it, by its dense output.
+    pub(crate) fn end_by_dense(&mut self, offset: f64) {
+        self.place_at(offset);
+        let works = self.group.work_paths.iter().map(|path| path.value_at(offset));
+        let velocities = 2 * self.group.velocities();
+        self.group.end_state.clear();
+        self.group.end_state.extend_from_slice(&self.stage.trial[..velocities]);
+        self.group.end_state.extend(works);
         self.group.span = offset;
     }
 
@@ -175,11 +195,14 @@ impl Dynamics<'_> {
     /// Errors that are just acceptable, of positions and velocities; works follow them.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let speed = self.speed(control);
+        let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
+        let clearance = any_contact.then_some(CLEAR_SHARE * self.physics.mechanism.tolerances.accuracy);
         // Where nothing moves there is nothing to be wrong about.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();
         for size in [control.length, speed] {
             let linear = or_infinite(control.local_error * size);
+            let linear = clearance.map_or(linear, |clearance| linear.min(clearance * size / control.length));
             for &body in &self.group.bodies {
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }

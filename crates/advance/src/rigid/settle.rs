@@ -19,11 +19,14 @@ use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveErro
 /// move by what counts as rest. What crushes a body is of the order of 1.
 const SMALL_CONTRADICTION: f64 = 1e-3;
 
+/// Part of the accuracy by which a contact may open and come back, and count as closed all the while.
+const HOP_SHARE: f64 = 1e-4;
+
 /// Forces this many times larger than all loads together jam.
 const JAM: f64 = 100.0;
 
-/// Residual that is then accepted, in units of the largest acceleration: the integrator errs by more.
-const LENIENT_RESIDUAL: f64 = 1e-9;
+/// Residual that is then accepted, in units of the largest acceleration: the answer only says which rows to hold.
+const LENIENT_RESIDUAL: f64 = 1e-6;
 
 /// Solves for contact forces, with its buffers.
 #[derive(Debug)]
@@ -130,30 +133,37 @@ impl Settling {
 }
 
 impl RigidSystem {
-    /// Finds the rows of a region to hold. Records must be up to date; their forces are written into them.
+    /// Finds the rows of a region to hold, `with_hops` those too that open in no more than a low hop. Records must be up to
+    /// date; their forces are written into them.
     pub(crate) fn settle(
         &self,
         region: &mut Region,
         settling: &mut Settling,
         stage: &mut Stage,
         time: Time,
+        with_hops: bool,
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
         settling.candidates.clear();
         // At the start nothing closes yet: what touches slowly is in contact.
         let rest = if region.at_start { self.settings.tolerances.velocity_tol } else { self.rest_speed() };
-        let is_candidate = |record: &Collision| {
-            let at_rest = record.motion.normal_velocity.abs() <= rest;
-            record.parties.bilateral || (at_rest && self.holds(record))
+        let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
+        let may_hold = |record: &Collision| {
+            let may_hop = with_hops && self.may_hop(record);
+            record.parties.bilateral || (self.holds(record) && (is_slow(record) || may_hop))
         };
-        let records = region.records.iter().enumerate();
-        settling
-            .candidates
-            .extend(records.filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
-        if settling.candidates.is_empty() {
+        if !region.records.iter().any(may_hold) {
             return Ok(());
         }
         self.accelerate_region(region, settling, stage, time);
+        for (index, record) in region.records.iter().enumerate().filter(|(_, record)| may_hold(record)) {
+            if record.parties.bilateral || is_slow(record) || self.hops_low(region, record, stage) {
+                settling.candidates.push(index);
+            }
+        }
+        if settling.candidates.is_empty() {
+            return Ok(());
+        }
         self.pose_problem(region, settling, stage);
         let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
         let any_bilateral = settling.problem.bilateral().contains(&true);
@@ -164,8 +174,19 @@ impl RigidSystem {
             self.drop_distant(region, settling, stage);
             settling.solve_at_all().map_err(|source| self.settle_error(region, settling, time, source))?;
         }
-        self.choose_rows(region, settling, stage);
+        self.choose_rows(region, settling, stage, time);
         Ok(())
+    }
+
+    /// True if a contact opens so slowly that it may be no more than a low hop.
+    fn may_hop(&self, record: &Collision) -> bool {
+        (0.0..=record.tolerances.velocity_tol).contains(&record.motion.normal_velocity)
+    }
+
+    /// True if what acts on the bodies of a contact that opens brings them back before it has opened by much.
+    fn hops_low(&self, region: &Region, record: &Collision, stage: &Stage) -> bool {
+        let (rate, back) = (record.motion.normal_velocity, -free_offset(region, record, stage));
+        back > 0.0 && rate * rate <= 2.0 * back * HOP_SHARE * record.tolerances.accuracy
     }
 
     /// True if a unilateral row may carry a force: connectors always do.
@@ -216,9 +237,7 @@ impl RigidSystem {
             let record = &region.records[index];
             let sides = [record.parties.primary.body, record.parties.normal.body];
             let places = sides.map(|body| region.place(body));
-            let spins =
-                places.map(|place| place.map_or(Spin::default(), |place| spin(stage.accelerations[place])));
-            let offset = record.motion.kinematics.acceleration(&spins[0], &spins[1]);
+            let offset = free_offset(region, record, stage);
             let j = &record.motion.kinematics.jacobian;
             let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
             let row = match places {
@@ -235,7 +254,7 @@ impl RigidSystem {
     }
 
     /// Holds the bilateral rows and those that carry a force.
-    fn choose_rows(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
+    fn choose_rows(&self, region: &mut Region, settling: &mut Settling, stage: &Stage, time: Time) {
         let forces = &settling.solution.force;
         // Loads [N] of each body: its own and those of its rows.
         let mut gross = std::mem::take(&mut settling.gross);
@@ -254,13 +273,19 @@ impl RigidSystem {
             let loads = places_of(region, &record).map(|place| gross[place]);
             let least = FORCE_SHARE * loads.fold(f64::INFINITY, f64::min);
             if bilateral || forces[place] > least {
-                settling.held.extend(self.held_row(&record).map(|row| (index, row)));
+                settling.held.extend(self.held_row(&record, time).map(|row| (index, row)));
             }
         }
         settling.gross = gross;
     }
 
-    fn held_row(&self, record: &Collision) -> Option<HeldRow> {
+    /// A row that knows whether it leans at a time.
+    pub(crate) fn leaning(&self, row: HeldRow, time: Time) -> HeldRow {
+        let movings = row.bodies.map(|body| self.moving_at(body, time));
+        HeldRow { leans: self.mechanism().leans(&row, [&movings[0], &movings[1]]), ..row }
+    }
+
+    fn held_row(&self, record: &Collision, time: Time) -> Option<HeldRow> {
         let source = self.source_of(record)?;
         let bodies = [record.parties.primary.body, record.parties.normal.body];
         // A connector is kept at its target, a contact where it formed.
@@ -268,7 +293,8 @@ impl RigidSystem {
             RowSource::Connector(id, _) => (0.0, self.connector_states[id.index()].hint),
             RowSource::Contact(_) => (record.geometry.distance, None),
         };
-        Some(HeldRow { source, bodies, bilateral: record.parties.bilateral, gap, hint })
+        let row = HeldRow { source, bodies, bilateral: record.parties.bilateral, gap, hint, leans: false };
+        Some(self.leaning(row, time))
     }
 
     fn settle_error(
@@ -290,6 +316,14 @@ impl RigidSystem {
     pub(crate) fn physics(&self) -> Physics<'_> {
         Physics { mechanism: self.mechanism(), laws: &self.laws, extra: self.settings.extra }
     }
+}
+
+/// Acceleration [m/s^2] of a record's gap without the forces of rows.
+fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    let sides = [record.parties.primary.body, record.parties.normal.body];
+    let spins = sides
+        .map(|body| region.place(body).map_or(Spin::default(), |place| spin(stage.accelerations[place])));
+    record.motion.kinematics.acceleration(&spins[0], &spins[1])
 }
 
 /// Places of the movable bodies of a record.

@@ -156,6 +156,8 @@ pub struct RigidSystem {
     pub(crate) extended: Vec<BodyId>,
     pub(crate) stage: Stage,
     pub(crate) stepper: Stepper,
+    /// Of fewer stages, for steps that an event is about to cut short.
+    pub(crate) brief_stepper: Stepper,
     pub(crate) scales: Vec<f64>,
     pub(crate) last_impact: ImpactReport,
     pub(crate) changes: ContactChanges,
@@ -214,6 +216,7 @@ impl RigidSystem {
             extended: Vec::new(),
             stage: Stage::new(movings),
             stepper: Stepper::new(settings.method),
+            brief_stepper: Stepper::new(Method::DormandPrince5),
             scales: Vec::new(),
             last_impact: ImpactReport::default(),
             changes: ContactChanges::default(),

@@ -102,7 +102,7 @@ impl Dynamics<'_> {
     }
 
     /// Places the group's bodies where they are at an offset [s] of the segment.
-    fn place_at(&mut self, offset: f64) {
+    pub(crate) fn place_at(&mut self, offset: f64) {
         let mut trial = std::mem::take(&mut self.stage.trial);
         trial.clear();
         let paths = self.group.paths.iter().flatten();
