@@ -83,6 +83,8 @@ pub(crate) struct Group {
     pub(crate) made: Time,
     /// The next event is near: a step of few stages reaches it.
     pub(crate) is_brief: bool,
+    /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
+    pub(crate) has_kinks: bool,
     /// The last step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
@@ -107,9 +109,14 @@ impl Group {
         self.state.clear();
         self.rates.clear();
         (self.next_step, self.full_step) = (None, None);
-        self.is_brief = false;
+        (self.is_brief, self.has_kinks) = (false, false);
         self.accepted = None;
         self.event = None;
+    }
+
+    /// True if its steps are made by the method of fewer stages.
+    pub(crate) fn has_few_stages(&self) -> bool {
+        self.is_brief || self.has_kinks
     }
 
     /// Goes back to the method that is asked for, if brief steps are held up by their errors.

@@ -98,9 +98,9 @@ impl RigidSystem {
         group: &mut Group,
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
-        let (start, is_brief) = (group.start, group.is_brief);
+        let (start, has_few) = (group.start, group.has_few_stages());
         let mut stage = std::mem::take(&mut self.stage);
-        let of_system = if is_brief { &mut self.brief_stepper } else { &mut self.stepper };
+        let of_system = if has_few { &mut self.brief_stepper } else { &mut self.stepper };
         let mut stepper = std::mem::replace(of_system, Stepper::new(of_system.method()));
         let mut scales = std::mem::take(&mut self.scales);
         let answer = {
@@ -112,7 +112,7 @@ impl RigidSystem {
             )
         };
         (self.stage, self.scales) = (stage, scales);
-        *(if is_brief { &mut self.brief_stepper } else { &mut self.stepper }) = stepper;
+        *(if has_few { &mut self.brief_stepper } else { &mut self.stepper }) = stepper;
         answer
     }
 
@@ -301,14 +301,19 @@ impl RigidSystem {
         group
     }
 
-    /// Chooses the first step of a group by what its bodies did last.
+    /// Chooses the first step of a group, and whether its steps have few stages, by what its bodies did last.
     fn foresee(&self, group: &mut Group) {
         let pasts = group.bodies.iter().map(|body| self.groups.past_of[body.index()]);
         group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);
+        if self.settings.method != Method::default() {
+            return;
+        }
+        group.has_kinks = group.rows.iter().any(|row| match row.source {
+            RowSource::Connector(id, _) => self.connector(id).path().is_some_and(|path| path.is_spline()),
+            RowSource::Contact(_) => false,
+        });
         let soon = BRIEF * pasts.map(|past| past.lasted).fold(0.0, f64::max);
-        if let Some(step) = group.next_step.filter(|&step| BRIEF * soon < step)
-            && self.settings.method == Method::default()
-        {
+        if let Some(step) = group.next_step.filter(|&step| !group.has_kinks && BRIEF * soon < step) {
             group.is_brief = true;
             (group.next_step, group.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));
         }

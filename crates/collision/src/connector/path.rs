@@ -122,6 +122,12 @@ impl RailPath {
         }
     }
 
+    /// True for a curve through points, whose third derivatives jump at each of them.
+    #[must_use]
+    pub fn is_spline(&self) -> bool {
+        matches!(self.curve, Curve::Spline(_))
+    }
+
     /// The joints at which curvature or direction jump, by arc length; a spline has none.
     #[must_use]
     pub fn knots(&self) -> &[RailKnot] {
