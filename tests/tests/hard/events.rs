@@ -1,10 +1,12 @@
 //! Events inside long steps: their time and their gap are right to the tolerance, not to that of dense output.
 
 use super::within;
+use halfgap::force::{ForceLaw, Snapshot, Wrenches};
 use halfgap::geometry::DVec2;
 use halfgap::{Anchor, BodyId, ConnectorKind, Event, Impact, ToleranceOverrides, World, WorldSettings};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, at_rest, block, disc, pendulum_period};
-use std::f64::consts::FRAC_PI_2;
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 const LENGTH: f64 = 1.0;
 const AMPLITUDE: f64 = 2.0;
@@ -57,4 +59,128 @@ fn a_pendulum_hits_a_wall_at_its_time_and_its_gap() {
             within(&what("speed [m/s]"), row.velocity_before.abs() - speed, tolerance);
         }
     }
+}
+
+/// Does nothing, but for changing branch again and again.
+#[derive(Debug)]
+struct Clock {
+    bodies: [BodyId; 1],
+    /// Time [s] between two changes.
+    tick: f64,
+}
+
+impl ForceLaw for Clock {
+    fn name(&self) -> &str {
+        "clock"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.bodies
+    }
+
+    fn apply(&self, _now: &Snapshot<'_>, _wrenches: &mut Wrenches<'_>) {}
+
+    fn potential(&self, _now: &Snapshot<'_>) -> Option<f64> {
+        Some(0.0)
+    }
+
+    fn switches(&self) -> usize {
+        1
+    }
+
+    fn switch(&self, _index: usize, now: &Snapshot<'_>) -> f64 {
+        (PI * now.time / self.tick).sin()
+    }
+}
+
+#[test]
+fn a_pendulum_that_is_cut_in_every_step_is_as_exact_as_one_that_is_not() {
+    let period = pendulum_period((GRAVITY / LENGTH).sqrt(), AMPLITUDE);
+    let tolerance = 1e-8;
+    let error = |tick: Option<f64>| {
+        let mut shop = Workshop::new(tolerance);
+        let place = LENGTH * DVec2::from_angle(AMPLITUDE - FRAC_PI_2);
+        let bob = shop.body("bob", disc(RADIUS), 1.0, at_rest(place.x, place.y));
+        let ends = [BodyId::WORLD, bob].map(|body| Anchor { body, point: DVec2::ZERO });
+        shop.connect(ConnectorKind::Rod { a: ends[0], b: ends[1], length: LENGTH }, 0.0);
+        if let Some(tick) = tick {
+            shop.builder.add_force(Arc::new(Clock { bodies: [bob], tick }));
+        }
+        let mut world = shop.build();
+        // Where it hangs straight down it is fastest.
+        advance(&mut world, 4.25 * period);
+        let ticks = tick.map_or(0, |tick| (world.time() / tick) as u64);
+        assert!(world.statistics().backups >= ticks, "{:?}", world.statistics());
+        (world.state(bob).position - DVec2::new(0.0, -LENGTH)).length()
+    };
+    let whole = error(None);
+    for tick in [0.017, 0.031, 0.047] {
+        let cut = error(Some(tick));
+        within(&format!("pendulum cut every {tick} s: place [m]"), cut, whole);
+    }
+}
+
+/// A cord that pulls a body towards the origin when it is stretched.
+#[derive(Debug)]
+struct Cord {
+    bodies: [BodyId; 1],
+    /// Length without force [m].
+    length: f64,
+    /// Force over stretch [N/m].
+    stiffness: f64,
+}
+
+impl Cord {
+    fn stretch(&self, now: &Snapshot<'_>) -> f64 {
+        now.body(self.bodies[0]).pose.position.length() - self.length
+    }
+}
+
+impl ForceLaw for Cord {
+    fn name(&self) -> &str {
+        "cord"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.bodies
+    }
+
+    fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+        let pull = -self.stiffness * self.stretch(now).max(0.0);
+        let along = now.body(self.bodies[0]).pose.position.normalize_or_zero();
+        wrenches.add_force(self.bodies[0], pull * along, DVec2::ZERO);
+    }
+
+    fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
+        Some(0.5 * self.stiffness * self.stretch(now).max(0.0).powi(2))
+    }
+
+    fn switches(&self) -> usize {
+        1
+    }
+
+    fn switch(&self, _index: usize, now: &Snapshot<'_>) -> f64 {
+        self.stretch(now)
+    }
+}
+
+#[test]
+fn a_law_changes_branch_at_its_moment() {
+    let (length, stiffness, speed, mass) = (1.0, 25.0, 2.0, 1.0);
+    let mut shop = Workshop::weightless(1e-10);
+    let ball = shop.body("ball", disc(0.1), mass, thrown(0.0, 0.0, DVec2::new(speed, 0.0)));
+    shop.builder.add_force(Arc::new(Cord { bodies: [ball], length, stiffness }));
+    let mut world = shop.build();
+    // Slack for 2 l/v, taut for half a period: to and fro through the origin.
+    let round = 4.0 * length / speed + 2.0 * PI * (mass / stiffness as f64).sqrt();
+    for rounds in 1..=10 {
+        advance(&mut world, f64::from(rounds) * round);
+        within(
+            &format!("ball on a cord, round {rounds}: place [m]"),
+            world.state(ball).position.length(),
+            1e-9,
+        );
+    }
+    let ledger = world.ledger();
+    within("ball on a cord: energy [J]", ledger.integration_error(), 1e-9);
 }
