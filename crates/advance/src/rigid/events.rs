@@ -1,5 +1,6 @@
 //! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
 
+use super::bounces::closes_fast;
 use super::error::{AdvanceError, Between};
 use super::group::SegmentEnd;
 use super::impacts::ImpactReport;
@@ -9,7 +10,7 @@ use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, ConnectorId, FeatureRule, GapKinematics};
+use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -39,10 +40,32 @@ impl RigidSystem {
         work.seeds.extend(self.bodies());
         work.region.at_start = true;
         self.collect_region(&mut work.region, &work.seeds, self.now);
-        let outcome = self.go_on(&mut work);
+        let outcome = if self.closes_slowly(&work.region) {
+            // What closes fast fires in its own time, unless that is now.
+            let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
+            work.region.records.retain(|record| !fast(record));
+            self.collide(&mut work).map(|_| ())
+        } else {
+            self.go_on(&mut work)
+        };
         work.region.at_start = false;
         self.work = Some(work);
         outcome
+    }
+
+    /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more slowly than forces
+    /// can be resolved. What has come to rest elsewhere may come with that much.
+    pub(crate) fn start_rest(&self) -> f64 {
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
+    }
+
+    /// True if any contact of a region closes so slowly that it is to be caught, and is not at rest yet.
+    fn closes_slowly(&self, region: &Region) -> bool {
+        let rest = self.start_rest();
+        let closes = |record: &Collision| record.motion.normal_velocity < -rest && !closes_fast(record);
+        let mut records = region.records.iter().filter(|record| !record.parties.bilateral);
+        self.settings.impulse_step.is_none() && records.any(closes)
     }
 
     /// Two bodies come into contact; true if there was an impact.

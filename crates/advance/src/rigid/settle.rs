@@ -140,8 +140,7 @@ impl RigidSystem {
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
         settling.candidates.clear();
-        // At the start nothing closes yet: what touches slowly is in contact.
-        let rest = if region.at_start { self.settings.tolerances.velocity_tol } else { self.rest_speed() };
+        let rest = if region.at_start { self.start_rest() } else { self.rest_speed() };
         let is_candidate = |record: &Collision| {
             let at_rest = record.motion.normal_velocity.abs() <= rest;
             record.parties.bilateral || (at_rest && self.holds(record))
