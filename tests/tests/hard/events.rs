@@ -2,7 +2,7 @@
 
 use super::within;
 use halfgap::force::{ForceLaw, Snapshot, Wrenches};
-use halfgap::geometry::DVec2;
+use halfgap::geometry::{DVec2, Shape};
 use halfgap::{Anchor, BodyId, ConnectorKind, Event, Impact, ToleranceOverrides, World, WorldSettings};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -183,4 +183,30 @@ fn a_law_changes_branch_at_its_moment() {
     }
     let ledger = world.ledger();
     within("ball on a cord: energy [J]", ledger.integration_error(), 1e-9);
+}
+
+/// How far [m] a disc that slides in a bowl comes nearer to it than its target gap, inside of steps.
+fn nearer_inside_of_steps(tolerance: f64, gap: f64) -> (f64, f64) {
+    let overrides = ToleranceOverrides { target_gap: Some(gap), ..ToleranceOverrides::default() };
+    let mut shop = Workshop::new(tolerance);
+    shop.builder =
+        halfgap::WorldBuilder::new(WorldSettings { tolerance, overrides, ..WorldSettings::default() });
+    shop.fixed("bowl", Shape::ring(4.0, 3.0).expect("a fine ring"), DVec2::ZERO);
+    let place = (2.5 - gap) * DVec2::from_angle(-0.1);
+    let ball = shop.dull("ball", disc(0.5), 1.0, at_rest(place.x, place.y));
+    let mut world = shop.build();
+    let mut least = f64::INFINITY;
+    for piece in 1..=2000 {
+        advance(&mut world, 2e-3 * f64::from(piece));
+        least = least.min(2.5 - world.state(ball).position.length());
+    }
+    (gap - least, world.tolerances().accuracy)
+}
+
+#[test]
+fn a_disc_in_a_bowl_keeps_its_distance_inside_of_long_steps() {
+    for (tolerance, gap) in [(1e-3, 1e-6), (1e-4, 1e-6), (1e-5, 1e-7), (1e-6, 1e-7)] {
+        let (nearer, accuracy) = nearer_inside_of_steps(tolerance, gap);
+        within(&format!("disc in a bowl at {tolerance:.0e}, inside of steps: gap [m]"), nearer, accuracy);
+    }
 }
