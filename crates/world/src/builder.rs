@@ -260,8 +260,8 @@ impl WorldBuilder {
         if let Some((body, value)) = far.find(|&(_, value)| value > largest) {
             return Err(too_large(body, "coordinates", largest, value));
         }
-        let connectors = self.connectors.iter().enumerate();
-        connectors.map(|(index, spec)| self.require_near(index, &spec.connector, largest)).collect()
+        let mut connectors = self.connectors.iter().enumerate();
+        connectors.try_for_each(|(index, spec)| self.require_near(index, &spec.connector, largest))
     }
 
     fn require_near(&self, index: usize, connector: &Connector, largest: f64) -> Result<(), WorldError> {

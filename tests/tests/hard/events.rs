@@ -166,13 +166,13 @@ impl ForceLaw for Cord {
 
 #[test]
 fn a_law_changes_branch_at_its_moment() {
-    let (length, stiffness, speed, mass) = (1.0, 25.0, 2.0, 1.0);
+    let (length, stiffness, speed, mass) = (1.0, 25.0, 2.0, 1.0f64);
     let mut shop = Workshop::weightless(1e-10);
     let ball = shop.body("ball", disc(0.1), mass, thrown(0.0, 0.0, DVec2::new(speed, 0.0)));
     shop.builder.add_force(Arc::new(Cord { bodies: [ball], length, stiffness }));
     let mut world = shop.build();
     // Slack for 2 l/v, taut for half a period: to and fro through the origin.
-    let round = 4.0 * length / speed + 2.0 * PI * (mass / stiffness as f64).sqrt();
+    let round = 4.0 * length / speed + 2.0 * PI * (mass / stiffness).sqrt();
     for rounds in 1..=10 {
         advance(&mut world, f64::from(rounds) * round);
         within(
