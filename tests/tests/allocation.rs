@@ -1,19 +1,25 @@
-//! A gas of discs in its steady state allocates nothing, however many impacts go by.
+//! A steady state allocates nothing: a gas of discs however many impacts go by, groups however many steps they take.
 #![allow(unsafe_code, reason = "an allocator that counts is the only way to see allocations")]
 
+use halfgap::geometry::{DVec2, Shape};
+use halfgap::{Anchor, BodyId, ConnectorKind, World};
+use halfgap_tests::mechanism::{Workshop, at_rest, block, disc};
 use halfgap_tests::world_of;
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
 use std::fmt::Write;
-use std::sync::atomic::{AtomicU64, Ordering};
 
-static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
+thread_local! {
+    /// Of this thread: other tests run beside.
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
 
 struct Counting;
 
 // SAFETY: every call is handed on to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
         // SAFETY: the caller keeps the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
@@ -49,16 +55,112 @@ fn gas() -> String {
     scene
 }
 
+/// Runs a world from a time [s] at which it is warm to another; returns the allocations between, and the events told.
+fn allocations(world: &mut World, warm: f64, end: f64) -> (u64, u64) {
+    world.advance_to(warm, &mut |_| {}).expect("it goes on");
+    let before = ALLOCATIONS.get();
+    let mut events = 0u64;
+    world.advance_to(end, &mut |_| events += 1).expect("it goes on");
+    (ALLOCATIONS.get() - before, events)
+}
+
+/// Checks that a world whose bodies share their steps allocates nothing over at least `steps` of them.
+#[track_caller]
+fn steps_allocate_nothing(mut world: World, steps: u64) {
+    let (warm, end) = (20.0, 60.0);
+    world.advance_to(warm, &mut |_| {}).expect("it goes on");
+    let before = world.statistics().steps;
+    let (allocations, events) = allocations(&mut world, warm, end);
+    let taken = world.statistics().steps - before;
+    println!("{taken} steps, {events} events, {allocations} allocations");
+    assert!(taken >= steps, "{taken} steps");
+    assert_eq!(allocations, 0, "over {taken} steps and {events} events");
+}
+
+fn world_point(x: f64, y: f64) -> Anchor {
+    Anchor { body: BodyId::WORLD, point: DVec2::new(x, y) }
+}
+
+fn center(body: BodyId) -> Anchor {
+    Anchor { body, point: DVec2::ZERO }
+}
+
 #[test]
-fn a_steady_state_allocates_nothing() {
+fn impacts_of_a_gas_allocate_nothing() {
     let mut world = world_of(&gas());
     let mut impacts = 0u64;
     world.advance_to(400.0, &mut |_| impacts += 1).expect("it goes on");
     assert!(impacts > 10_000, "{impacts} impacts to warm up");
-    let before = ALLOCATIONS.load(Ordering::Relaxed);
-    let mut seen = 0u64;
-    world.advance_to(500.0, &mut |_| seen += 1).expect("it goes on");
-    let allocations = ALLOCATIONS.load(Ordering::Relaxed) - before;
+    let (allocations, seen) = allocations(&mut world, 400.0, 500.0);
     assert!(seen > 2_000, "{seen} impacts");
     assert_eq!(allocations, 0, "over {seen} impacts");
+}
+
+#[test]
+fn a_pendulum_allocates_nothing() {
+    let mut shop = Workshop::new(1e-9);
+    let bob = shop.body("bob", disc(0.25), 1.0, at_rest(1.0, 0.0));
+    shop.connect(ConnectorKind::Rod { a: world_point(0.0, 0.0), b: center(bob), length: 1.0 }, 0.0);
+    steps_allocate_nothing(shop.build(), 500);
+}
+
+#[test]
+fn a_damped_pendulum_of_two_bars_allocates_nothing() {
+    let mut shop = Workshop::new(1e-9);
+    let places = [DVec2::ZERO, DVec2::new(1.0, 0.0), DVec2::new(1.0, 1.0)];
+    let upper = shop.bar("upper", places[0], places[1]);
+    let lower = shop.bar("lower", places[1], places[2]);
+    shop.pin(BodyId::WORLD, upper, places[0]);
+    shop.pin(upper, lower, places[1]);
+    shop.builder.add_damping(lower, 1e-3, 0.0);
+    steps_allocate_nothing(shop.build(), 500);
+}
+
+#[test]
+fn a_four_bar_linkage_allocates_nothing() {
+    let mut shop = Workshop::new(1e-9);
+    let joints = [DVec2::ZERO, DVec2::new(0.0, 1.0), DVec2::new(2.0, 1.5), DVec2::new(2.0, 0.0)];
+    let bars = [("crank", 0), ("coupler", 1), ("rocker", 2)]
+        .map(|(name, place)| shop.bar(name, joints[place], joints[place + 1]));
+    shop.pin(BodyId::WORLD, bars[0], joints[0]);
+    shop.pin(bars[0], bars[1], joints[1]);
+    shop.pin(bars[1], bars[2], joints[2]);
+    shop.pin(bars[2], BodyId::WORLD, joints[3]);
+    steps_allocate_nothing(shop.build(), 400);
+}
+
+#[test]
+fn a_disc_that_slides_to_and_fro_in_a_bowl_allocates_nothing() {
+    let mut shop = Workshop::new(1e-9);
+    shop.fixed("bowl", Shape::ring(4.0, 3.0).expect("a fine ring"), DVec2::ZERO);
+    let place = 2.5 * DVec2::from_angle(-1.0);
+    shop.dull("disc", disc(0.5), 1.0, at_rest(place.x, place.y));
+    steps_allocate_nothing(shop.build(), 200);
+}
+
+#[test]
+fn a_stack_at_rest_allocates_nothing() {
+    let mut shop = Workshop::new(1e-9);
+    shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -0.5));
+    for index in 0..5 {
+        let height = 0.25 + 0.5 * f64::from(index);
+        shop.dull(&format!("block {index}"), block(1.0, 0.5), 1.0, at_rest(0.0, height));
+    }
+    // A step is as long as its accelerations are sound, which is long where nothing moves.
+    let mut world = shop.build();
+    let steps_allocate = allocations(&mut world, 1e4, 1e5);
+    assert_eq!(steps_allocate, (0, 0), "{:?}", world.statistics());
+    assert!(world.statistics().steps > 20, "{:?}", world.statistics());
+}
+
+#[test]
+fn a_pendulum_that_hits_a_wall_again_and_again_allocates_nothing() {
+    let mut shop = Workshop::new(1e-9);
+    shop.fixed("wall", block(1.0, 4.0), DVec2::new(-0.75, 0.0));
+    let bob = shop.body("bob", disc(0.25), 1.0, at_rest(1.0, 0.0));
+    shop.connect(ConnectorKind::Rod { a: world_point(0.0, 0.0), b: center(bob), length: 1.0 }, 0.0);
+    let mut world = shop.build();
+    let (allocations, impacts) = allocations(&mut world, 20.0, 60.0);
+    assert!(impacts > 20, "{impacts} impacts");
+    assert_eq!(allocations, 0, "over {impacts} impacts");
 }

@@ -1,8 +1,8 @@
 //! Mechanisms neither come apart nor change their energy, however long they run.
 
 use halfgap::geometry::DVec2;
-use halfgap::{BodyId, World};
-use halfgap_tests::mechanism::{Workshop, advance, connector_error, pendulum_period};
+use halfgap::{Anchor, BodyId, ConnectorKind, Integrator, Stabilization, World, WorldBuilder, WorldSettings};
+use halfgap_tests::mechanism::{Workshop, advance, at_rest, connector_error, disc, pendulum_period};
 use halfgap_tests::reference_scene;
 use std::f64::consts::TAU;
 
@@ -109,4 +109,37 @@ fn a_body_on_three_pins_stays_and_its_pins_carry_its_weight() {
     let total: DVec2 = world.contact_forces().iter().map(|row| on_beam(row) * row.normal).sum();
     assert!((total - DVec2::new(0.0, 10.0)).length() < 1e-11, "{total} N");
     assert!(world.statistics().steps < 100, "{} steps at rest", world.statistics().steps);
+}
+
+#[test]
+fn the_older_remedies_against_drift_still_work() {
+    let error = |stabilization, joint_small_impacts| {
+        let settings = WorldSettings {
+            stabilization,
+            joint_small_impacts,
+            integrator: Integrator::Rk4,
+            time_step: Some(0.02),
+            ..WorldSettings::default()
+        };
+        let mut shop = Workshop::new(1e-8);
+        shop.builder = WorldBuilder::new(settings);
+        let bob = shop.body("bob", disc(0.25), 1.0, at_rest(1.0, 0.0));
+        let ends = [WORLD, bob].map(|body| Anchor { body, point: DVec2::ZERO });
+        shop.connect(ConnectorKind::Rod { a: ends[0], b: ends[1], length: 1.0 }, 0.0);
+        let mut world = shop.build();
+        drift(&mut world, 100.0).0
+    };
+    let bare = error(Stabilization::None, false);
+    assert!(bare > 1e-3, "{bare} m without any");
+    let remedies = [
+        (Stabilization::Velocity, false),
+        (Stabilization::VelocityJoints, false),
+        (Stabilization::VelocityAndDistance, false),
+        (Stabilization::VelocityAndDistanceJoints, false),
+        (Stabilization::None, true),
+    ];
+    for (stabilization, joint_small_impacts) in remedies {
+        let left = error(stabilization, joint_small_impacts);
+        assert!(left < 1e-2 * bare, "{stabilization:?}: {left} m of {bare} m");
+    }
 }

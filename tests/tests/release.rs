@@ -1,9 +1,12 @@
 //! Capture and release: contacts begin and end where theory says, and change from edge to edge on the way.
 
+use halfgap::force::{ForceLaw, Snapshot, Wrenches};
 use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
-use halfgap::{BodySpec, ToleranceOverrides};
+use halfgap::{BodyId, BodySpec, ToleranceOverrides};
 use halfgap::{BodyState, Event, World, WorldBuilder, WorldSettings};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 fn ends(world: &mut World, until: f64) -> Vec<(f64, DVec2)> {
     let mut ends = Vec::new();
@@ -190,4 +193,100 @@ fn three_feet_on_a_floor_carry_a_pendulum_by_turns() {
     }
     assert!((world.energy().total() / energy - 1.0).abs() < 1e-8);
     assert_eq!(world.statistics().impacts, 0);
+}
+
+/// A push along x that is a function of time: force [N] at a time [s].
+#[derive(Debug)]
+struct Push([BodyId; 1], fn(f64) -> f64);
+
+impl ForceLaw for Push {
+    fn name(&self) -> &str {
+        "push"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.0
+    }
+
+    fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+        wrenches.add_force(self.0[0], (self.1)(now.time) * DVec2::X, DVec2::ZERO);
+    }
+}
+
+/// The target gap of the worlds below [m].
+const GAP: f64 = 1e-6;
+
+/// A shop whose target gap is that.
+fn wide_gap_shop() -> Workshop {
+    let overrides = ToleranceOverrides { target_gap: Some(GAP), ..ToleranceOverrides::default() };
+    let mut shop = Workshop::weightless(1e-10);
+    shop.builder =
+        WorldBuilder::new(WorldSettings { tolerance: 1e-10, overrides, ..WorldSettings::default() });
+    shop
+}
+
+/// A disc of 1 kg at the origin that just touches a wall to its right, and what pushes it.
+fn pushed_at_a_wall(push: fn(f64) -> f64) -> (World, BodyId) {
+    let mut shop = wide_gap_shop();
+    shop.fixed("wall", block(1.0, 4.0), DVec2::new(1.0 + GAP, 0.0));
+    let ball = shop.body("ball", disc(0.5), 1.0, at_rest(0.0, 0.0));
+    shop.builder.add_force(Arc::new(Push([ball], push)));
+    (shop.build(), ball)
+}
+
+#[test]
+fn a_contact_without_force_is_held_when_it_is_pressed() {
+    let (mut world, ball) = pushed_at_a_wall(f64::sin);
+    let accuracy = world.tolerances().accuracy;
+    assert!(world.contact_forces().is_empty(), "{:?}", world.contact_forces());
+    for time in [0.1, 1.0, 2.0, 3.0] {
+        advance(&mut world, time);
+        let forces = world.contact_forces();
+        assert!(forces.len() == 1 && (forces[0].force - time.sin()).abs() < 1e-12, "{forces:?} at {time} s");
+        let state = world.state(ball);
+        assert!(state.position.x <= accuracy && state.velocity.length() < 1e-12, "{state:?} at {time} s");
+    }
+    let ends = ends(&mut world, PI + 1.0);
+    assert!(ends.len() == 1 && (ends[0].0 - PI).abs() < 1e-8, "{ends:?}");
+    // From rest there: v = cos(t) - 1 and x = sin(t) - t, t from then on.
+    let state = world.state(ball);
+    assert!((state.position.x - (1f64.sin() - 1.0)).abs() < accuracy, "{state:?}");
+    assert!((state.velocity.x - (1f64.cos() - 1.0)).abs() < 1e-8, "{state:?}");
+}
+
+#[test]
+fn a_contact_without_force_that_has_opened_bounces_when_it_comes_back() {
+    // x = -t^3/6 + t^4/12: away from the wall, and back at 2 s with 2/3 m/s.
+    let (mut world, ball) = pushed_at_a_wall(|time| time * (time - 1.0));
+    let mut impacts = Vec::new();
+    world
+        .advance_to(2.1, &mut |event| {
+            impacts.extend(event.impact().map(|impact| (impact.time, impact.rows[0])))
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    let [(time, row)] = impacts[..] else { panic!("it comes back once: {impacts:?}") };
+    // It fires within the target zone, a little below its target.
+    let late = 0.1 * world.tolerances().accuracy;
+    assert!((row.gap - GAP).abs() < late && (time - 2.0).abs() < 2.0 * late, "{row:?} at {time} s");
+    assert!((row.velocity_before + 2.0 / 3.0).abs() < 4.0 * late, "{row:?}");
+    assert_eq!(row.velocity_after, -row.velocity_before);
+    assert_eq!(world.ledger().captures, 0.0);
+    assert!(world.state(ball).velocity.x < -0.4, "{:?}", world.state(ball));
+}
+
+#[test]
+fn a_disc_that_lies_lower_than_its_target_gap_slides_over_a_seam_without_a_bump() {
+    for gap in [0.5 * GAP, 0.8 * GAP, GAP] {
+        let mut shop = wide_gap_shop();
+        shop.fixed("left", block(4.0, 1.0), DVec2::new(-2.0, -0.5));
+        shop.fixed("right", block(4.0, 1.0), DVec2::new(2.0, -0.5));
+        let ball = shop.body("ball", disc(0.5), 1.0, thrown(-1.0, 0.5 + gap, DVec2::X));
+        shop.builder.add_gravity(ball, DVec2::new(0.0, -GRAVITY));
+        let mut world = shop.build();
+        advance(&mut world, 2.0);
+        let state = world.state(ball);
+        assert_eq!(world.statistics().impacts, 0, "from a gap of {gap} m");
+        assert!((state.position - DVec2::new(1.0, 0.5 + gap)).length() < 1e-9, "{state:?}");
+        assert!((state.velocity - DVec2::X).length() < 1e-12, "{state:?}");
+    }
 }

@@ -1,7 +1,9 @@
 //! What overlaps at the start is refused with bodies and depth.
 
-use halfgap::World;
+use halfgap::geometry::DVec2;
 use halfgap::scene::{Scene, SceneFormat};
+use halfgap::{Event, ToleranceOverrides, World, WorldBuilder, WorldSettings};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, block, disc, thrown};
 use halfgap_tests::{on_floor, world_of};
 
 fn build_error(toml: &str) -> String {
@@ -50,4 +52,99 @@ fn a_mass_whose_inverse_overflows_is_refused() {
     );
     let error = halfgap::World::from_scene(&scene.expect("it can be read")).expect_err("nothing is so light");
     assert!(error.to_string().contains("mote") && error.to_string().contains("inverse"), "{error}");
+}
+
+/// A ball on the floor at a velocity [m/s] upwards, in a scene in which half a metre per second is slow.
+fn slow_ball(velocity: f64) -> World {
+    let settings = WorldSettings {
+        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
+        ..WorldSettings::default()
+    };
+    let mut shop = Workshop::new(1e-8);
+    shop.builder = WorldBuilder::new(settings);
+    shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
+    shop.body("ball", disc(0.5), 2.0, thrown(0.0, 0.5, DVec2::new(1.0, velocity)));
+    shop.build()
+}
+
+#[test]
+fn what_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
+    for speed in [1e-3, 0.4] {
+        let mut world = slow_ball(-speed);
+        let ball = world.find("ball").expect("it is there");
+        assert_eq!(world.state(ball).velocity, DVec2::new(1.0, 0.0));
+        let height = world.state(ball).position.y;
+        let forces = world.contact_forces();
+        assert!(forces.len() == 1 && (forces[0].force - 20.0).abs() < 1e-12, "{forces:?}");
+        advance(&mut world, 1.0);
+        assert!((world.state(ball).position - DVec2::new(1.0, height)).length() < 1e-12);
+        let ledger = world.ledger();
+        assert!((ledger.captures + speed * speed).abs() < 1e-15, "{ledger:?}");
+        assert!(ledger.projections.abs() < 1e-15 && ledger.integration_error().abs() < 1e-12, "{ledger:?}");
+    }
+}
+
+#[test]
+fn what_opens_slowly_at_the_start_flies() {
+    for speed in [1e-3, 0.4] {
+        let mut world = slow_ball(speed);
+        let ball = world.find("ball").expect("it is there");
+        let (start, flight) = (world.state(ball), 2.0 * speed / GRAVITY);
+        assert_eq!(start.velocity, DVec2::new(1.0, speed));
+        assert!(world.contact_forces().is_empty(), "{:?}", world.contact_forces());
+        advance(&mut world, 0.5 * flight);
+        let rise = world.state(ball).position.y - start.position.y;
+        assert!((rise - speed * speed / (2.0 * GRAVITY)).abs() < 1e-15, "it rises by {rise} m");
+        let mut begins = Vec::new();
+        world
+            .advance_to(1.0, &mut |event| {
+                begins.extend(matches!(event, Event::ContactBegins(_)).then(|| event.time()));
+            })
+            .expect("it comes down");
+        assert!(begins.len() == 1 && (begins[0] - flight).abs() < 1e-9, "caught at {begins:?} s");
+    }
+}
+
+#[test]
+fn discs_that_meet_slowly_at_the_start_go_on_together() {
+    let settings = WorldSettings {
+        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
+        ..WorldSettings::default()
+    };
+    let mut shop = Workshop::weightless(1e-8);
+    shop.builder = WorldBuilder::new(settings);
+    let slow = shop.body("slow", disc(0.5), 3.0, thrown(0.0, 0.0, DVec2::new(0.1, 0.0)));
+    let fast = shop.body("fast", disc(0.5), 1.0, thrown(-1.0, 0.0, DVec2::new(0.5, 0.0)));
+    let far = shop.body("far", disc(0.5), 1.0, thrown(5.0, 0.0, DVec2::new(0.4, 0.0)));
+    let world = shop.build();
+    for body in [slow, fast] {
+        assert!(
+            (world.state(body).velocity - DVec2::new(0.2, 0.0)).length() < 1e-15,
+            "{:?}",
+            world.state(body)
+        );
+    }
+    assert_eq!(world.state(far).velocity, DVec2::new(0.4, 0.0));
+    // The reduced mass is 3/4 kg.
+    assert!((world.ledger().captures + 0.5 * 0.75 * 0.4 * 0.4).abs() < 1e-15, "{:?}", world.ledger());
+}
+
+#[test]
+fn what_closes_fast_at_the_start_bounces_beside_what_is_caught() {
+    let settings = WorldSettings {
+        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
+        ..WorldSettings::default()
+    };
+    let mut shop = Workshop::new(1e-8);
+    shop.builder = WorldBuilder::new(settings);
+    shop.fixed("floor", block(9.0, 1.0), DVec2::new(0.0, -0.5));
+    let slow = shop.body("slow", disc(0.5), 2.0, thrown(-2.0, 0.5, DVec2::new(0.0, -0.4)));
+    let fast = shop.body("fast", disc(0.5), 2.0, thrown(2.0, 0.5, DVec2::new(0.0, -2.0)));
+    let mut world = shop.build();
+    let start = world.state(fast).position.y;
+    advance(&mut world, 0.2);
+    assert_eq!(world.state(slow).velocity, DVec2::ZERO);
+    // Up at 2 m/s for 0.2 s.
+    let rise = world.state(fast).position.y - start;
+    assert!((rise - 0.2).abs() < 1e-9, "{rise} m");
 }

@@ -1,13 +1,13 @@
 //! Building a world in code: bodies, and what acts on them.
 
-use crate::connector::ConnectorSpec;
+use crate::connector::{ConnectorSpec, kind_name};
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::rigid_settings::rigid_settings;
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
 use crate::start::{StartParts, StartRules, correct_start};
-use crate::world::{Inertia, Named, Start, World, energy_of};
-use crate::world_error::WorldError;
+use crate::world::{BACKGROUND, Inertia, Named, Start, World, energy_of};
+use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
@@ -20,6 +20,10 @@ use std::sync::Arc;
 /// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the start unless said
 /// otherwise.
 const DEFAULT_START_ERROR: f64 = 1e-6;
+
+/// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to fourth powers of
+/// sums of them, which must be numbers.
+const LARGEST: f64 = 1e60;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
 const CENTROID_ROUNDINGS: f64 = 16.0;
@@ -154,6 +158,7 @@ impl WorldBuilder {
         self.check()?;
         self.align();
         let scales = self.scales(&self.wrenches()?);
+        self.check_resolution(&scales)?;
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
         let warnings = self.gap_warning(&scales).into_iter().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
@@ -227,6 +232,7 @@ impl WorldBuilder {
         }
         for (index, spec) in self.connectors.iter().enumerate() {
             self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
+            self.require_near(index, &spec.connector, LARGEST)?;
         }
         for law in &self.forces {
             self.check_bodies(law.bodies(), || format!("force \"{}\"", law.name()))?;
@@ -244,6 +250,31 @@ impl WorldBuilder {
             }
         }
         Ok(())
+    }
+
+    /// Refuses coordinates so large that gaps as small as the smallest movable body cannot be told from rounding.
+    fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
+        let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
+        let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);
+        let mut far = bodies.map(|body| (body, farthest_of_shape(&centered(body), &body.state)));
+        if let Some((body, value)) = far.find(|&(_, value)| value > largest) {
+            return Err(too_large(body, "coordinates", largest, value));
+        }
+        let mut connectors = self.connectors.iter().enumerate();
+        connectors.try_for_each(|(index, spec)| self.require_near(index, &spec.connector, largest))
+    }
+
+    fn require_near(&self, index: usize, connector: &Connector, largest: f64) -> Result<(), WorldError> {
+        let value = farthest(connector);
+        if value <= largest {
+            return Ok(());
+        }
+        let name = |body: BodyId| {
+            self.bodies.get(body.index()).map_or_else(|| BACKGROUND.to_owned(), |body| body.name.clone())
+        };
+        let [first, second] = connector.bodies().map(name);
+        let connector = ConnectorName { index, kind: kind_name(&connector.kind), first, second };
+        Err(WorldError::FarConnector { connector, largest, value })
     }
 
     fn check_bodies(&self, bodies: &[BodyId], what: impl Fn() -> String) -> Result<(), WorldError> {
@@ -276,9 +307,7 @@ impl WorldBuilder {
         }
         for ((body, law), wrench) in self.bodies.iter().zip(&self.laws).zip(wrenches) {
             let shape = centered(body);
-            let bounds: Aabb = shape.bounds_at(&body.state.pose());
-            let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-            scales.coordinate = scales.coordinate.max(largest);
+            scales.coordinate = scales.coordinate.max(farthest_of_shape(&shape, &body.state));
             let Some(inertia) = &body.inertia else { continue };
             let reach = shape.reach();
             scales.smallest_radius = Some(scales.smallest_radius.map_or(reach, |least| least.min(reach)));
@@ -291,6 +320,19 @@ impl WorldBuilder {
         }
         scales
     }
+}
+
+/// The largest world coordinate of a body in size [m], given its shape about its centre of mass.
+fn farthest_of_shape(shape: &Shape, state: &BodyState) -> f64 {
+    let bounds: Aabb = shape.bounds_at(&state.pose());
+    bounds.min.abs().max(bounds.max.abs()).max_element()
+}
+
+/// The largest coordinate of a connector in size [m], on a body or in the world.
+fn farthest(connector: &Connector) -> f64 {
+    let (a, b) = connector.anchors();
+    let anchors = [Some(a), b].into_iter().flatten().map(|anchor| anchor.point.abs().max_element());
+    anchors.fold(coordinate_of(connector), f64::max)
 }
 
 /// The largest world coordinate of a connector in size [m], where it has any.
@@ -327,10 +369,29 @@ fn check_body(body: &BodySpec) -> Result<(), WorldError> {
         ("velocity", state.velocity.y),
         ("angular velocity", state.angular_velocity),
     ];
-    match numbers.into_iter().find(|(_, value)| !value.is_finite()) {
-        Some((quantity, value)) => bad(quantity, "finite", value),
+    if let Some((quantity, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+        return bad(quantity, "finite", value);
+    }
+    let bounds = body.shape.bounds_at(&Pose::IDENTITY);
+    let corners = [bounds.min, bounds.max].into_iter().flat_map(|corner| [corner.x, corner.y]);
+    let center = body.center_of_mass.unwrap_or(DVec2::ZERO);
+    let sizes = numbers.into_iter().filter(|(quantity, _)| *quantity != "angle");
+    let mut sizes = sizes
+        .chain([center.x, center.y].map(|value| ("centre of mass", value)))
+        .chain(corners.map(|value| ("coordinates of the shape", value)));
+    match sizes.find(|(_, value)| !is_sound(*value)) {
+        Some((quantity, value)) => Err(too_large(body, quantity, LARGEST, value)),
         None => Ok(()),
     }
+}
+
+fn too_large(body: &BodySpec, quantity: &'static str, largest: f64, value: f64) -> WorldError {
+    WorldError::TooLarge { body: body.name.clone(), quantity, largest, value }
+}
+
+/// True for a coordinate or velocity that can be computed with.
+fn is_sound(value: f64) -> bool {
+    value.abs() <= LARGEST
 }
 
 fn center_of_mass(body: &BodySpec) -> DVec2 {

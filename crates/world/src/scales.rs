@@ -41,6 +41,12 @@ impl Scales {
         GAP_ROUNDINGS * f64::EPSILON * self.coordinate
     }
 
+    /// The largest coordinate [m] at which the smallest target gap is no larger than the smallest movable body; `None` if
+    /// nothing moves.
+    pub(crate) fn largest_coordinate(&self) -> Option<f64> {
+        self.smallest_radius.map(|radius| radius / (GAP_ROUNDINGS * f64::EPSILON))
+    }
+
     /// The target gap [m] that the tolerance asks for.
     pub(crate) fn wanted_gap(&self, tolerance: f64) -> f64 {
         tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)

@@ -22,6 +22,19 @@ pub enum WorldError {
         /// What it is.
         value: f64,
     },
+    /// A coordinate or a velocity is so large that its powers are no numbers, or a coordinate so large that its rounding hides
+    /// the smallest body.
+    #[error("body \"{body}\": {quantity} must be at most {largest:e} in size, got {value:e}")]
+    TooLarge {
+        /// Name of the body.
+        body: String,
+        /// Which quantity.
+        quantity: &'static str,
+        /// How large it may be.
+        largest: f64,
+        /// What it is.
+        value: f64,
+    },
     /// A setting is out of range.
     #[error("{setting} must be {rule}, got {value}")]
     BadSetting {
@@ -51,6 +64,16 @@ pub enum WorldError {
         error: f64,
         /// How far would be allowed [m].
         allowed: f64,
+    },
+    /// A connector lies farther out than can be computed with.
+    #[error("{connector}: coordinates must be at most {largest:e} m in size, got {value:e} m")]
+    FarConnector {
+        /// Which connector.
+        connector: ConnectorName,
+        /// How large they may be [m].
+        largest: f64,
+        /// The largest [m].
+        value: f64,
     },
     /// Connectors cannot all be put together at the start.
     #[error("{connector} cannot be put together at the start: {error} m remain")]

@@ -182,3 +182,73 @@ fn what_names_no_body_is_refused() {
     let error = builder.build().expect_err("there is no body 7");
     assert_eq!(error.to_string(), "connector 0 names body 7, but there are 1 bodies");
 }
+
+#[test]
+fn what_is_too_far_out_to_compute_with_is_refused_by_name_and_number() {
+    let near = || disc("near", 1.0, DVec2::ZERO);
+    let refusal = |body: BodySpec| {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        builder.add(near());
+        builder.add(body);
+        builder.build().expect_err("a square of it is no number").to_string()
+    };
+    for far in [1e61, 1e154, 1e308, -1e308, f64::MAX] {
+        let place = refusal(disc("far", 1.0, DVec2::new(0.5, far)));
+        assert_eq!(place, format!("body \"far\": position must be at most 1e60 in size, got {far:e}"));
+        let velocity = DVec2::new(far, 0.0);
+        let state = BodyState { velocity, ..BodyState::default() };
+        let speed = refusal(BodySpec { state, ..disc("fast", 1.0, DVec2::ZERO) });
+        assert_eq!(speed, format!("body \"fast\": velocity must be at most 1e60 in size, got {far:e}"));
+        let state = BodyState { angular_velocity: far, ..BodyState::default() };
+        let spin = refusal(BodySpec { state, ..disc("spun", 1.0, DVec2::ZERO) });
+        assert_eq!(
+            spin,
+            format!("body \"spun\": angular velocity must be at most 1e60 in size, got {far:e}")
+        );
+        let center_of_mass = Some(DVec2::new(0.0, far));
+        let center = refusal(BodySpec { center_of_mass, ..disc("lopsided", 1.0, DVec2::ZERO) });
+        assert_eq!(
+            center,
+            format!("body \"lopsided\": centre of mass must be at most 1e60 in size, got {far:e}")
+        );
+    }
+    let large = BodySpec::fixed("large", Shape::disc(1e65).expect("a radius"), DVec2::ZERO);
+    assert!(
+        refusal(large).contains("\"large\": coordinates of the shape must be at most 1e60 in size, got ")
+    );
+}
+
+#[test]
+fn coordinates_whose_rounding_hides_the_smallest_body_are_refused() {
+    // Half a metre over 512 machine epsilons.
+    let largest = 0.5 / (512.0 * f64::EPSILON);
+    let world = |place: DVec2| {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        builder.add(disc("near", 1.0, DVec2::ZERO));
+        let state = BodyState { position: place, ..BodyState::default() };
+        builder.add(BodySpec::movable("far", Shape::disc(3.0).expect("a radius"), 1.0, state));
+        builder.build()
+    };
+    for far in [1e13, 1e20, 1e60] {
+        let error = world(DVec2::new(0.0, -far)).expect_err("too far").to_string();
+        let beginning = format!("body \"far\": coordinates must be at most {largest:e} in size, got ");
+        assert!(error.starts_with(&beginning), "{error}");
+    }
+    let mut world = world(DVec2::new(0.0, -0.9 * largest)).expect("just near enough");
+    world.advance_to(1.0, &mut |_| {}).expect("nothing is in the way");
+    assert_eq!(world.time(), 1.0);
+}
+
+#[test]
+fn a_connector_too_far_out_is_refused_by_name_and_number() {
+    for (far, largest) in [(1e200, 1e60), (1e20, 0.5 / (512.0 * f64::EPSILON))] {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let bob = builder.add(disc("bob", 1.0, DVec2::ZERO));
+        builder.add_connector(rod(at(0.0, -far), center(bob), 1.0));
+        let error = builder.build().expect_err("too far").to_string();
+        let whole = format!(
+            "connector 0 (rod of \"world\" and \"bob\"): coordinates must be at most {largest:e} m in size, got {far:e} m"
+        );
+        assert_eq!(error, whole);
+    }
+}

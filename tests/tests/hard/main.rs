@@ -4,6 +4,7 @@
 
 mod chains;
 mod changes;
+mod events;
 mod extremes;
 mod grazing;
 mod ledger;

@@ -2,8 +2,41 @@
 
 use super::{impacts, within};
 use halfgap::geometry::DVec2;
-use halfgap::{BodyId, ImpactLaw, WorldBuilder, WorldSettings};
+use halfgap::{BodyId, BodyState, ImpactLaw, ToleranceOverrides, WorldBuilder, WorldSettings};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+
+/// A block that falls with a tilt such that one corner is by a length [m] higher than the other; rows of its first impact,
+/// and its spin [rad/s] after it.
+fn land_tilted(higher: f64) -> (usize, f64) {
+    let mut shop = Workshop::new(1e-8);
+    let overrides = ToleranceOverrides { target_gap: Some(1e-6), ..ToleranceOverrides::default() };
+    shop.builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });
+    shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -0.5));
+    let state = BodyState { angle: 0.5 * higher, ..at_rest(0.0, 1.5) };
+    let body = shop.body("block", block(2.0, 1.0), 1.0, state);
+    let mut world = shop.build();
+    let mut first = None;
+    world
+        .advance_to(0.5, &mut |event| {
+            first = first
+                .or(event.impact().map(|impact| (impact.rows.len(), impact.states[0].1.angular_velocity)));
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(world.state(body).position.y > 0.5);
+    first.expect("it has landed")
+}
+
+#[test]
+fn corners_within_the_target_zone_land_at_once_and_others_one_after_the_other() {
+    // The zone is 0.6 of the target gap high.
+    for higher in [0.1e-6, 0.4e-6, 0.55e-6] {
+        let (rows, spin) = land_tilted(higher);
+        assert_eq!(rows, 2, "{higher} m");
+        within(&format!("block with a corner higher by {higher:e} m: spin [rad/s]"), spin, 1e-12);
+    }
+    let (rows, spin) = land_tilted(0.7e-6);
+    assert!(rows == 1 && spin.abs() > 1.0, "{rows} rows, {spin} rad/s");
+}
 
 #[test]
 fn a_block_that_lands_flat_on_two_corners_does_not_turn() {

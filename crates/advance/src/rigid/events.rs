@@ -1,5 +1,6 @@
 //! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
 
+use super::bounces::closes_fast;
 use super::error::{AdvanceError, Between};
 use super::group::SegmentEnd;
 use super::impacts::ImpactReport;
@@ -9,7 +10,7 @@ use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, ConnectorId, FeatureRule, GapKinematics};
+use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -41,10 +42,32 @@ impl RigidSystem {
         work.seeds.extend(self.bodies());
         work.region.at_start = true;
         self.collect_region(&mut work.region, &work.seeds, self.now);
-        let outcome = self.go_on(&mut work);
+        let outcome = if self.closes_slowly(&work.region) {
+            // What closes fast fires in its own time, unless that is now.
+            let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
+            work.region.records.retain(|record| !fast(record));
+            self.collide(&mut work).map(|_| ())
+        } else {
+            self.go_on(&mut work)
+        };
         work.region.at_start = false;
         self.work = Some(work);
         outcome
+    }
+
+    /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more slowly than forces
+    /// can be resolved. What has come to rest elsewhere may come with that much.
+    pub(crate) fn start_rest(&self) -> f64 {
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
+    }
+
+    /// True if any contact of a region closes so slowly that it is to be caught, and is not at rest yet.
+    fn closes_slowly(&self, region: &Region) -> bool {
+        let rest = self.start_rest();
+        let closes = |record: &Collision| record.motion.normal_velocity < -rest && !closes_fast(record);
+        let mut records = region.records.iter().filter(|record| !record.parties.bilateral);
+        self.settings.impulse_step.is_none() && records.any(closes)
     }
 
     /// Two bodies come into contact; true if there was an impact.
@@ -225,7 +248,7 @@ impl RigidSystem {
     /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         self.note_rails(&work.region, self.now);
-        self.settle_region(work, true)?;
+        self.settle_region(work, !work.region.at_start)?;
         if self.still_hops(work)? {
             self.settle_region(work, false)?;
         }
@@ -258,7 +281,7 @@ impl RigidSystem {
         work.hopping.retain(|&index| {
             !records[index].parties.bilateral && records[index].motion.normal_velocity > rest
         });
-        if work.hopping.is_empty() || work.region.at_start {
+        if work.hopping.is_empty() {
             return Ok(false);
         }
         work.hopping.iter().for_each(|&index| records[index].parties.bilateral = true);
@@ -391,3 +414,86 @@ const CALM_REPEATS: u32 = 20;
 const MOST_REPEATS: u32 = 100;
 /// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
 const SAME_TIME: f64 = 4.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ode::Method;
+    use crate::rigid::{FlightLaw, RigidParts, RigidSettings, StepControl};
+    use glam::DVec2;
+    use halfgap_collision::{Body, BodyState, SearchSettings};
+    use halfgap_contact::{ImpactLaw, ImpactOrder};
+    use halfgap_geometry::Shape;
+
+    const SETTINGS: RigidSettings = RigidSettings {
+        tolerances: Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 },
+        law: ImpactLaw::Hybrid,
+        order: ImpactOrder::Fastest,
+        collisions: true,
+        search: SearchSettings { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0 },
+        method: Method::Dop853,
+        steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
+        projection: true,
+        extra: None,
+        impulse_step: None,
+        joint_small_impacts: false,
+        rest_speed: 1e-12,
+        resolution_time: 1e-10,
+    };
+
+    /// Two elastic discs at their target gap that close with 2 m/s, and their pair.
+    fn meeting() -> (RigidSystem, PairId, [FeatureId; 2]) {
+        let disc = |side: f64| {
+            let shape = Shape::disc(0.5).expect("a fine radius");
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+            let position = DVec2::new(side * (0.5 + 0.5e-10), 0.0);
+            let state = BodyState { position, velocity: DVec2::new(-side, 0.0), ..BodyState::default() };
+            (body, FlightLaw::default(), state)
+        };
+        let parts = RigidParts { bodies: vec![disc(-1.0), disc(1.0)], ..RigidParts::default() };
+        let system = RigidSystem::new(parts, SETTINGS, Time::from_seconds(1.0)).expect("nothing rests");
+        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
+        let features = [FeatureId(0), FeatureId(0)];
+        (system, pair, features)
+    }
+
+    #[test]
+    fn a_pair_that_fires_for_the_first_time_bounces() {
+        let (mut system, pair, features) = meeting();
+        // The start has seen it at its target: a moment later it has been elsewhere.
+        system.pairs.seen_mut(pair).clear();
+        assert!(system.handle_contact(pair, features).expect("one row"));
+        assert_eq!(system.last_impact.rows[0].rate_after, 2.0);
+    }
+
+    #[test]
+    fn a_pair_that_fires_again_and_again_without_time_going_by_is_stopped() {
+        let (mut system, pair, features) = meeting();
+        for _ in 0..=CALM_REPEATS {
+            system.note_repeat(pair).expect("not stuck yet");
+        }
+        assert!(system.handle_contact(pair, features).expect("one row"));
+        assert_eq!(system.last_impact.rows[0].rate_after, 0.0);
+        assert_eq!(system.ledger.captures, -1.0);
+    }
+
+    #[test]
+    fn a_pair_that_does_not_stop_then_is_stuck() {
+        let (mut system, pair, _) = meeting();
+        for count in 0..=MOST_REPEATS {
+            assert_eq!(system.note_repeat(pair), Ok(count));
+        }
+        let between = Between { primary: BodyId(0), normal: BodyId(1) };
+        let stuck = AdvanceError::Stuck { time: 1.0, between, events: MOST_REPEATS + 1 };
+        assert_eq!(system.note_repeat(pair), Err(stuck));
+    }
+
+    #[test]
+    fn time_that_goes_by_ends_the_count() {
+        let (mut system, pair, _) = meeting();
+        for _ in 0..3 * MOST_REPEATS {
+            system.now = system.now.plus(1e-12);
+            assert_eq!(system.note_repeat(pair), Ok(0));
+        }
+    }
+}

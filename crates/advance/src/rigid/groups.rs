@@ -13,6 +13,7 @@ use super::system::RigidSystem;
 use crate::ode::{Method, Stepper};
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
+use halfgap_contact::Inertia;
 
 /// What the next group of a body may learn from its last.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,6 +48,9 @@ pub(crate) struct Groups {
     integrated: Vec<bool>,
     /// Leaders of the groups that were made last.
     pub(crate) made: Vec<BodyId>,
+    /// Inertias of the bodies of a group that starts, and the places of each row's bodies among them.
+    inertias: Vec<Inertia>,
+    sides: Vec<[Option<u32>; 2]>,
 }
 
 impl Groups {
@@ -360,6 +364,8 @@ impl RigidSystem {
             let stays = self.gap_at(touch, self.now).0 < opened;
             if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
                 self.pairs.rules_mut(pair).retain(|rule| rule.features != features);
+                // It has left the target zone: when it comes back it is no low bounce.
+                self.pairs.seen_mut(pair).retain(|seen| seen.features != features);
                 touched.push(pair);
             }
             stays
@@ -399,13 +405,15 @@ impl RigidSystem {
         (group.start, group.made) = (self.now, self.now);
         let count = group.bodies.len();
         let dimension = group.dimension();
-        let inertia: Vec<_> = group.bodies.iter().map(|&body| self.inertia(body)).collect();
-        let place = |body: BodyId, bodies: &[BodyId]| {
-            bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok())
-        };
-        let sides: Vec<_> =
-            group.rows.iter().map(|row| row.bodies.map(|body| place(body, &group.bodies))).collect();
-        group.held.set_structure(&inertia, &sides);
+        let mut inertias = std::mem::take(&mut self.groups.inertias);
+        let mut sides = std::mem::take(&mut self.groups.sides);
+        inertias.clear();
+        inertias.extend(group.bodies.iter().map(|&body| self.inertia(body)));
+        let place = |body| group.bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
+        sides.clear();
+        sides.extend(group.rows.iter().map(|row| row.bodies.map(place)));
+        group.held.set_structure(&inertias, &sides);
+        (self.groups.inertias, self.groups.sides) = (inertias, sides);
         // The projection works on the end of a segment: one of no length ends here.
         group.end_state.clear();
         group.end_state.resize(dimension, 0.0);

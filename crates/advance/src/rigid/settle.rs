@@ -145,8 +145,7 @@ impl RigidSystem {
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
         settling.candidates.clear();
-        // At the start nothing closes yet: what touches slowly is in contact.
-        let rest = if region.at_start { self.settings.tolerances.velocity_tol } else { self.rest_speed() };
+        let rest = if region.at_start { self.start_rest() } else { self.rest_speed() };
         let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
         let may_hold = |record: &Collision| {
             let may_hop = with_hops && self.may_hop(record);

@@ -1,8 +1,10 @@
 //! The advance of rigid bodies, as its users see it.
 
+mod bounces;
 mod box_of_bodies;
 mod determinism;
 mod energy;
 mod limits;
 mod no_overlap;
 mod rest;
+mod storms;

@@ -123,13 +123,16 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
     };
     let place = match &error {
         WorldError::DoubleName { name } => body(name, "name"),
-        WorldError::BadNumber { body: name, .. } => body(name, "name"),
+        WorldError::BadNumber { body: name, .. } | WorldError::TooLarge { body: name, .. } => {
+            body(name, "name")
+        }
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
             body(second, "position")
         }
         WorldError::BadForce { body: name, .. } => body(name, "position"),
         WorldError::ConnectorError { connector, .. }
         | WorldError::CannotConnect { connector, .. }
+        | WorldError::FarConnector { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {
             Some(FieldPath::top().field("connector").element(connector.index).field(connector.kind))
         }
