@@ -100,7 +100,8 @@ impl ImpactLaw {
             ImpactOrder::Fastest => None,
             ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, random)),
         };
-        let mut patience = Patience::new(impact.rows.len(), small.max(impact.quiet_speed()));
+        let slow = impact.slow_speed();
+        let mut patience = Patience::new(impact.rows.len(), small.max(QUIET * slow), slow);
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }
@@ -136,10 +137,9 @@ impl Impact {
         self.finish(small)
     }
 
-    /// Speed [m/s] below which ricochets end in any case.
-    fn quiet_speed(&self) -> f64 {
-        let slowest = self.rows.iter().map(|row| row.velocity_tol).fold(f64::INFINITY, f64::min);
-        QUIET * slowest
+    /// Speed [m/s] below which no row rebounds.
+    fn slow_speed(&self) -> f64 {
+        self.rows.iter().map(|row| row.velocity_tol).fold(f64::INFINITY, f64::min)
     }
 
     /// Finds which rates are rounding, and whether a row is violated that moves nothing.

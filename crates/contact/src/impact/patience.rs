@@ -3,12 +3,15 @@
 //! Each round of a law lets some rows rebound and may drive others together. In general the rates fall fast, but not in
 //! a tight chain: elastic bodies between two walls pass an impulse to and fro for ever. So what counts as closing grows
 //! in stages, each of so many rows solved, from a rounding of the impact's speed to all of it; what then still closes is
-//! stopped without elasticity. The energy lost by that is of the order of the square of what counted last.
+//! stopped without elasticity. The energy lost by that is of the order of the square of what counted last. After the
+//! first rows only speeds at which elasticity acts count: to stop what is slower takes one problem, not a row after another.
 
 /// Part of the impact's fastest rate below which a row is done.
 pub(super) const RICOCHET: f64 = 1e-12;
 /// Part of `velocity_tol`, the speed below which elasticity does not act, at which a ricochet is over.
 pub(super) const QUIET: f64 = 1e-3;
+/// Rows solved before slow rows are left to the end.
+const FIRST_ROWS: usize = 20;
 /// Rows solved in one stage, per row of the impact.
 const ROWS_PER_STAGE: usize = 20;
 /// Factor of what counts as closing, from one stage to the next.
@@ -21,16 +24,17 @@ const STAGES: usize = 12;
 pub(super) struct Patience {
     /// Rate [m/s] up to which a row is done.
     small: f64,
+    /// Speed [m/s] below which no row rebounds, while it does not count.
+    slow: Option<f64>,
     per_stage: usize,
     left: usize,
     stages: usize,
 }
 
 impl Patience {
-    /// For an impact of `rows` rows in which rates up to `small` are done.
-    pub(super) fn new(rows: usize, small: f64) -> Self {
-        let per_stage = ROWS_PER_STAGE * rows;
-        Self { small, per_stage, left: per_stage, stages: STAGES }
+    /// For an impact of `rows` rows in which rates up to `small` are done, and no row rebounds that is slower than `slow`.
+    pub(super) fn new(rows: usize, small: f64, slow: f64) -> Self {
+        Self { small, slow: Some(slow), per_stage: ROWS_PER_STAGE * rows, left: FIRST_ROWS, stages: STAGES }
     }
 
     /// Rate [m/s] up to which a row is done.
@@ -41,7 +45,13 @@ impl Patience {
     /// Counts rows that were solved; false when it is time to give in.
     pub(super) fn spend(&mut self, rows: usize) -> bool {
         self.left = self.left.saturating_sub(rows);
-        if self.left == 0 && self.stages > 0 {
+        if self.left > 0 {
+            return true;
+        }
+        if let Some(slow) = self.slow.take() {
+            self.left = self.per_stage;
+            self.small = self.small.max(slow);
+        } else if self.stages > 0 {
             self.stages -= 1;
             self.left = self.per_stage;
             self.small *= RAISE;
@@ -56,12 +66,19 @@ mod tests {
 
     #[test]
     fn it_ends_after_so_many_rows_with_all_of_the_impact() {
-        let mut patience = Patience::new(3, RICOCHET);
+        let mut patience = Patience::new(3, RICOCHET, 0.0);
         let mut solved = 0;
         while patience.spend(1) {
             solved += 1;
         }
-        assert_eq!(solved + 1, 3 * ROWS_PER_STAGE * STAGES);
+        assert_eq!(solved + 1, FIRST_ROWS + 3 * ROWS_PER_STAGE * STAGES);
         assert!((patience.small() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn slow_rows_do_not_count_after_the_first() {
+        let mut patience = Patience::new(3, RICOCHET, 0.5);
+        assert!(patience.spend(FIRST_ROWS - 1) && patience.small() == RICOCHET);
+        assert!(patience.spend(1) && patience.small() == 0.5);
     }
 }
