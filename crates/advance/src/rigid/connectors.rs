@@ -100,7 +100,7 @@ impl RigidSystem {
                 let (anchor, _) = self.connector(id).anchors();
                 let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
                 let state = &self.connector_states[id.index()];
-                let hint = path.nearest(point, state.hint.as_ref()).hint();
+                let hint = path.hint_near(point, state.hint.as_ref());
                 // A stop lies on whatever piece: it must see its point pass the joints before it.
                 let hint = if is_stop(self.connector(id)) { hint } else { hint.staying() };
                 self.connector_states[id.index()].hint = Some(hint);

@@ -458,7 +458,7 @@ impl RigidSystem {
                 return;
             };
             let point = body_state(state, count, place).pose().point_to_world(anchor.point);
-            *hint = Some(path.nearest(point, hint.as_ref()).hint().staying());
+            *hint = Some(path.hint_near(point, hint.as_ref()).staying());
         };
         stops.iter_mut().for_each(|stop| renew(stop.id, &mut stop.hint));
         for row in rows.iter_mut() {

@@ -216,11 +216,11 @@ impl super::rows::Mechanism<'_> {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, index) => {
-                let sample = self.connectors[id.index()].measure_near(index, &a, &b, row.hint.as_ref());
+                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
                 (sample.point_a, sample.normal)
             }
             RowSource::Contact(features) => {
-                let sample = self.sample(row.bodies, features, [&a, &b]);
+                let sample = self.sample(row.bodies, features, [a, b]);
                 (sample.point_primary, sample.normal)
             }
         }

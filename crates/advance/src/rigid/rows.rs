@@ -58,8 +58,8 @@ pub(crate) struct Mechanism<'a> {
 
 /// A body among those that move, or the background.
 #[inline]
-pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> Moving {
-    if body.is_world() { Moving::BACKGROUND } else { movings[body.index()] }
+pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> &Moving {
+    if body.is_world() { &Moving::BACKGROUND } else { &movings[body.index()] }
 }
 
 impl Mechanism<'_> {
@@ -72,12 +72,12 @@ impl Mechanism<'_> {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, index) => {
-                let sample = self.connectors[id.index()].measure_near(index, &a, &b, row.hint.as_ref());
+                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
                 RowMoment { gap: sample.gap, kinematics: sample.kinematics }
             }
             RowSource::Contact(features) => {
-                let sample = self.sample(row.bodies, features, [&a, &b]);
-                RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, &a, &b) }
+                let sample = self.sample(row.bodies, features, [a, b]);
+                RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, a, b) }
             }
         }
     }
@@ -116,7 +116,7 @@ impl Mechanism<'_> {
                 rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
             }
             RowSource::Contact(features) => {
-                let mut sample = self.sample(row.bodies, features, [&a, &b]);
+                let mut sample = self.sample(row.bodies, features, [a, b]);
                 let feature = |side: usize| self.shape(row.bodies[side]).feature(features[side]);
                 let mut outside = sample.overrun;
                 if !row.leans {

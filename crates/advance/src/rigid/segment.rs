@@ -281,7 +281,7 @@ impl Dynamics<'_> {
             let Some(path) = connector.path().filter(|path| path.knots().is_empty()) else { continue };
             let anchor = connector.anchors().0;
             let point = moving_of(&self.stage.movings, anchor.body).pose.point_to_world(anchor.point);
-            row.hint = Some(path.nearest(point, Some(hint)).hint().staying());
+            row.hint = Some(path.hint_near(point, Some(hint)).staying());
         }
     }
 

@@ -261,7 +261,7 @@ impl Dynamics<'_> {
         self.place_at(offset);
         let connector = &self.physics.mechanism.connectors[stop.id.index()];
         let [a, b] = connector.bodies().map(|body| moving_of(&self.stage.movings, body));
-        connector.measure_near(0, &a, &b, stop.hint.as_ref()).gap + stop.slack
+        connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
     }
 
     fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {

@@ -3,6 +3,11 @@
 use super::path::Foot;
 use glam::DVec2;
 
+/// A step along a curve is sound as long as half of what the curve turns by, bent as it is where it starts, is less [rad].
+const SOUND_TURN: f64 = 0.25;
+/// Later terms of a series are trusted as long as they change its first one by less than this part.
+const SOUND_CORRECTION: f64 = 0.5;
+
 /// Q(u) = from + u (slope + u (bend + u twist)) for u from 0 to `width`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cubic {
@@ -14,25 +19,25 @@ pub(super) struct Cubic {
     pub(super) width: f64,
 }
 
-/// A point of a cubic with its derivatives by the parameter.
+/// A cubic about one of its parameters: Q(u + s) = point + s (slope + s (bend + s twist)).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jet {
     pub(super) point: DVec2,
-    pub(super) first: DVec2,
-    pub(super) second: DVec2,
-    pub(super) third: DVec2,
+    pub(super) slope: DVec2,
+    pub(super) bend: DVec2,
+    twist: DVec2,
 }
 
 impl Cubic {
     #[inline]
     pub(super) fn jet(&self, u: f64) -> Jet {
         let Self { from, slope, bend, twist, .. } = *self;
-        Jet {
-            point: from + (slope + (bend + twist * u) * u) * u,
-            first: slope + (bend * 2.0 + twist * (3.0 * u)) * u,
-            second: bend * 2.0 + twist * (6.0 * u),
-            third: twist * 6.0,
-        }
+        Jet { point: from, slope, bend, twist }.moved(u)
+    }
+
+    #[inline]
+    pub(super) fn point(&self, u: f64) -> DVec2 {
+        self.from + (self.slope + (self.bend + self.twist * u) * u) * u
     }
 
     #[inline]
@@ -46,19 +51,66 @@ impl Cubic {
         let at = |u: f64| (self.bend * 2.0 + self.twist * (6.0 * u)).length_squared();
         at(from).max(at(to)).sqrt()
     }
+
+    /// True if a parameter lies within the piece.
+    #[inline]
+    pub(super) fn has(&self, u: f64) -> bool {
+        (0.0..=self.width).contains(&u)
+    }
 }
 
 impl Jet {
+    /// The jet of the same cubic `step` further on.
+    #[inline]
+    pub(super) fn moved(&self, step: f64) -> Self {
+        let Self { point, slope, bend, twist } = *self;
+        Self {
+            point: point + (slope + (bend + twist * step) * step) * step,
+            slope: slope + (bend * 2.0 + twist * (3.0 * step)) * step,
+            bend: bend + twist * (3.0 * step),
+            twist,
+        }
+    }
+
     /// The jet of a straight continuation, `u` beyond this one.
     pub(super) fn straight_on(&self, u: f64) -> Self {
-        let Self { point, first, .. } = *self;
-        Self { point: point + first * u, first, second: DVec2::ZERO, third: DVec2::ZERO }
+        let Self { point, slope, .. } = *self;
+        Self { point: point + slope * u, slope, bend: DVec2::ZERO, twist: DVec2::ZERO }
+    }
+
+    /// The step to the parameter at which a point is nearest; `None` if the distance is not convex here.
+    ///
+    /// With e the way to the point and t1, t2, t3 slope, bend and twist, half of the squared distance has the derivative
+    /// f0 + f1 s + f2 s^2 + f3 s^3 + .. with f0 = -e.t1, f1 = t1.t1 - 2 e.t2, f2 = 3 (t1.t2 - e.t3) and
+    /// f3 = 2 t2.t2 + 4 t1.t3. From Newton's step x = -f0/f1 the series is inverted up to x^3. Where it says little, since
+    /// the curve, bent as it is here, turns much along the step or later terms are large, Newton's step is taken, cut.
+    #[inline]
+    pub(super) fn step_to_nearest(&self, point: DVec2) -> Option<f64> {
+        let Self { point: here, slope: t1, bend: t2, twist: t3 } = *self;
+        let seen = point - here;
+        let speed_sq = t1.length_squared();
+        let convexity = speed_sq - 2.0 * seen.dot(t2);
+        if convexity <= 0.0 {
+            return None;
+        }
+        let inverse = 1.0 / convexity;
+        let newton = seen.dot(t1) * inverse;
+        let bend_sq = t2.length_squared();
+        let square = 3.0 * (t1.dot(t2) - seen.dot(t3)) * inverse;
+        let cube = (2.0 * bend_sq + 4.0 * t1.dot(t3)) * inverse;
+        let correction = newton * (square - newton * (2.0 * square * square - cube));
+        let is_sound = newton * newton * bend_sq <= SOUND_TURN * SOUND_TURN * speed_sq;
+        if is_sound && correction.abs() <= SOUND_CORRECTION {
+            return Some(newton * (1.0 - correction));
+        }
+        let sound = SOUND_TURN * (speed_sq / bend_sq).sqrt();
+        Some(newton.clamp(-sound, sound))
     }
 
     /// What the curve is here, as the foot of `point`: k = (Q' x Q'')/|Q'|^3 and its derivative.
     #[inline]
     pub(super) fn foot(&self, piece: usize, parameter: f64, point: DVec2) -> Foot {
-        let Jet { first, second, third, .. } = *self;
+        let (first, second, third) = (self.slope, self.bend * 2.0, self.twist * 6.0);
         let speed_sq = first.length_squared();
         let inverse = 1.0 / speed_sq.sqrt();
         let tangent = first * inverse;

@@ -161,6 +161,15 @@ impl RailPath {
         }
     }
 
+    /// The hint to look near the place that [`RailPath::nearest`] finds, for less than that.
+    #[must_use]
+    pub fn hint_near(&self, point: DVec2, hint: Option<&RailHint>) -> RailHint {
+        match &self.curve {
+            Curve::Edges(path) => path.nearest(point, hint).hint(),
+            Curve::Spline(spline) => spline.foot(point, hint).hint(),
+        }
+    }
+
     /// The place at an arc length [m]: beyond the ends of an open path on its continuation, on a closed one in another lap.
     #[must_use]
     pub fn place_at(&self, arc_length: f64) -> RailPlace {
@@ -234,7 +243,13 @@ impl RailPlace {
     /// A hint to look near this place.
     #[must_use]
     pub fn hint(&self) -> RailHint {
-        RailHint { piece: self.foot.piece, parameter: self.foot.parameter, stays: false }
+        self.foot.hint()
+    }
+}
+
+impl Foot {
+    fn hint(&self) -> RailHint {
+        RailHint { piece: self.piece, parameter: self.parameter, stays: false }
     }
 }
 

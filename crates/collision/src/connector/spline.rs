@@ -70,7 +70,7 @@ impl Spline {
     #[inline]
     pub(super) fn jet(&self, piece: usize, u: f64) -> Jet {
         let cubic = &self.pieces[piece];
-        if (0.0..=cubic.width).contains(&u) {
+        if cubic.has(u) {
             return cubic.jet(u);
         }
         let end = u.clamp(0.0, cubic.width);
@@ -123,7 +123,7 @@ fn span_count(cubic: &Cubic) -> Option<u32> {
 /// A box around a span: its chord, and by how much a curve can leave it.
 fn span_box(cubic: &Cubic, [from, to]: [f64; 2]) -> Aabb {
     let rise = cubic.largest_second(from, to) * (to - from) * (to - from) / 8.0;
-    Aabb::around(cubic.jet(from).point).including(cubic.jet(to).point).grown(rise)
+    Aabb::around(cubic.point(from)).including(cubic.point(to)).grown(rise)
 }
 
 /// The points, without a repeated first one at the end of a closed spline.

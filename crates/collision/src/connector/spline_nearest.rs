@@ -1,20 +1,23 @@
 //! The point of a spline nearest to a given one.
 //!
-//! With E = P - Q(u), half of the squared distance has the derivative F = -E.Q' and F' = |Q'|^2 - E.Q''. Near a hint Newton's
-//! method finds the root of F. Without one, spans are searched from near to far: a curve leaves its chord by at most
-//! |Q''| w^2/8 over a width w, which rules out most; where |Q'|^2 > |E| |Q''| on all of a span the distance has one minimum
-//! there, found by Newton's method in a bracket; what allows neither is split. From the best of these Newton's method goes on.
+//! With E = P - Q(u), half of the squared distance has the derivative F = -E.Q' and F' = |Q'|^2 - E.Q''. Near a hint steps of
+//! Newton's method, carried to the order of 4, find the root of F. Without one, spans are searched from near to far: a curve
+//! leaves its chord by at most |Q''| w^2/8 over a width w, which rules out most; where |Q'|^2 > |E| |Q''| on all of a span the
+//! distance has one minimum there, found by Newton's method in a bracket; what allows neither is split. From the best of
+//! these it goes on as from a hint.
 
 use super::cubic::Cubic;
 use super::path::{Foot, RailHint};
 use super::spline::Spline;
 use glam::DVec2;
 
-/// A step below this part of a piece is the last of Newton's: the next would be rounding.
-const SETTLED: f64 = 1e-8;
+/// A step below this part of a piece is the last: what it misses is of the order of its fourth power.
+const SETTLED: f64 = 1e-4;
+/// The same for a step over a joint, where the curve goes on as another cubic or straight: there it is Newton's.
+const SETTLED_BEYOND: f64 = 1e-8;
 /// A bracketed search ends with a step below this part of a span: enough to tell minima apart and to start Newton's method.
 const NEAR: f64 = 1e-5;
-/// Steps of Newton's method from a hint before the whole spline is searched: from nearby it takes two or three.
+/// Steps of Newton's method from a hint before the whole spline is searched: from nearby it takes two.
 const STEPS_FROM_HINT: u32 = 12;
 /// Most steps of the bracketed method: by bisection alone it takes 17.
 const BRACKETED_STEPS: u32 = 32;
@@ -40,61 +43,66 @@ struct Part {
 impl Spline {
     #[inline]
     pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {
-        let near = hint.and_then(|hint| self.nearest_from(point, (hint.piece as usize, hint.parameter)));
-        let (piece, u) = near.unwrap_or_else(|| self.nearest_of_all(point));
-        self.jet(piece, u).foot(piece, u, point)
+        let near = hint.and_then(|hint| self.foot_from(point, (hint.piece as usize, hint.parameter)));
+        near.unwrap_or_else(|| self.foot_of_all(point))
     }
 
-    /// The nearest place by Newton's method from another one; `None` if the distance is not convex there.
-    fn nearest_from(&self, point: DVec2, (piece, mut u): (usize, f64)) -> Option<(usize, f64)> {
+    /// The foot found from another place; `None` if the distance is not convex there, or if it is far away.
+    fn foot_from(&self, point: DVec2, (piece, mut u): (usize, f64)) -> Option<Foot> {
         let mut piece = piece.min(self.pieces.len() - 1);
         for _ in 0..STEPS_FROM_HINT {
-            let width = self.pieces[piece].width;
+            let cubic = &self.pieces[piece];
             let jet = self.jet(piece, u);
-            let seen = point - jet.point;
-            let convexity = jet.first.length_squared() - seen.dot(jet.second);
-            if convexity <= 0.0 {
-                return None;
+            let step = jet.step_to_nearest(point)?;
+            let there = u + step;
+            if cubic.has(u) && cubic.has(there) {
+                u = there;
+                if step.abs() <= SETTLED * cubic.width {
+                    return Some(jet.moved(step).foot(piece, u, point));
+                }
+                continue;
             }
-            // A step of more than a piece is a guess; on a straight continuation it is exact.
-            let step = seen.dot(jet.first) / convexity;
-            let is_beyond = u < 0.0 || u > width;
-            let step = if is_beyond { step } else { step.clamp(-width, width) };
-            (piece, u) = self.carried(piece, u + step);
-            if step.abs() <= SETTLED * width {
+            let is_last = step.abs() <= SETTLED_BEYOND * cubic.width;
+            (piece, u) = self.carried(piece, there)?;
+            if is_last {
+                return Some(self.jet(piece, u).foot(piece, u, point));
+            }
+        }
+        None
+    }
+
+    /// The parameter in the piece in which it lies or, beyond the ends of an open spline, in the last one before; `None` if
+    /// that is more than a lap away.
+    #[inline]
+    fn carried(&self, mut piece: usize, mut u: f64) -> Option<(usize, f64)> {
+        let last = self.pieces.len() - 1;
+        for _ in 0..=last {
+            let width = self.pieces[piece].width;
+            if u < 0.0 && (self.closed || piece > 0) {
+                piece = if piece == 0 { last } else { piece - 1 };
+                u += self.pieces[piece].width;
+            } else if u > width && (self.closed || piece < last) {
+                u -= width;
+                piece = if piece == last { 0 } else { piece + 1 };
+            } else {
                 return Some((piece, u));
             }
         }
         None
     }
 
-    /// The parameter in the piece before or after, if there is one.
-    #[inline]
-    fn carried(&self, piece: usize, u: f64) -> (usize, f64) {
-        let count = self.pieces.len();
-        let width = self.pieces[piece].width;
-        if u < 0.0 && (self.closed || piece > 0) {
-            let before = (piece + count - 1) % count;
-            (before, self.pieces[before].width + u)
-        } else if u > width && (self.closed || piece + 1 < count) {
-            ((piece + 1) % count, u - width)
-        } else {
-            (piece, u)
-        }
-    }
-
-    fn nearest_of_all(&self, point: DVec2) -> (usize, f64) {
+    fn foot_of_all(&self, point: DVec2) -> Foot {
         let mut best = Best { piece: 0, u: 0.0, distance_sq: f64::INFINITY };
         self.tree.visit_nearest(point, &mut |index| {
             let span = &self.spans[index];
             let cubic = &self.pieces[span.piece];
-            let ends = span.range.map(|u| cubic.jet(u).point);
+            let ends = span.range.map(|u| cubic.point(u));
             search_part(cubic, span.piece, point, Part { range: span.range, ends, halvings: 0 }, &mut best);
             best.distance_sq
         });
         // Distances tell the place only to half of the digits, and not beyond an open end.
-        let found = (best.piece, best.u);
-        self.nearest_from(point, found).unwrap_or(found)
+        let Best { piece, u, .. } = best;
+        self.foot_from(point, (piece, u)).unwrap_or_else(|| self.jet(piece, u).foot(piece, u, point))
     }
 }
 
@@ -110,12 +118,12 @@ fn search_part(cubic: &Cubic, piece: usize, point: DVec2, part: Part, best: &mut
     // From the middle of the part the speed changes by half of this.
     let change = second * width;
     let middle = cubic.jet(0.5 * (from + to));
-    let speed = middle.first.length();
+    let speed = middle.slope.length();
     let slowest = (speed - 0.5 * change).max(0.0);
     let farthest = (point - middle.point).length() + 0.5 * width * (speed + 0.5 * change);
     if slowest * slowest > farthest * second || part.halvings == MOST_HALVINGS {
         let u = nearest_in_bracket(cubic, point, part.range);
-        let distance_sq = (point - cubic.jet(u).point).length_squared();
+        let distance_sq = (point - cubic.point(u)).length_squared();
         if distance_sq < best.distance_sq {
             *best = Best { piece, u, distance_sq };
         }
@@ -136,7 +144,7 @@ fn nearest_in_bracket(cubic: &Cubic, point: DVec2, [mut low, mut high]: [f64; 2]
     let slope_at = |u: f64| {
         let jet = cubic.jet(u);
         let seen = point - jet.point;
-        (-seen.dot(jet.first), jet.first.length_squared() - seen.dot(jet.second))
+        (-seen.dot(jet.slope), jet.slope.length_squared() - 2.0 * seen.dot(jet.bend))
     };
     if slope_at(low).0 >= 0.0 {
         return low;
