@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use halfgap_collision::{RailError, RailPath, RailPlace};
-use halfgap_geometry::EdgeSpec;
+use halfgap_geometry::{Aabb, EdgeSpec};
 use std::f64::consts::{PI, TAU};
 
 /// SplitMix64: the same points on every machine.
@@ -260,6 +260,91 @@ fn a_hint_leads_to_the_same_place_along_the_path() {
             let found = path.nearest(point, Some(&start.hint()));
             assert!((found.point() - place.point()).length() < 1e-13, "{found:?}, not {place:?}");
             assert!((found.curvature() - place.curvature()).abs() < 1e-11 || found.piece() != place.piece());
+        }
+    }
+}
+
+#[test]
+fn a_hint_leads_over_many_points() {
+    let path = sampled_circle(400);
+    let mut random = Random(5);
+    for _ in 0..2000 {
+        // Up to 1 rad, or 64 points, away and round the joint of the ends: closer than what the whole spline has there.
+        let start = random.between(-1.0, 1.0) * path.length();
+        let place = path.place_at(start + random.between(-1.5, 1.5));
+        let point = place.point() + place.normal() * random.between(-0.5, 0.5);
+        let found = path.nearest(point, Some(&path.place_at(start).hint()));
+        assert!((found.point() - place.point()).length() < 2e-15, "{found:?}, not {place:?}");
+        assert!((found.curvature() - place.curvature()).abs() < 1e-10, "{found:?}, not {place:?}");
+    }
+}
+
+#[test]
+fn a_foot_is_exact_where_long_pieces_bend_sharply() {
+    // Two pieces of 3 m to a hairpin.
+    let path = spline(&[(-0.03, 3.0), (-1.0, 4.0), (1.0, 4.0), (0.03, 3.0), (0.0, 0.0)], true);
+    let mut random = Random(6);
+    for _ in 0..2000 {
+        let along = random.between(0.0, path.length());
+        let place = path.place_at(along);
+        let point = place.point() + place.normal() * 1e-6;
+        let hint = path.place_at(along + random.between(-0.05, 0.05)).hint();
+        let found = path.nearest(point, Some(&hint));
+        assert!((found.point() - place.point()).length() < 1e-14, "{found:?}, not {place:?}");
+    }
+}
+
+#[test]
+fn a_hint_beyond_an_end_leads_back() {
+    let path = wave();
+    for beyond in [1e-9, 1e-6, 1e-3, 0.3] {
+        for [end, inward] in [[0.0, 1.0], [path.length(), -1.0]] {
+            let hint = path.place_at(end - inward * beyond).hint();
+            for depth in [1e-9, 1e-6, 1e-4, 1e-2] {
+                let place = path.place_at(end + inward * depth);
+                let found = path.nearest(place.point() + place.normal() * 0.01, Some(&hint));
+                assert!((found.point() - place.point()).length() < 2e-15, "{found:?}, not {place:?}");
+                assert!((found.curvature() - place.curvature()).abs() < 1e-13, "{found:?}, not {place:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hint_does_for_points_far_away() {
+    let mut random = Random(4);
+    for path in [wave(), bean(), eight(), sampled_circle(400)] {
+        let hint = path.place_at(0.3 * path.length()).hint();
+        for size in [1e1, 1e3, 1e6] {
+            for _ in 0..200 {
+                let point = random.point(size);
+                let place = path.nearest(point, Some(&hint));
+                let off = (place.point() + place.normal() * place.gap() - point).length();
+                assert!(off < 1e-12 * size, "{place:?} of {point}: off by {off}");
+                assert_eq!(place.hint(), path.hint_near(point, Some(&hint)));
+                if path.is_closed() {
+                    assert!((0.0..=path.length()).contains(&place.arc_length), "{place:?} of {point}");
+                    assert!(path.bounds().contains(&Aabb::around(place.point())), "{place:?} of {point}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hint_runs_lap_after_lap() {
+    for path in [bean(), eight(), sampled_circle(400)] {
+        // Strides of several points at a time, forward and back.
+        for stride in [0.15, -0.15] {
+            let mut hint = path.place_at(0.0).hint();
+            for step in 0..300 {
+                let arc_length = stride * f64::from(step);
+                let on_path = path.place_at(arc_length);
+                let place = path.nearest(on_path.point() + on_path.normal() * 0.01, Some(&hint));
+                let missing = (place.arc_length - arc_length).rem_euclid(path.length());
+                assert!(missing.min(path.length() - missing) < 1e-12, "{place:?} at {arc_length}");
+                hint = place.hint();
+            }
         }
     }
 }

@@ -5,7 +5,7 @@
 //! on a acts along the row's normal.
 //!
 //! `rail` has the rows of rails, on paths made of lines and arcs (`edge_path`, of pieces as in `edge_piece`) or on a
-//! `spline` (with `spline_nearest` and `spline_length`); `box_tree` finds which piece is near. `align` is what a scene
+//! `spline` of `cubic` pieces (with `spline_nearest` and `spline_length`); `box_tree` finds which piece is near. `align` is what a scene
 //! does before its start, `rope` tells when a rope goes taut.
 
 mod align;
@@ -291,7 +291,7 @@ impl Connector {
             ConnectorKind::Rope { length, .. } => [POINT, Some(-length)],
             ConnectorKind::Rail { path, .. } => {
                 // The left of the path is its outside: a turn to the left is hollow.
-                let curvature = path.nearest(sample.point_b, None).curvature();
+                let curvature = path.foot(sample.point_b, None).curvature;
                 [POINT, (curvature != 0.0).then(|| -1.0 / curvature)]
             }
         }

@@ -11,9 +11,9 @@ use super::path::{Foot, RailHint};
 use super::spline::Spline;
 use glam::DVec2;
 
-/// A step below this part of a piece is the last: what it misses is of the order of its fourth power.
+/// A step below this part of a span is the last: what it misses is of the order of its fourth power.
 const SETTLED: f64 = 1e-4;
-/// The same for a step over a joint, where the curve goes on as another cubic or straight: there it is Newton's.
+/// The same for a step over a joint, where the curve goes on as another cubic or straight.
 const SETTLED_BEYOND: f64 = 1e-8;
 /// A bracketed search ends with a step below this part of a span: enough to tell minima apart and to start Newton's method.
 const NEAR: f64 = 1e-5;
@@ -57,18 +57,24 @@ impl Spline {
             let there = u + step;
             if cubic.has(u) && cubic.has(there) {
                 u = there;
-                if step.abs() <= SETTLED * cubic.width {
+                if step.abs() <= SETTLED * self.span_width(piece) {
                     return Some(jet.moved(step).foot(piece, u, point));
                 }
                 continue;
             }
-            let is_last = step.abs() <= SETTLED_BEYOND * cubic.width;
+            let is_last = step.abs() <= SETTLED_BEYOND * self.span_width(piece);
             (piece, u) = self.carried(piece, there)?;
             if is_last {
                 return Some(self.jet(piece, u).foot(piece, u, point));
             }
         }
         None
+    }
+
+    /// Width of the spans of a piece in its parameter.
+    #[inline]
+    fn span_width(&self, piece: usize) -> f64 {
+        self.spans[self.first_span[piece]].range[1]
     }
 
     /// The parameter in the piece in which it lies or, beyond the ends of an open spline, in the last one before; `None` if
