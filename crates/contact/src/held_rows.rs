@@ -18,6 +18,11 @@ use crate::skyline::dot;
 const DOUBTFUL: f64 = 1e-5;
 
 const NONE: u32 = u32::MAX;
+/// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what depends, far less
+/// than what does not.
+const SOFTNESS: f64 = 1e-6;
+/// Steps that make good what soft rows lack: each leaves this part of it over the part of a row that is independent.
+const REFINEMENTS: usize = 3;
 
 /// Rows held as equations, with the structure of their factor kept from solve to solve.
 ///
@@ -62,6 +67,12 @@ pub struct HeldRows {
     factor: Vec<f64>,
     /// 1/D; 0 for a row that depends on earlier ones.
     inverse_pivot: Vec<f64>,
+    /// What the square of each row is raised by, in parts of itself.
+    raise: Vec<f64>,
+    is_soft: bool,
+    /// What forces leave of each row's equation, and what they lack, by row.
+    residual: Vec<f64>,
+    lacking: Vec<f64>,
     /// Ĵ = J M^(-1/2).
     jacobian: Vec<[f64; 6]>,
     work: Vec<f64>,
@@ -104,6 +115,10 @@ impl HeldRows {
             begin: Vec::new(),
             factor: Vec::new(),
             inverse_pivot: Vec::new(),
+            raise: Vec::new(),
+            is_soft: false,
+            residual: Vec::new(),
+            lacking: Vec::new(),
             jacobian: Vec::new(),
             work: Vec::new(),
             motion: Vec::new(),
@@ -135,10 +150,28 @@ impl HeldRows {
         self.jacobian.resize(rows.len(), [0.0; 6]);
         self.inverse_pivot.clear();
         self.inverse_pivot.resize(rows.len(), 0.0);
+        self.raise.clear();
+        self.raise.resize(rows.len(), 0.0);
+        self.is_soft = false;
+        self.residual.resize(rows.len(), 0.0);
+        self.lacking.resize(rows.len(), 0.0);
         self.work.clear();
         self.work.resize(rows.len(), 0.0);
         self.motion.clear();
         self.motion.resize(self.body_count, [0.0; 3]);
+    }
+
+    /// From now on the given rows share what they hold together instead of one of them taking all: none counts as dependent,
+    /// and their forces are nearly the least that do.
+    ///
+    /// Their squares are raised a little, and what forces then lack is made good step by step: the proximal point method.
+    /// So which rows depend on which may change on the way without a jump, and a motion that departs a little from what
+    /// they agree on has no forces that come from their disagreement alone.
+    pub fn soften(&mut self, is_soft: impl Fn(usize) -> bool) {
+        for (raise, &row) in self.raise.iter_mut().zip(&self.order.rows) {
+            *raise = if is_soft(row as usize) { SOFTNESS } else { 0.0 };
+        }
+        self.is_soft = true;
     }
 
     /// Number of rows.
@@ -222,8 +255,9 @@ impl HeldRows {
         for place in 0..self.len() {
             let coefficients = &jacobians[self.order.rows[place] as usize];
             let diagonal = self.scale_row(place, coefficients);
-            let mut left = diagonal - self.eliminate(place);
-            if nearly || left <= DOUBTFUL * diagonal {
+            let raised = self.raise[place] * diagonal;
+            let mut left = (diagonal + raised) - self.eliminate(place);
+            if raised == 0.0 && (nearly || left <= DOUBTFUL * diagonal) {
                 left = self.measure_rest(place);
             }
             let independent = left > self.dependence * diagonal;
@@ -316,6 +350,36 @@ impl HeldRows {
     pub fn solve(&mut self, offset: &[f64], force: &mut [f64]) {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
+        self.solve_raised(offset, force);
+        let (mut residual, mut lacking) =
+            (std::mem::take(&mut self.residual), std::mem::take(&mut self.lacking));
+        for _ in 0..if self.is_soft { REFINEMENTS } else { 0 } {
+            self.measure_residual(offset, force, &mut residual);
+            self.solve_raised(&residual, &mut lacking);
+            for (force, lacking) in force.iter_mut().zip(&lacking) {
+                *force += lacking;
+            }
+        }
+        (self.residual, self.lacking) = (residual, lacking);
+    }
+
+    /// A f + b of each row.
+    fn measure_residual(&mut self, offset: &[f64], force: &[f64], residual: &mut [f64]) {
+        self.motion.fill([0.0; 3]);
+        for place in 0..self.len() {
+            self.push(place, force[self.order.rows[place] as usize]);
+        }
+        for (place, sides) in self.bodies.iter().enumerate() {
+            let (row, index) = (&self.jacobian[place], self.order.rows[place] as usize);
+            residual[index] = offset[index];
+            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
+                let motion = &self.motion[body as usize];
+                residual[index] += (0..3).map(|k| row[3 * side + k] * motion[k]).sum::<f64>();
+            }
+        }
+    }
+
+    fn solve_raised(&mut self, offset: &[f64], force: &mut [f64]) {
         let rows = &self.order.rows;
         let work = &mut self.work;
         for place in 0..work.len() {

@@ -184,15 +184,15 @@ pub(crate) struct Dynamics<'a> {
 
 impl Dynamics<'_> {
     /// Measures the rows with the bodies in place and factorises; calls `visit` with the gap of each less the one at which
-    /// it formed, and its rate.
-    pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) {
+    /// it formed, and its rate. Returns how many rows depend on others.
+    pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) -> usize {
         self.stage.jacobians.clear();
         for row in &self.group.rows {
             let moment = self.physics.mechanism.measure(row, &self.stage.movings);
             self.stage.jacobians.push(moment.kinematics.jacobian);
             visit(moment.gap - row.gap, moment.kinematics.rate);
         }
-        self.group.held.factorize(&self.stage.jacobians);
+        self.group.held.factorize(&self.stage.jacobians)
     }
 
     /// Solves A x = -`offsets`, leaves x in `forces`, and M^-1 J^T x in `changes`.

@@ -424,7 +424,10 @@ impl RigidSystem {
         }
         group.span = 0.0;
         group.projected = 0.0;
-        self.with_group(&mut group, |dynamics, tools| dynamics.end_on_rows(tools));
+        self.with_group(&mut group, |dynamics, tools| {
+            dynamics.soften_dependent();
+            dynamics.end_on_rows(tools);
+        });
         self.ledger.projections += std::mem::take(&mut group.projected);
         std::mem::swap(&mut group.state, &mut group.end_state);
         self.with_group(&mut group, |dynamics, _| dynamics.set_out());

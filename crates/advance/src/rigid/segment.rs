@@ -1,6 +1,7 @@
 //! A group's segment: an accepted step, its projection, its dense output, and its repetition up to an event.
 
 use super::dynamics::{Dynamics, body_state};
+use super::group::Group;
 use super::rows::{RowSource, moving_of};
 use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
@@ -206,6 +207,22 @@ impl Dynamics<'_> {
             for &body in &self.group.bodies {
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }
+        }
+    }
+
+    /// Lets connectors share what they hold, if some depend on others at the end.
+    pub(crate) fn soften_dependent(&mut self) {
+        if !self.group.rows.iter().any(|row| row.bilateral) {
+            return;
+        }
+        let end = std::mem::take(&mut self.group.end_state);
+        self.stage.load(&self.group.bodies, &end);
+        self.group.end_state = end;
+        let dependent = self.factorize(|_, _| ());
+        let Group { rows, held, .. } = &mut *self.group;
+        let mut connectors = (0..rows.len()).filter(|&row| rows[row].bilateral);
+        if dependent > 0 && connectors.any(|row| held.is_dependent(row)) {
+            held.soften(|row| rows[row].bilateral);
         }
     }
 
