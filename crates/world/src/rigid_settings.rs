@@ -11,8 +11,10 @@ const REST_OF_SLOW: f64 = 1e-3;
 const REST: f64 = 1e-5;
 /// The corner of a body that turns while it falls may be faster than its centre.
 const SINKING: f64 = 4.0;
-/// Part of the tolerance that the error of one step may be.
+/// Part of the tolerance that the error of one step may be, at the finest tolerance.
 const LOCAL_SHARE: f64 = 0.1;
+/// Tolerances finer than this ask for more than rounding leaves.
+const FINEST_TOLERANCE: f64 = 1e-12;
 
 /// The settings of the advance.
 pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> RigidSettings {
@@ -35,7 +37,7 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
         search: SearchSettings { depth: sinking(settings, &tolerances, scales), ..SearchSettings::default() },
         method: method(settings.integrator),
         steps: StepControl {
-            local_error: LOCAL_SHARE * settings.tolerance,
+            local_error: local_error(settings.tolerance, method(settings.integrator)),
             length: scales.smallest_radius.unwrap_or(scales.coordinate),
             speed,
             largest_step: settings.fixed_step().or(settings.time_step),
@@ -47,6 +49,13 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
         rest_speed: rest_speed(tolerances.velocity_tol, speed),
         resolution_time,
     }
+}
+
+/// Relative error that a step may make by its estimate. That is of one order less than the step: what errors add up to falls
+/// faster than what is asked of the estimate, by one power in so many.
+fn local_error(tolerance: f64, method: Method) -> f64 {
+    let power = -1.0 / f64::from(method.order() + 1);
+    LOCAL_SHARE * tolerance * (tolerance / FINEST_TOLERANCE).powf(power)
 }
 
 /// How far [m] a slow contact may sink in one step, where contacts carry impulses only.
