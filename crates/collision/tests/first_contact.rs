@@ -3,7 +3,8 @@
 
 use glam::DVec2;
 use halfgap_collision::{
-    BodyState, Flight, Motion, MovingShape, Search, SearchSettings, Tolerances, first_contact,
+    BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
+    first_contact,
 };
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape};
 
@@ -295,4 +296,31 @@ fn no_contact_is_missed_and_none_invented() {
     );
     assert!(contacts > PAIRS / 4, "only {contacts} of the pairs meet");
     assert!(undecided < PAIRS / 100, "{undecided} undecided pairs");
+}
+
+#[test]
+fn a_rule_with_a_wider_gap_than_all_others_fires() {
+    // A block 5 mm over a cradle hops by 1 mm/s: it turns back after 0.1 ms, above the gap at which other features fire.
+    let (floor, block) = (cradle(), Shape::block(0.2, 0.2).expect("a fine block"));
+    let rest = Flight::fixed(DVec2::ZERO, 0.0);
+    let state = BodyState {
+        position: DVec2::new(0.8, 0.505),
+        velocity: DVec2::new(0.0, 1e-3),
+        angular_velocity: 1e-6,
+        ..BodyState::default()
+    };
+    let hop = Flight::new(state, DVec2::new(0.0, -10.0), 0.0, 0.0);
+    let side_a = MovingShape { shape: &floor, motion: &rest, offset: 0.0 };
+    let side_b = MovingShape { shape: &block, motion: &hop, offset: 0.0 };
+    let settings = SearchSettings::default();
+    let wide = Tolerances { target_gap: 5.2e-3, accuracy: 3e-3, velocity_tol: 0.5 };
+    let narrow = Tolerances { target_gap: 4.5e-3, ..wide };
+    let Search::Contact(found) = first_contact(&side_a, &side_b, 1e-3, &wide, &settings) else {
+        panic!("it turns back")
+    };
+    assert!((found.time - 1e-4).abs() < 1e-6, "{found:?}");
+    let rules = [FeatureRule { features: [found.feature_a, found.feature_b], target: Some(5.2e-3) }];
+    let search =
+        PairSearch { a: &side_a, b: &side_b, tolerances: &narrow, settings: &settings, rules: &rules };
+    assert_eq!(search.step(0.0, 1e-3), Search::Contact(found));
 }

@@ -162,7 +162,7 @@ impl HeldRows {
     }
 
     /// From now on the given rows share what they hold together instead of one of them taking all: none counts as dependent,
-    /// and their forces are nearly the least that do.
+    /// and their forces are nearly the least that do, weighed by the squares of the rows.
     ///
     /// Their squares are raised a little, and what forces then lack is made good step by step: the proximal point method.
     /// So which rows depend on which may change on the way without a jump, and a motion that departs a little from what
@@ -511,6 +511,42 @@ mod tests {
             assert!((0..3).all(|k| (p[k] - q[k]).abs() <= 1e-12 * largest));
         }
         dependent
+    }
+
+    #[test]
+    fn soft_rows_hold_as_much_and_share_it() {
+        // A body on two pins and, twice as far out, a third: of six rows three depend on the others.
+        let (sides, arms) = ([[Some(0), None]; 6], [-1.0, 1.0, 2.0]);
+        let jacobians: Vec<[f64; 6]> = arms
+            .into_iter()
+            .flat_map(|arm| [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, arm, 0.0, 0.0, 0.0]])
+            .collect();
+        let gravity: Vec<f64> = jacobians.iter().map(|row| -10.0 * row[1]).collect();
+        let mut held = HeldRows::default();
+        held.set_structure(&[INERTIA], &sides);
+        assert_eq!(held.factorize(&jacobians), 3);
+        held.soften(|_| true);
+        assert_eq!(held.factorize(&jacobians), 0);
+        let mut force = [f64::NAN; 6];
+        held.solve(&gravity, &mut force);
+        let (change, _) = accelerations(&[INERTIA], &sides, &jacobians, &force);
+        assert!((change[0][1] - 10.0).abs() < 1e-12 && change[0][2].abs() < 1e-12, "{change:?}");
+        // The least forces, each weighed by its row's square, that carry 12.5 N without a torque: (p + q arm)/square.
+        let square = |arm: f64| INERTIA.inverse_mass + INERTIA.inverse_moment * arm * arm;
+        let sum = |power: i32| arms.iter().map(|&arm| arm.powi(power) / square(arm)).sum::<f64>();
+        let p = 12.5 / (sum(0) - sum(1) * sum(1) / sum(2));
+        let q = -p * sum(1) / sum(2);
+        for (arm, force) in arms.into_iter().zip(force.chunks(2)) {
+            let expected = (p + q * arm) / square(arm);
+            assert!((force[1] - expected).abs() < 1e-4 && force[0].abs() < 1e-12, "{arm}: {force:?}");
+        }
+        // A disagreement of the rows moves nothing, and its forces stay bounded.
+        let mut disagreeing = gravity.clone();
+        disagreeing[1] += 1e-9;
+        held.solve(&disagreeing, &mut force);
+        let (change, _) = accelerations(&[INERTIA], &sides, &jacobians, &force);
+        assert!((change[0][1] - 10.0).abs() < 1e-8, "{change:?}");
+        assert!(force.iter().all(|force| force.abs() < 20.0), "{force:?}");
     }
 
     /// The offsets that rows have when the bodies accelerate so.

@@ -1,7 +1,7 @@
 //! Step control: errors follow the tolerance, steps follow the errors.
 
 use crate::problem::{Planet, SIZE, exact, rates_at, solve_to_tolerance};
-use halfgap_advance::ode::{Method, Ode, Point, Stepper};
+use halfgap_advance::ode::{Accepted, Method, Ode, Point, Stepper};
 use std::convert::Infallible;
 
 const TIME: f64 = 10.0;
@@ -86,6 +86,22 @@ fn steps_shrink_after_large_errors_and_grow_after_small_ones_within_limits() {
         let smaller = method.error_order().map_or(0.0, |order| 0.5_f64.powi(order as i32 + 1));
         assert!((method.step_factor(smaller) - 2.0 * method.step_factor(1.0)).abs() < 1e-12);
     }
+}
+
+#[test]
+fn an_error_that_grows_from_step_to_step_is_foreseen() {
+    let method = Method::Dop853;
+    let before = Accepted { length: 0.2, error: 0.5 };
+    // As large an error in a step shorter by a fifth: the next is to be shorter by as much.
+    let step = Accepted { length: 0.16, error: 0.5 };
+    let ratio = method.factor_after(step, Some(before)) / method.factor_after(step, None);
+    assert!((ratio - 0.8).abs() < 1e-12, "{ratio}");
+    // One that falls, or is too small to tell, lets the step grow as it would.
+    let calm = Accepted { length: 0.2, error: 1e-9 };
+    for step in [Accepted { length: 0.2, error: 0.3 }, calm] {
+        assert_eq!(method.factor_after(step, Some(before)), method.step_factor(step.error));
+    }
+    assert_eq!(Method::Rk4.factor_after(step, Some(before)), 1.0);
 }
 
 #[test]
