@@ -29,7 +29,7 @@ pub(crate) struct EventWork {
     pub(crate) settling: Settling,
     pub(crate) seeds: Vec<BodyId>,
     /// Records of held contacts that open in a low hop.
-    hopping: Vec<usize>,
+    pub(crate) hopping: Vec<usize>,
     /// The pair that fired has done so again and again without time going by.
     is_repeat: bool,
 }
@@ -272,25 +272,8 @@ impl RigidSystem {
         outcome
     }
 
-    /// Stops the held contacts that open, in no more than a low hop; true if there are any.
-    fn still_hops(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
-        let rest = self.rest_speed();
-        let records = &mut work.region.records;
-        work.hopping.clear();
-        work.hopping.extend(work.settling.held.iter().map(|&(index, _)| index));
-        work.hopping.retain(|&index| {
-            !records[index].parties.bilateral && records[index].motion.normal_velocity > rest
-        });
-        if work.hopping.is_empty() {
-            return Ok(false);
-        }
-        work.hopping.iter().for_each(|&index| records[index].parties.bilateral = true);
-        self.stop_bilaterally(work)?;
-        Ok(true)
-    }
-
     /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
-    fn stop_bilaterally(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+    pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let mut report = ImpactReport::default();
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);

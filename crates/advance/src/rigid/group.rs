@@ -1,7 +1,7 @@
 //! A group: bodies that share their steps because rows or force laws couple them.
 
 use super::rows::HeldRow;
-use crate::ode::{Accepted, Method, SegmentPolynomial};
+use crate::ode::{Accepted, SegmentPolynomial};
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::HeldRows;
@@ -39,9 +39,6 @@ pub(crate) struct Stop {
     /// How far [m] it may sink before it fires: more than nothing where it is touched without force.
     pub(crate) slack: f64,
 }
-
-/// A group stays brief while its steps may grow by this factor.
-const BRIEF_GROWTH: f64 = 2.0;
 
 /// Bodies with a common segment.
 #[derive(Clone, Debug, Default)]
@@ -112,21 +109,6 @@ impl Group {
         (self.is_brief, self.has_kinks) = (false, false);
         self.accepted = None;
         self.event = None;
-    }
-
-    /// True if its steps are made by the method of fewer stages.
-    pub(crate) fn has_few_stages(&self) -> bool {
-        self.is_brief || self.has_kinks
-    }
-
-    /// Goes back to the method that is asked for, if brief steps are held up by their errors.
-    pub(crate) fn end_brief(&mut self, method: Method) {
-        let grows = self.accepted.is_some_and(|step| method.step_factor(step.error) >= BRIEF_GROWTH);
-        if self.is_brief && !grows {
-            self.is_brief = false;
-            self.next_step = self.full_step;
-            self.accepted = None;
-        }
     }
 
     /// The body by which the group is found.

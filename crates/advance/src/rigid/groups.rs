@@ -1,5 +1,6 @@
 //! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
 
+use super::brief::Past;
 use super::connectors::is_stop;
 use super::dynamics::{Dynamics, body_state, set_body_state};
 use super::error::AdvanceError;
@@ -10,25 +11,10 @@ use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settle::Settling;
 use super::system::RigidSystem;
-use crate::ode::{Method, Stepper};
+use crate::ode::Stepper;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::Inertia;
-
-/// What the next group of a body may learn from its last.
-#[derive(Clone, Copy, Debug, Default)]
-struct Past {
-    /// Step [s] that was right.
-    step: Option<f64>,
-    /// How long [s] the group lasted.
-    lasted: f64,
-}
-
-/// A group whose bodies' last lasted less than a step by this factor is expected to be brief, too.
-const BRIEF: f64 = 4.0;
-
-/// A brief step is at least this part of a full one: to be cut short later costs less than to go on too often.
-const BRIEFEST: f64 = 1.0 / 32.0;
 
 /// All groups, found by their bodies, and what their stepping needs.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +27,7 @@ pub(crate) struct Groups {
     #[expect(clippy::vec_box, reason = "groups go from here to `by_leader` without being copied")]
     pool: Vec<Box<Group>>,
     /// What is known of the last group of each body.
-    past_of: Vec<Past>,
+    pub(crate) past_of: Vec<Past>,
     /// Union-find forest over the places of a region.
     parents: Vec<usize>,
     /// True for places of a region that need an integrator.
@@ -185,8 +171,7 @@ impl RigidSystem {
         }
         for &body in &group.bodies {
             self.groups.leader_of[body.index()] = None;
-            let step = if group.is_brief { group.full_step } else { group.next_step };
-            self.groups.past_of[body.index()] = Past { step, lasted: self.now.since(group.made) };
+            self.groups.past_of[body.index()] = Past::of(&group, self.now);
             self.counts.backups += 1;
         }
         self.queue.clear(self.group_source(leader));
@@ -303,24 +288,6 @@ impl RigidSystem {
         self.list_works(&mut group);
         self.foresee(&mut group);
         group
-    }
-
-    /// Chooses the first step of a group, and whether its steps have few stages, by what its bodies did last.
-    fn foresee(&self, group: &mut Group) {
-        let pasts = group.bodies.iter().map(|body| self.groups.past_of[body.index()]);
-        group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);
-        if self.settings.method != Method::default() {
-            return;
-        }
-        group.has_kinks = group.rows.iter().any(|row| match row.source {
-            RowSource::Connector(id, _) => self.connector(id).path().is_some_and(|path| path.is_spline()),
-            RowSource::Contact(_) => false,
-        });
-        let soon = BRIEF * pasts.map(|past| past.lasted).fold(0.0, f64::max);
-        if let Some(step) = group.next_step.filter(|&step| !group.has_kinks && BRIEF * soon < step) {
-            group.is_brief = true;
-            (group.next_step, group.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));
-        }
     }
 
     /// Lists the contacts of a group that are touched without force and neither close nor open.

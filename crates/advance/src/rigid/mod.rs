@@ -3,16 +3,17 @@
 //!
 //! What moves: `flyer` is one body with its segment, `path` its motion along it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
-//! motion, `segment` one step of them, `watch` (with `crossing`) what ends it early.
+//! motion, `segment` one step of them, `brief` which method makes it, `watch` (with `crossing`) what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact, `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
 //! collects the bodies that touch, `groups` cuts and makes groups, `impacts` applies impulses, `settle` finds what is held,
-//! `bounces` tells those that are too low to count, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
+//! `bounces` and `hops` tell those that are too low to count, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
 //! keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod bounces;
 mod boxes;
+mod brief;
 mod connectors;
 mod crossing;
 mod dynamics;
@@ -21,6 +22,7 @@ mod events;
 mod flyer;
 mod group;
 mod groups;
+mod hops;
 mod impacts;
 mod law;
 mod ledger;

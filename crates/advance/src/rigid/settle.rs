@@ -19,9 +19,6 @@ use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveErro
 /// move by what counts as rest. What crushes a body is of the order of 1.
 const SMALL_CONTRADICTION: f64 = 1e-3;
 
-/// Part of the accuracy by which a contact may open and come back, and count as closed all the while.
-const HOP_SHARE: f64 = 1e-4;
-
 /// Forces this many times larger than all loads together jam.
 const JAM: f64 = 100.0;
 
@@ -177,17 +174,6 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// True if a contact opens so slowly that it may be no more than a low hop.
-    fn may_hop(&self, record: &Collision) -> bool {
-        (0.0..=record.tolerances.velocity_tol).contains(&record.motion.normal_velocity)
-    }
-
-    /// True if what acts on the bodies of a contact that opens brings them back before it has opened by much.
-    fn hops_low(&self, region: &Region, record: &Collision, stage: &Stage) -> bool {
-        let (rate, back) = (record.motion.normal_velocity, -free_offset(region, record, stage));
-        back > 0.0 && rate * rate <= 2.0 * back * HOP_SHARE * record.tolerances.accuracy
-    }
-
     /// True if a unilateral row may carry a force: connectors always do.
     fn holds(&self, record: &Collision) -> bool {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
@@ -318,7 +304,7 @@ impl RigidSystem {
 }
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
-fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+pub(crate) fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
     let sides = [record.parties.primary.body, record.parties.normal.body];
     let spins = sides
         .map(|body| region.place(body).map_or(Spin::default(), |place| spin(stage.accelerations[place])));
