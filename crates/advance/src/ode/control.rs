@@ -7,7 +7,7 @@ const SAFETY: f64 = 0.9;
 /// A step shrinks to this part at most, since the estimate says little about much shorter steps.
 const SMALLEST_FACTOR: f64 = 0.2;
 /// A step grows by this factor at most, since the estimate says little about much longer steps.
-const LARGEST_FACTOR: f64 = 2.0;
+const LARGEST_FACTOR: f64 = 6.0;
 
 /// Error norms below this tell nothing about a trend.
 const TELLING_ERROR: f64 = 1e-2;

@@ -187,7 +187,7 @@ impl RigidSystem {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         self.cut_groups(&work.region, self.now, |_, _| None);
         self.remeasure(&mut work.region, self.now);
-        self.hand_over(work)?;
+        self.hand_over(work);
         let rest = self.rest_speed();
         if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
             return self.collide(work);
@@ -197,8 +197,8 @@ impl RigidSystem {
 
     /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour closes or opens
     /// by is only the angle up to which joints are smooth.
-    fn hand_over(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
-        let Some(run_off) = work.region.run_off else { return Ok(()) };
+    fn hand_over(&mut self, work: &mut EventWork) {
+        let Some(run_off) = work.region.run_off else { return };
         let mut any = false;
         for record in &mut work.region.records {
             let bodies = [record.parties.primary.body, record.parties.normal.body];
@@ -209,7 +209,9 @@ impl RigidSystem {
                 any = true;
             }
         }
-        if any { self.stop_bilaterally(work) } else { Ok(()) }
+        if any {
+            self.stop_bilaterally(work);
+        }
     }
 
     pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
@@ -249,7 +251,7 @@ impl RigidSystem {
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         self.note_rails(&work.region, self.now);
         self.settle_region(work, !work.region.at_start)?;
-        if self.still_hops(work)? {
+        if self.still_hops(work) {
             self.settle_region(work, false)?;
         }
         self.note_begins(&work.region, &work.settling);
@@ -273,17 +275,18 @@ impl RigidSystem {
     }
 
     /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
-    pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+    /// Where such rows contradict each other, nothing is done: as unilateral ones they need not.
+    pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) {
         let mut report = ImpactReport::default();
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
         for record in &mut work.region.records {
             record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
         }
-        outcome?;
-        self.book_impact(&report, true);
-        self.remeasure(&mut work.region, now);
-        Ok(())
+        if outcome.is_ok() {
+            self.book_impact(&report, true);
+            self.remeasure(&mut work.region, now);
+        }
     }
 
     /// Distance [m] by which a contact without force may sink before it fires again.

@@ -2,7 +2,6 @@
 //! has opened by much. Such a contact is held at once, instead of being caught again a moment later.
 
 use super::dynamics::Stage;
-use super::error::AdvanceError;
 use super::events::EventWork;
 use super::region::Region;
 use super::settle::free_offset;
@@ -25,7 +24,7 @@ impl RigidSystem {
     }
 
     /// Stops the held contacts that open, in no more than a low hop; true if there are any.
-    pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+    pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> bool {
         let rest = self.rest_speed();
         let records = &mut work.region.records;
         work.hopping.clear();
@@ -34,10 +33,10 @@ impl RigidSystem {
             !records[index].parties.bilateral && records[index].motion.normal_velocity > rest
         });
         if work.hopping.is_empty() {
-            return Ok(false);
+            return false;
         }
         work.hopping.iter().for_each(|&index| records[index].parties.bilateral = true);
-        self.stop_bilaterally(work)?;
-        Ok(true)
+        self.stop_bilaterally(work);
+        true
     }
 }

@@ -28,6 +28,8 @@ const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
 const PROJECTIONS: usize = 5;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
+/// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
+const STEADY_GROWTH: f64 = 2.0;
 /// Part of the accuracy by which rounding may move a body along a step.
 const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 
@@ -94,7 +96,7 @@ impl Dynamics<'_> {
             if error <= 1.0 {
                 let accepted = Accepted { length: step, error };
                 let before = self.group.accepted.replace(accepted);
-                let most = if rejected { 1.0 } else { f64::INFINITY };
+                let most = if rejected { 1.0 } else { self.largest_growth() };
                 self.group.next_step = Some(step * method.factor_after(accepted, before).min(most));
                 break Ok(());
             }
@@ -103,6 +105,11 @@ impl Dynamics<'_> {
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
         self.group.span = step;
         outcome
+    }
+
+    /// By how much a step may be longer than the one before. Contacts soon cut steps short anyway.
+    fn largest_growth(&self) -> f64 {
+        if self.group.rows.iter().all(|row| row.bilateral) { STEADY_GROWTH } else { f64::INFINITY }
     }
 
     /// The next step is at most by a factor longer than the one just made.

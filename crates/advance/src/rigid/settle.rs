@@ -19,6 +19,9 @@ use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveErro
 /// move by what counts as rest. What crushes a body is of the order of 1.
 const SMALL_CONTRADICTION: f64 = 1e-3;
 
+/// Depth of an overlap, in target gaps, from which a contact is lifted.
+const DEEPEST: f64 = 0.5;
+
 /// Forces this many times larger than all loads together jam.
 const JAM: f64 = 100.0;
 
@@ -257,7 +260,8 @@ impl RigidSystem {
             let (bilateral, record) = (record.parties.bilateral, *record);
             let loads = places_of(region, &record).map(|place| gross[place]);
             let least = FORCE_SHARE * loads.fold(f64::INFINITY, f64::min);
-            if bilateral || forces[place] > least {
+            let lies_deep = record.geometry.distance < deepest(&record);
+            if bilateral || forces[place] > least || lies_deep {
                 settling.held.extend(self.held_row(&record, time).map(|row| (index, row)));
             }
         }
@@ -273,10 +277,10 @@ impl RigidSystem {
     fn held_row(&self, record: &Collision, time: Time) -> Option<HeldRow> {
         let source = self.source_of(record)?;
         let bodies = [record.parties.primary.body, record.parties.normal.body];
-        // A connector is kept at its target, a contact where it formed.
+        // A connector is kept at its target, a contact where it formed, unless it has sunk too deep.
         let (gap, hint) = match source {
             RowSource::Connector(id, _) => (0.0, self.connector_states[id.index()].hint),
-            RowSource::Contact(_) => (record.geometry.distance, None),
+            RowSource::Contact(_) => (record.geometry.distance.max(deepest(record)), None),
         };
         let row = HeldRow { source, bodies, bilateral: record.parties.bilateral, gap, hint, leans: false };
         Some(self.leaning(row, time))
@@ -301,6 +305,12 @@ impl RigidSystem {
     pub(crate) fn physics(&self) -> Physics<'_> {
         Physics { mechanism: self.mechanism(), laws: &self.laws, extra: self.settings.extra }
     }
+}
+
+/// Gap [m] below which no contact is held: what touches without force sinks a little each time it is touched, and the search
+/// takes what lies much deeper for the far side of a body.
+fn deepest(record: &Collision) -> f64 {
+    -DEEPEST * record.tolerances.target_gap
 }
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
