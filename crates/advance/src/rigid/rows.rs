@@ -116,15 +116,9 @@ impl Mechanism<'_> {
                 rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
             }
             RowSource::Contact(features) => {
-                let mut sample = self.sample(row.bodies, features, [a, b]);
-                let feature = |side: usize| self.shape(row.bodies[side]).feature(features[side]);
-                let mut outside = sample.overrun;
-                if !row.leans {
-                    sample.find_excess([(feature(0), &a.pose), (feature(1), &b.pose)]);
-                    let lever = |side: usize| self.shape(row.bodies[side]).lever(features[side]);
-                    outside =
-                        outside.max(sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1));
-                }
+                let sample = self.sample(row.bodies, features, [a, b]);
+                let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };
+                let outside = sample.overrun.max(lean);
                 Some(CHANGE_SHARE * self.tolerances.accuracy - outside)
             }
         }
@@ -137,11 +131,23 @@ impl Mechanism<'_> {
         if !is_corner_on_line(of_sides) {
             return false;
         }
-        let mut sample = self.sample(row.bodies, features, movings);
-        sample.find_excess([(of_sides[0], &movings[0].pose), (of_sides[1], &movings[1].pose)]);
-        let lever = |side: usize| self.shape(row.bodies[side]).lever(features[side]);
-        let outside = (sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1));
-        outside > LEAN_SHARE * self.tolerances.accuracy
+        let sample = self.sample(row.bodies, features, movings);
+        self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
+    }
+
+    /// How far [m] a contact lies outside of its features by their angles.
+    fn lean(
+        &self,
+        mut sample: GapSample,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let shape = |side: usize| self.shape(bodies[side]);
+        let feature = |side: usize| (shape(side).feature(features[side]), &movings[side].pose);
+        sample.find_excess([feature(0), feature(1)]);
+        let lever = |side: usize| shape(side).lever(features[side]);
+        (sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1))
     }
 }
 
