@@ -6,6 +6,12 @@ use halfgap::{Event, ToleranceOverrides, World, WorldBuilder, WorldSettings};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, block, disc, thrown};
 use halfgap_tests::{on_floor, world_of};
 
+/// A builder of worlds in which what closes at less than 0.5 m/s is caught.
+fn catching() -> WorldBuilder {
+    let overrides = ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() };
+    WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() })
+}
+
 fn build_error(toml: &str) -> String {
     let scene = Scene::parse(toml, SceneFormat::Toml).expect("a fine scene");
     World::from_scene(&scene).expect_err("refused").to_string()
@@ -56,12 +62,8 @@ fn a_mass_whose_inverse_overflows_is_refused() {
 
 /// A ball on the floor at a velocity [m/s] upwards, in a scene in which half a metre per second is slow.
 fn slow_ball(velocity: f64) -> World {
-    let settings = WorldSettings {
-        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
-        ..WorldSettings::default()
-    };
     let mut shop = Workshop::new(1e-8);
-    shop.builder = WorldBuilder::new(settings);
+    shop.builder = catching();
     shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
     shop.body("ball", disc(0.5), 2.0, thrown(0.0, 0.5, DVec2::new(1.0, velocity)));
     shop.build()
@@ -107,12 +109,8 @@ fn what_opens_slowly_at_the_start_flies() {
 
 #[test]
 fn discs_that_meet_slowly_at_the_start_go_on_together() {
-    let settings = WorldSettings {
-        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
-        ..WorldSettings::default()
-    };
     let mut shop = Workshop::weightless(1e-8);
-    shop.builder = WorldBuilder::new(settings);
+    shop.builder = catching();
     let slow = shop.body("slow", disc(0.5), 3.0, thrown(0.0, 0.0, DVec2::new(0.1, 0.0)));
     let fast = shop.body("fast", disc(0.5), 1.0, thrown(-1.0, 0.0, DVec2::new(0.5, 0.0)));
     let far = shop.body("far", disc(0.5), 1.0, thrown(5.0, 0.0, DVec2::new(0.4, 0.0)));
@@ -131,12 +129,8 @@ fn discs_that_meet_slowly_at_the_start_go_on_together() {
 
 #[test]
 fn what_closes_fast_at_the_start_bounces_beside_what_is_caught() {
-    let settings = WorldSettings {
-        overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
-        ..WorldSettings::default()
-    };
     let mut shop = Workshop::new(1e-8);
-    shop.builder = WorldBuilder::new(settings);
+    shop.builder = catching();
     shop.fixed("floor", block(9.0, 1.0), DVec2::new(0.0, -0.5));
     let slow = shop.body("slow", disc(0.5), 2.0, thrown(-2.0, 0.5, DVec2::new(0.0, -0.4)));
     let fast = shop.body("fast", disc(0.5), 2.0, thrown(2.0, 0.5, DVec2::new(0.0, -2.0)));
