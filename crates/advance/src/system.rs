@@ -17,6 +17,10 @@ pub trait EventDriven {
     /// # Errors
     /// The event cannot be handled; the system stays at the time of the event.
     fn handle_next(&mut self) -> Result<Option<Self::Report>, Self::Error>;
+
+    /// All events up to some time have been handled, and somebody will look: what was put off must be there now. So it must
+    /// be, too, after each event that is told of.
+    fn arrive(&mut self) {}
 }
 
 /// Handles all events up to and including `until`, in order, telling `on_report` of each.
@@ -33,5 +37,6 @@ pub fn advance_until<S: EventDriven>(
             on_report(system, &report);
         }
     }
+    system.arrive();
     Ok(())
 }

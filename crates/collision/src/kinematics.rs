@@ -77,6 +77,7 @@ impl GapKinematics {
 
     /// Acceleration of the gap [m/s^2] for given accelerations of the bodies.
     #[must_use]
+    #[inline]
     pub fn acceleration(&self, primary: &Spin, normal: &Spin) -> f64 {
         let j = &self.jacobian;
         j[0] * primary.linear.x

@@ -19,6 +19,7 @@ pub struct BodyState {
 impl BodyState {
     /// The placement that goes with the state.
     #[must_use]
+    #[inline]
     pub fn pose(&self) -> Pose {
         Pose::new(self.position, self.angle)
     }
@@ -49,6 +50,7 @@ impl Moving {
 }
 
 impl From<&BodyState> for Moving {
+    #[inline]
     fn from(state: &BodyState) -> Self {
         Self { pose: state.pose(), velocity: state.velocity, angular_velocity: state.angular_velocity }
     }

@@ -151,6 +151,7 @@ impl Skyline {
 }
 
 /// Sum of products in a fixed order: four partial sums, so that the processor need not wait for each addition.
+#[inline]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a_blocks, a_rest) = a.as_chunks::<4>();
     let (b_blocks, b_rest) = b.as_chunks::<4>();

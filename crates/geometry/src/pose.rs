@@ -56,6 +56,7 @@ impl Pose {
 
     /// The pose at `position` [m], turned by `angle` [rad].
     #[must_use]
+    #[inline]
     pub fn new(position: DVec2, angle: f64) -> Self {
         Self { position, rotation: Rotation::from_angle(angle) }
     }

@@ -198,11 +198,10 @@ impl Dynamics<'_> {
     /// Solves A x = -`offsets`, leaves x in `forces`, and M^-1 J^T x in `changes`.
     pub(crate) fn respond(&mut self) {
         let Stage { offsets, forces, changes, solves, .. } = &mut *self.stage;
-        forces.clear();
         forces.resize(offsets.len(), 0.0);
         self.group.held.solve(offsets, forces);
-        changes.clear();
         changes.resize(self.group.bodies.len(), [0.0; 3]);
+        changes.fill([0.0; 3]);
         self.group.held.respond(forces, changes);
         *solves += 1;
     }
@@ -210,9 +209,9 @@ impl Dynamics<'_> {
     fn solve_rows(&mut self) {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
-        for row in &self.group.rows {
+        for (row, sides) in self.group.rows.iter().zip(&self.group.sides) {
             let moment = self.physics.mechanism.measure(row, &self.stage.movings);
-            let spins = row.bodies.map(|body| self.spin_of(body));
+            let spins = sides.map(|place| self.spin_at(place));
             let mut offset = moment.kinematics.acceleration(&spins[0], &spins[1]);
             if let Some(extra) = self.physics.extra.filter(|extra| row.bilateral || !extra.joints_only) {
                 offset += extra.acceleration(moment.gap - row.gap, moment.kinematics.rate);
@@ -239,10 +238,11 @@ impl Dynamics<'_> {
         let Stage { forces, jacobians, accelerations, gross, .. } = &mut *self.stage;
         gross.clear();
         gross.resize(self.group.bodies.len(), 0.0);
-        for ((row, force), jacobian) in self.group.rows.iter().zip(forces.iter()).zip(jacobians.iter()) {
-            for (side, body) in row.bodies.iter().enumerate() {
-                if let Ok(place) = self.group.bodies.binary_search(body) {
-                    gross[place] += (force * DVec2::new(jacobian[3 * side], jacobian[3 * side + 1])).length();
+        for ((sides, force), jacobian) in self.group.sides.iter().zip(forces.iter()).zip(jacobians.iter()) {
+            for (side, place) in sides.iter().enumerate() {
+                if let Some(place) = *place {
+                    let direction = DVec2::new(jacobian[3 * side], jacobian[3 * side + 1]);
+                    gross[place as usize] += (force * direction).length();
                 }
             }
         }
@@ -260,14 +260,12 @@ impl Dynamics<'_> {
         }
     }
 
-    fn spin_of(&self, body: BodyId) -> Spin {
-        match self.group.bodies.binary_search(&body) {
-            Ok(place) => {
-                let [x, y, angular] = self.stage.accelerations[place];
-                Spin { linear: DVec2::new(x, y), angular }
-            }
-            Err(_) => Spin::default(),
-        }
+    #[inline]
+    fn spin_at(&self, place: Option<u32>) -> Spin {
+        place.map_or(Spin::default(), |place| {
+            let [x, y, angular] = self.stage.accelerations[place as usize];
+            Spin { linear: DVec2::new(x, y), angular }
+        })
     }
 }
 

@@ -47,6 +47,8 @@ pub(crate) struct Group {
     pub(crate) bodies: Vec<BodyId>,
     /// The rows that are held: independent ones, and every row of its connectors.
     pub(crate) rows: Vec<HeldRow>,
+    /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
+    pub(crate) sides: Vec<[Option<u32>; 2]>,
     /// Contacts within the group that are touched without force, each with the gap [m] below which it fires.
     pub(crate) leaning: Vec<HeldRow>,
     pub(crate) stops: Vec<Stop>,
@@ -80,6 +82,8 @@ pub(crate) struct Group {
     pub(crate) made: Time,
     /// The next event is near: a step of few stages reaches it.
     pub(crate) is_brief: bool,
+    /// Nothing ends its segments early: dense output may wait until somebody looks.
+    pub(crate) is_unwatched: bool,
     /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
     pub(crate) has_kinks: bool,
     /// The last step of the group as it is now.
@@ -88,7 +92,7 @@ pub(crate) struct Group {
     pub(crate) free_acceleration: f64,
     /// Energy [J] that projections changed in this segment.
     pub(crate) projected: f64,
-    /// Largest error of a held gap met [m].
+    /// Largest error of a held gap [m] in the middle of the segment, as far as that was looked at.
     pub(crate) largest_error: f64,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
@@ -99,6 +103,7 @@ impl Group {
     pub(crate) fn clear(&mut self) {
         self.bodies.clear();
         self.rows.clear();
+        self.sides.clear();
         self.leaning.clear();
         self.stops.clear();
         self.laws.clear();
@@ -106,7 +111,7 @@ impl Group {
         self.state.clear();
         self.rates.clear();
         (self.next_step, self.full_step) = (None, None);
-        (self.is_brief, self.has_kinks) = (false, false);
+        (self.is_brief, self.has_kinks, self.is_unwatched) = (false, false, false);
         self.accepted = None;
         self.event = None;
     }
@@ -114,6 +119,14 @@ impl Group {
     /// The body by which the group is found.
     pub(crate) fn leader(&self) -> BodyId {
         self.bodies[0]
+    }
+
+    /// Finds the places of the bodies of its rows.
+    pub(crate) fn find_sides(&mut self) {
+        let bodies = &self.bodies;
+        let place = |body| bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
+        self.sides.clear();
+        self.sides.extend(self.rows.iter().map(|row| row.bodies.map(place)));
     }
 
     /// Numbers in its state: positions, velocities, works.

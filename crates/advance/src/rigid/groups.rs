@@ -32,11 +32,12 @@ pub(crate) struct Groups {
     parents: Vec<usize>,
     /// True for places of a region that need an integrator.
     integrated: Vec<bool>,
+    /// Leader of the group whose dense output waits until somebody looks.
+    pub(crate) waiting: Option<BodyId>,
     /// Leaders of the groups that were made last.
     pub(crate) made: Vec<BodyId>,
-    /// Inertias of the bodies of a group that starts, and the places of each row's bodies among them.
+    /// Inertias of the bodies of a group that starts.
     inertias: Vec<Inertia>,
-    sides: Vec<[Option<u32>; 2]>,
 }
 
 impl Groups {
@@ -50,11 +51,11 @@ impl Groups {
     }
 
     /// Takes a group out to work on it.
-    fn take(&mut self, leader: BodyId) -> Option<Box<Group>> {
+    pub(crate) fn take(&mut self, leader: BodyId) -> Option<Box<Group>> {
         self.by_leader[leader.index()].take()
     }
 
-    fn put(&mut self, group: Box<Group>) {
+    pub(crate) fn put(&mut self, group: Box<Group>) {
         let leader = group.leader();
         self.by_leader[leader.index()] = Some(group);
     }
@@ -83,7 +84,7 @@ impl RigidSystem {
     }
 
     /// A group with its dynamics.
-    fn with_group<T>(
+    pub(crate) fn with_group<T>(
         &mut self,
         group: &mut Group,
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
@@ -116,6 +117,7 @@ impl RigidSystem {
         time: Time,
         refine: impl Fn(&Self, Time) -> Option<f64>,
     ) -> Time {
+        self.complete_dense();
         let mut time = time;
         for round in 0..=MOST_CORRECTIONS {
             for &leader in &region.groups {
@@ -287,6 +289,7 @@ impl RigidSystem {
         group.laws.dedup();
         self.list_works(&mut group);
         self.foresee(&mut group);
+        group.is_unwatched = self.is_unwatched(&group);
         group
     }
 
@@ -373,14 +376,11 @@ impl RigidSystem {
         let count = group.bodies.len();
         let dimension = group.dimension();
         let mut inertias = std::mem::take(&mut self.groups.inertias);
-        let mut sides = std::mem::take(&mut self.groups.sides);
         inertias.clear();
         inertias.extend(group.bodies.iter().map(|&body| self.inertia(body)));
-        let place = |body| group.bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
-        sides.clear();
-        sides.extend(group.rows.iter().map(|row| row.bodies.map(place)));
-        group.held.set_structure(&inertias, &sides);
-        (self.groups.inertias, self.groups.sides) = (inertias, sides);
+        group.find_sides();
+        group.held.set_structure(&inertias, &group.sides);
+        self.groups.inertias = inertias;
         // The projection works on the end of a segment: one of no length ends here.
         group.end_state.clear();
         group.end_state.resize(dimension, 0.0);
@@ -452,22 +452,39 @@ impl RigidSystem {
                 self.connector_states[id.index()].hint = row.hint;
             }
         }
-        let outcome = self.with_group(&mut group, |dynamics, tools| {
-            dynamics.extend_on_rows(tools)?;
-            dynamics.group.event = dynamics.find_event();
-            Ok(())
-        });
+        let leader = group.leader();
+        self.skip_dense(leader);
+        let outcome = self.with_group(&mut group, |dynamics, tools| dynamics.extend_watched(tools));
         self.counts.segments += 1;
-        let (leader, due) = (group.leader(), group.due());
+        if let Err(failure) = outcome {
+            let error = self.step_error(&group, failure);
+            self.give_up(&group);
+            return Err(error);
+        }
+        self.queue.set(self.group_source(leader), group.due());
+        if group.is_unwatched {
+            self.defer_dense(leader);
+        } else {
+            self.fly_along(&group);
+        }
+        self.groups.put(group);
+        Ok(())
+    }
+
+    /// Forgets a group that cannot be stepped: its bodies are where its last segment ended.
+    fn give_up(&mut self, group: &Group) {
+        for (place, &body) in group.bodies.iter().enumerate() {
+            let state = body_state(&group.state, group.bodies.len(), place);
+            self.flyers[body.index()].fly_from(group.start, state);
+            self.groups.leader_of[body.index()] = None;
+        }
+    }
+
+    /// The bodies of a group follow its dense output.
+    pub(crate) fn fly_along(&mut self, group: &Group) {
         for (&body, paths) in group.bodies.iter().zip(&group.paths) {
             self.flyers[body.index()].follow(group.start, paths);
         }
-        if outcome.is_ok() {
-            self.queue.set(self.group_source(leader), due);
-        }
-        let failed = outcome.err().map(|failure| self.step_error(&group, failure));
-        self.groups.put(group);
-        failed.map_or(Ok(()), Err)
     }
 
     fn step_error(&self, group: &Group, failure: StepFailure) -> AdvanceError {
@@ -495,6 +512,28 @@ pub(crate) struct Tools<'a> {
 }
 
 impl Dynamics<'_> {
+    /// Extends the group by a step, with what ends it early.
+    fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+        if !self.group.is_unwatched {
+            self.extend_on_rows(tools)?;
+            self.group.event = self.find_event();
+            return Ok(());
+        }
+        self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
+        self.end_on_rows(tools);
+        self.evaluate_end();
+        self.follow_rails();
+        self.limit_next_step(tools.stepper.method().step_factor(0.0));
+        (self.group.event, self.group.largest_error) = (None, 0.0);
+        Ok(())
+    }
+
+    /// Makes the dense output of the last step.
+    pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
+        self.make_dense(tools.stepper);
+        self.middle_excess(tools.settings.tolerances.accuracy);
+    }
+
     /// Extends the group by a step whose dense output keeps to the held rows, too: shorter ones are tried until it does.
     fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         let steps = tools.settings.steps;

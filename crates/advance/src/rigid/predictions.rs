@@ -16,10 +16,12 @@ const LONGEST_SPAN: f64 = 1e6;
 impl RigidSystem {
     pub(crate) fn set_up_boxes(&mut self) {
         for body in self.bodies() {
-            self.place_box(body);
+            if !self.loners[body.index()] {
+                self.place_box(body);
+            }
         }
         for body in self.bodies() {
-            if self.is_movable(body) {
+            if !self.loners[body.index()] && self.is_movable(body) {
                 self.find_neighbours(body);
             }
         }

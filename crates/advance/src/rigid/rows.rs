@@ -68,6 +68,7 @@ impl Mechanism<'_> {
     }
 
     /// Gap and kinematics of a row.
+    #[inline]
     pub(crate) fn measure(&self, row: &HeldRow, movings: &[Moving]) -> RowMoment {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {

@@ -5,6 +5,7 @@
 
 use super::boxes::Room;
 use super::connectors::ConnectorState;
+use super::deferred::loners;
 use super::dynamics::{ExtraAcceleration, Stage};
 use super::error::AdvanceError;
 use super::events::EventWork;
@@ -140,6 +141,8 @@ pub struct RigidSystem {
     pub(crate) broad: BroadPhase,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
+    /// Bodies that no other can collide with.
+    pub(crate) loners: Vec<bool>,
     pub(crate) queue: EventQueue,
     pub(crate) now: Time,
     pub(crate) groups: Groups,
@@ -177,6 +180,7 @@ impl RigidSystem {
         let skin = settings.tolerances.distance_tol();
         let mut excluded: Vec<_> = excluded.iter().map(|&(a, b)| (a.min(b), a.max(b))).collect();
         excluded.sort_unstable();
+        excluded.dedup();
         let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = flyers.len();
@@ -188,6 +192,7 @@ impl RigidSystem {
             stays: vec![None; count],
             halos: vec![settings.tolerances.target_gap; count],
             broad: BroadPhase::new(),
+            loners: loners(count, settings.collisions, &excluded),
             excluded,
             queue: EventQueue::new(),
             now: start,
@@ -227,6 +232,7 @@ impl RigidSystem {
             system.set_up_boxes();
         }
         system.establish()?;
+        system.complete_dense();
         Ok(system)
     }
 
@@ -391,8 +397,16 @@ impl EventDriven for RigidSystem {
         self.counts.events += 1;
         self.now = event.time;
         self.changes.clear(event.time);
-        let impact = self.handle(event.source)?;
+        let outcome = self.handle(event.source);
         self.changes.time = self.now;
-        Ok((impact || !self.changes.is_empty()).then_some(Handled { time: self.now, impact }))
+        if outcome.as_ref().is_ok_and(|impact| !impact && self.changes.is_empty()) {
+            return Ok(None);
+        }
+        self.complete_dense();
+        outcome.map(|impact| Some(Handled { time: self.now, impact }))
+    }
+
+    fn arrive(&mut self) {
+        self.complete_dense();
     }
 }

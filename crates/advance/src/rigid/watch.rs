@@ -88,14 +88,13 @@ impl Dynamics<'_> {
             let at = 3 * (count + place);
             self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
         }));
-        let places = |row: &HeldRow| row.bodies.map(|body| group.bodies.binary_search(&body).ok());
-        for (index, row) in group.rows.iter().enumerate() {
+        for (index, sides) in group.sides.iter().enumerate() {
             let force = group.forces[index].abs().max(group.end_forces[index].abs());
-            places(row).into_iter().flatten().for_each(|place| gross[place] += force);
+            sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
         }
         self.stage.least.clear();
-        self.stage.least.extend(group.rows.iter().map(|row| {
-            let loads = places(row).into_iter().flatten().map(|place| gross[place]);
+        self.stage.least.extend(group.sides.iter().map(|sides| {
+            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
             FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
         }));
         self.stage.gross = gross;
