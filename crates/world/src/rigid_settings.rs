@@ -12,7 +12,7 @@ const REST: f64 = 1e-5;
 /// The corner of a body that turns while it falls may be faster than its centre.
 const SINKING: f64 = 4.0;
 /// Part of the tolerance that the error of one step may be, at the finest tolerance.
-const LOCAL_SHARE: f64 = 0.1;
+const LOCAL_SHARE: f64 = 0.25;
 /// Tolerances finer than this ask for more than rounding leaves.
 const FINEST_TOLERANCE: f64 = 1e-12;
 

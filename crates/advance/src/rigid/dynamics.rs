@@ -56,6 +56,8 @@ pub(crate) struct Stage {
     pub(crate) gross: Vec<f64>,
     /// Force [N] of each row below which it has none.
     pub(crate) least: Vec<f64>,
+    /// Largest error [m] of a held gap, where forces of rows were last found.
+    pub(crate) gap_error: f64,
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows.
     pub(crate) free_acceleration: f64,
     /// Rates of rows during a projection [m/s].
@@ -209,6 +211,7 @@ impl Dynamics<'_> {
     fn solve_rows(&mut self) {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
+        self.stage.gap_error = 0.0;
         for (row, sides) in self.group.rows.iter().zip(&self.group.sides) {
             let moment = self.physics.mechanism.measure(row, &self.stage.movings);
             let spins = sides.map(|place| self.spin_at(place));
@@ -216,6 +219,7 @@ impl Dynamics<'_> {
             if let Some(extra) = self.physics.extra.filter(|extra| row.bilateral || !extra.joints_only) {
                 offset += extra.acceleration(moment.gap - row.gap, moment.kinematics.rate);
             }
+            self.stage.gap_error = self.stage.gap_error.max((moment.gap - row.gap).abs());
             self.stage.offsets.push(offset);
             self.stage.jacobians.push(moment.kinematics.jacobian);
         }

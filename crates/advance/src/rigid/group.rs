@@ -92,7 +92,7 @@ pub(crate) struct Group {
     pub(crate) free_acceleration: f64,
     /// Energy [J] that projections changed in this segment.
     pub(crate) projected: f64,
-    /// Largest error of a held gap [m] in the middle of the segment, as far as that was looked at.
+    /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.
     pub(crate) largest_error: f64,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,

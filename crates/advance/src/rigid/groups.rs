@@ -524,7 +524,7 @@ impl Dynamics<'_> {
         self.evaluate_end();
         self.follow_rails();
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
-        (self.group.event, self.group.largest_error) = (None, 0.0);
+        (self.group.event, self.group.largest_error) = (None, self.stage.gap_error);
         Ok(())
     }
 
