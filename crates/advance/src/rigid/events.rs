@@ -30,8 +30,8 @@ pub(crate) struct EventWork {
     pub(crate) seeds: Vec<BodyId>,
     /// Records of held contacts that open in a low hop.
     pub(crate) hopping: Vec<usize>,
-    /// The pair that fired has done so again and again without time going by.
-    is_repeat: bool,
+    /// How often the pair that fired has done so without time going by, beyond what is calm.
+    repeats: u32,
 }
 
 impl RigidSystem {
@@ -82,13 +82,13 @@ impl RigidSystem {
         }
         let repeats = self.note_repeat(pair)?;
         let mut work = self.work.take().unwrap_or_default();
-        work.is_repeat = repeats > CALM_REPEATS;
+        work.repeats = repeats.saturating_sub(CALM_REPEATS);
         work.seeds.clear();
         work.seeds.extend(bodies);
         work.region.fired = Some(Touch { bodies, features });
         let outcome = self.handle_impact(&mut work);
         work.region.fired = None;
-        work.is_repeat = false;
+        work.repeats = 0;
         self.work = Some(work);
         outcome
     }
@@ -232,7 +232,7 @@ impl RigidSystem {
     /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
     fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
-        let is_storm = self.at_tick || self.note_events(&work.region) || work.is_repeat;
+        let is_storm = self.at_tick || self.note_events(&work.region) || work.repeats > 0;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, is_storm);
@@ -259,6 +259,7 @@ impl RigidSystem {
         self.note_seen(&work.region);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(&work.region, &work.settling);
+        self.lower_insistent(&work.region, work.repeats);
         for &body in &work.region.bodies {
             self.renew_stay(body);
         }
@@ -329,6 +330,16 @@ impl RigidSystem {
             };
             self.pairs.rules_mut(pair).push(rule);
         }
+    }
+
+    /// Lowers the contact that fired, the more often it did so without time going by: it lies nearer to where it fires than
+    /// the search can tell.
+    fn lower_insistent(&mut self, region: &Region, repeats: u32) {
+        let Some(fired) = region.fired.filter(|_| repeats > 0) else { return };
+        let Some(pair) = self.pairs.between(fired.bodies[0], fired.bodies[1]) else { return };
+        let lower = f64::from(repeats) * self.sink();
+        let rules = self.pairs.rules_mut(pair).iter_mut().filter(|rule| rule.features == fired.features);
+        rules.for_each(|rule| rule.target = rule.target.map(|target| target - lower));
     }
 
     /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
