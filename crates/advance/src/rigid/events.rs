@@ -332,14 +332,18 @@ impl RigidSystem {
         }
     }
 
-    /// Lowers the contact that fired, the more often it did so without time going by: it lies nearer to where it fires than
-    /// the search can tell.
+    /// Lowers the contact that fired, and its neighbours, the more often it did so without time going by: it lies nearer to
+    /// where it fires than the search can tell.
     fn lower_insistent(&mut self, region: &Region, repeats: u32) {
         let Some(fired) = region.fired.filter(|_| repeats > 0) else { return };
         let Some(pair) = self.pairs.between(fired.bodies[0], fired.bodies[1]) else { return };
         let lower = f64::from(repeats) * self.sink();
-        let rules = self.pairs.rules_mut(pair).iter_mut().filter(|rule| rule.features == fired.features);
-        rules.for_each(|rule| rule.target = rule.target.map(|target| target - lower));
+        for rule in self.pairs.rules_mut(pair) {
+            rule.target = rule.target.map(|target| target - lower);
+        }
+        for body in fired.bodies {
+            self.halos[body.index()] -= lower;
+        }
     }
 
     /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
