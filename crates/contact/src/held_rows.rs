@@ -24,8 +24,13 @@ const NONE: u32 = u32::MAX;
 /// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what depends, far less
 /// than what does not.
 const SOFTNESS: f64 = 1e-6;
-/// Steps that make good what soft rows lack: each leaves this part of it over the part of a row that is independent.
+/// Steps that make good what soft rows lack: each leaves this part of it over the part of a row that is independent. These
+/// are always made, and more, up to the cap, while each leaves less than so much of what is lacking.
 const REFINEMENTS: usize = 3;
+const MOST_REFINEMENTS: usize = 40;
+const WORTHWHILE: f64 = 0.9;
+/// Part of the offsets that may be lacking in the end.
+const REFINED: f64 = 1e-13;
 
 /// Rows held as equations, with the structure of their factor kept from solve to solve.
 ///
@@ -133,6 +138,12 @@ impl HeldRows {
             *raise = if is_soft(row as usize) { SOFTNESS } else { 0.0 };
         }
         self.is_soft = true;
+    }
+
+    /// Whether any rows share what they hold.
+    #[must_use]
+    pub fn is_soft(&self) -> bool {
+        self.is_soft
     }
 
     /// Number of rows.
@@ -258,8 +269,15 @@ impl HeldRows {
         self.solve_raised(offset, force);
         let (mut residual, mut lacking) =
             (std::mem::take(&mut self.residual), std::mem::take(&mut self.lacking));
-        for _ in 0..if self.is_soft { REFINEMENTS } else { 0 } {
+        let enough = REFINED * largest(offset);
+        let mut before = f64::INFINITY;
+        for count in 0..if self.is_soft { MOST_REFINEMENTS } else { 0 } {
             self.measure_residual(offset, force, &mut residual);
+            let left = largest(&residual);
+            if count >= REFINEMENTS && (left <= enough || left > WORTHWHILE * before) {
+                break;
+            }
+            before = left;
             self.solve_raised(&residual, &mut lacking);
             for (force, lacking) in force.iter_mut().zip(&lacking) {
                 *force += lacking;
@@ -332,6 +350,11 @@ impl HeldRows {
         let place = self.order.rows.iter().position(|&other| other as usize == row);
         place.is_some_and(|place| self.inverse_pivot[place] == 0.0)
     }
+}
+
+/// The largest size of a number.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 #[cfg(test)]
