@@ -2,8 +2,8 @@
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{Event, ToleranceOverrides, World, WorldBuilder, WorldSettings};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, block, disc, thrown};
+use halfgap::{BodyId, BodyState, Event, ToleranceOverrides, World, WorldBuilder, WorldSettings};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 use halfgap_tests::{on_floor, world_of};
 
 /// A builder of worlds in which what closes at less than 0.5 m/s is caught.
@@ -141,4 +141,38 @@ fn what_closes_fast_at_the_start_bounces_beside_what_is_caught() {
     // Up at 2 m/s for 0.2 s.
     let rise = world.state(fast).position.y - start;
     assert!((rise - 0.2).abs() < 1e-9, "{rise} m");
+}
+
+#[test]
+fn a_wheel_on_a_fixed_axle_that_just_touches_its_floor_turns() {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(9.0, 1.0), DVec2::new(0.0, -0.5));
+    let turning = BodyState { angular_velocity: 3.0, ..at_rest(0.0, 0.5) };
+    let wheel = shop.body("wheel", disc(0.5), 2.0, turning);
+    shop.pin(wheel, BodyId::WORLD, DVec2::new(0.0, 0.5));
+    let loose = shop.body("loose", disc(0.5), 2.0, at_rest(2.0, 0.5));
+    let mut world = shop.build();
+    let target = world.tolerances().target_gap;
+    advance(&mut world, 2.0);
+    let state = world.state(wheel);
+    assert!((state.position - DVec2::new(0.0, 0.5)).length() < 1e-12, "{state:?}");
+    assert!((state.angle - 6.0).abs() < 1e-12 && state.angular_velocity == 3.0, "{state:?}");
+    // What can be lifted is.
+    assert!((world.state(loose).position.y - 0.5 - target).abs() < 0.7 * target);
+}
+
+#[test]
+fn a_block_that_just_fits_between_two_walls_slides_along_them() {
+    let mut shop = Workshop::weightless(1e-8);
+    for (name, x) in [("left", -1.0), ("right", 1.0)] {
+        shop.fixed(name, block(1.0, 9.0), DVec2::new(x, 0.0));
+    }
+    let slider = shop.body("slider", block(1.0, 0.5), 2.0, thrown(0.0, 0.0, DVec2::new(0.0, 0.3)));
+    let mut world = shop.build();
+    advance(&mut world, 2.0);
+    let state = world.state(slider);
+    assert!(
+        (state.position - DVec2::new(0.0, 0.6)).length() < 1e-12 && state.angle.abs() < 1e-12,
+        "{state:?}"
+    );
 }

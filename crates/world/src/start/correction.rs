@@ -28,30 +28,42 @@ pub(super) fn correct_positions(
     records: &[Collision],
     connectors: &[Connector],
 ) -> bool {
-    let touching = records.iter().map(|record| {
-        let above = record.distance_to_target();
-        let accuracy = record.tolerances.accuracy;
-        Correction {
-            bodies: [record.parties.primary.body, record.parties.normal.body],
-            jacobian: record.motion.kinematics.jacobian,
-            // What lies in the zone already may move within it.
-            offset: if above < -accuracy { above } else { above + accuracy },
-            bilateral: false,
-        }
-    });
-    let joined = rows(bodies, connectors).map(|(_, connector, sample)| Correction {
-        bodies: connector.bodies(),
-        jacobian: sample.kinematics.jacobian,
-        offset: sample.gap,
-        bilateral: connector.is_bilateral(),
-    });
-    let corrections: Vec<_> = touching.chain(joined).collect();
+    let corrections: Vec<_> = records.iter().map(lift).chain(join(bodies, connectors)).collect();
     let Some(changes) = least_changes(bodies, &corrections) else { return false };
     for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
         state.position += DVec2::new(change[0], change[1]);
         state.angle += change[2];
     }
     true
+}
+
+/// True if a gap can be lifted while the connectors come to fit, whatever else touches.
+pub(super) fn can_lift(bodies: &[StartParts], record: &Collision, connectors: &[Connector]) -> bool {
+    let corrections: Vec<_> = std::iter::once(lift(record)).chain(join(bodies, connectors)).collect();
+    least_changes(bodies, &corrections).is_some()
+}
+
+fn lift(record: &Collision) -> Correction {
+    let (above, accuracy) = (record.distance_to_target(), record.tolerances.accuracy);
+    Correction {
+        bodies: [record.parties.primary.body, record.parties.normal.body],
+        jacobian: record.motion.kinematics.jacobian,
+        // What lies in the zone already may move within it.
+        offset: if above < -accuracy { above } else { above + accuracy },
+        bilateral: false,
+    }
+}
+
+fn join<'a>(
+    bodies: &'a [StartParts],
+    connectors: &'a [Connector],
+) -> impl Iterator<Item = Correction> + use<'a> {
+    rows(bodies, connectors).map(|(_, connector, sample)| Correction {
+        bodies: connector.bodies(),
+        jacobian: sample.kinematics.jacobian,
+        offset: sample.gap,
+        bilateral: connector.is_bilateral(),
+    })
 }
 
 /// Changes the velocities so that no bilateral connector comes apart.

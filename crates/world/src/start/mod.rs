@@ -4,12 +4,13 @@
 //! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the target and
 //! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0
 //! (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated
-//! until they fit. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves
+//! until they fit. `tight` knows the pairs for which that cannot be: they keep their gap. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves
 //! for displacements and for velocities, `overlap` measures how deep two shapes overlap.
 
 mod correction;
 mod joined;
 mod overlap;
+mod tight;
 mod touching;
 
 use crate::world::Named;
@@ -19,7 +20,8 @@ use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
-use touching::{lowest_below_zone, near_pairs, require_shallow, touching};
+use tight::TightPairs;
+use touching::{is_below_zone, lowest_below_zone, near_pairs, require_shallow, touching};
 
 /// Rounds of correction; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
@@ -61,16 +63,26 @@ pub(crate) fn correct_start(
     require_small_errors(bodies, named, connectors, rules.connector_error)?;
     let given: Vec<DVec2> = bodies.iter().map(|(_, _, state)| state.position).collect();
     let mut last_error = f64::INFINITY;
+    let mut tight = TightPairs::default();
     for round in 0.. {
-        let records = touching(bodies, &pairs, rules.tolerances, rules.overlap);
+        let mut records = touching(bodies, &pairs, rules.tolerances, rules.overlap);
+        records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
         let has_stalled = error > LEAST_GAIN * last_error;
         if too_near.is_none() && fits(error, has_stalled, rules) {
             break;
         }
-        if round == MOST_ROUNDS || !correct_positions(bodies, &records, connectors) {
+        if round == MOST_ROUNDS {
             return Err(cannot_correct(too_near, off, named, connectors));
+        }
+        if !correct_positions(bodies, &records, connectors) {
+            let is_near =
+                |record: &&Collision| is_below_zone(record) && record.geometry.distance >= -rules.rounding;
+            let near: Vec<_> = records.iter().filter(is_near).collect();
+            if !tight.widen(bodies, connectors, &near) {
+                return Err(cannot_correct(too_near, off, named, connectors));
+            }
         }
         last_error = error;
     }

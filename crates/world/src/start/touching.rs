@@ -67,8 +67,12 @@ pub(super) fn touching(
     records
 }
 
+/// True for a place where two bodies are nearer than the target zone.
+pub(super) fn is_below_zone(record: &Collision) -> bool {
+    record.distance_to_target() < -record.tolerances.accuracy
+}
+
 pub(super) fn lowest_below_zone(records: &[Collision]) -> Option<&Collision> {
-    let too_near = |record: &&Collision| record.distance_to_target() < -record.tolerances.accuracy;
     let by_gap = |p: &&Collision, q: &&Collision| p.distance_to_target().total_cmp(&q.distance_to_target());
-    records.iter().filter(too_near).min_by(by_gap)
+    records.iter().filter(|record| is_below_zone(record)).min_by(by_gap)
 }
