@@ -211,7 +211,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
                 &gap,
                 (round_a, a),
                 (round_b, b),
-                (direction_rate, u_max, a_max),
+                (direction_rate, u.length(), u_max, a_max),
             ),
         };
         if inner || look.is_behind(pair.depth) {
@@ -284,7 +284,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         gap: &CenterGap,
         (round_a, a): (&RoundFeature, &Moving),
         (round_b, b): (&RoundFeature, &Moving),
-        (direction_rate, u_max, a_max): (f64, f64, f64),
+        (direction_rate, u, u_max, a_max): (f64, f64, f64, f64),
     ) -> Option<f64> {
         let [excess_a, excess_b] = gap.excess(round_a, &a.pose, round_b, &b.pose);
         let [slack_a, slack_b] = pair.slack.map(|slack| slack.max(direction_rounding(gap)));
@@ -292,7 +292,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             return None;
         }
         let distance = gap.center_distance;
-        let half_way = quotient(0.5 * distance, u_max);
+        let half_way = quotient(0.5 * distance, u_max).max(first_descent(0.5 * distance, -u, a_max));
         // Over that time the direction's angular acceleration is at most a/(d/2) + 2 u^2/(d/2)^2.
         let direction_speed = quotient(2.0 * u_max, distance);
         let direction_acceleration =
@@ -301,6 +301,9 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             (excess > slack).then(|| {
                 let room = excess - slack;
                 let by_speed = quotient(room, direction_speed + spin.speed);
+                // Centres that are near each other may be so for long: they hardly move against each other.
+                let now = quotient(2.0 * u, distance) + spin.speed;
+                let by_speed = by_speed.max(first_descent(room, -now, quotient(2.0 * a_max, distance)));
                 let turning = (direction_rate - rate).abs();
                 let acceleration = direction_acceleration + spin.acceleration;
                 half_way.min(by_speed.max(first_descent(room, -turning, acceleration)))
