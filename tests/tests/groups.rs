@@ -2,7 +2,7 @@
 
 use halfgap::force::Spring;
 use halfgap::geometry::DVec2;
-use halfgap::{Anchor, BodyId, BodyState, ConnectorKind, World};
+use halfgap::{Anchor, BodyId, BodyState, ConnectorKind, World, WorldBuilder, WorldSettings};
 use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, disc, thrown};
 use std::sync::Arc;
 
@@ -49,6 +49,37 @@ fn a_pendulum_moves_by_the_same_bits_whatever_happens_elsewhere() {
     // The fast one alone takes most of the steps.
     let (one, all) = (alone.statistics().evaluations, beside.statistics().evaluations);
     assert!(all > 5 * one, "{one} evaluations alone, {all} in all");
+}
+
+/// Two pendulums, one ten times as fast as the other, which cannot collide with anything, or are far from everything.
+fn two_pendulums(collisions: bool) -> World {
+    let mut shop = Workshop::new(1e-9);
+    shop.builder = WorldBuilder::new(WorldSettings { tolerance: 1e-9, collisions, ..WorldSettings::default() });
+    for (name, x, length) in [("slow", 0.0, 3.0), ("fast", 20.0, 0.03)] {
+        let bob = shop.body(name, disc(0.01), 1.0, at_rest(x + length, 0.0));
+        shop.connect(ConnectorKind::Rod { a: at(WORLD, x, 0.0), b: at(bob, 0.0, 0.0), length }, 0.0);
+    }
+    shop.build()
+}
+
+#[test]
+fn what_nothing_can_meet_moves_by_the_same_bits_and_costs_less_where_nobody_looks() {
+    let (mut watched, mut unwatched) = (two_pendulums(true), two_pendulums(false));
+    let same = |one: &World, other: &World| {
+        one.bodies().all(|body| bits(&one.state(body)) == bits(&other.state(body)))
+    };
+    assert!(same(&watched, &unwatched), "at the start");
+    for piece in 1..=500 {
+        let time = 0.0137 * f64::from(piece);
+        advance(&mut watched, time);
+        advance(&mut unwatched, time);
+        assert!(same(&watched, &unwatched), "at {time} s");
+    }
+    let mut unseen = two_pendulums(false);
+    advance(&mut unseen, unwatched.time());
+    assert!(same(&unseen, &unwatched), "without a look in between");
+    let [one, two] = [&unseen, &watched].map(|world| world.statistics().evaluations as f64);
+    assert!(one < 0.9 * two, "{one} and {two} evaluations");
 }
 
 #[test]
