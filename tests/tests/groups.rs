@@ -54,7 +54,8 @@ fn a_pendulum_moves_by_the_same_bits_whatever_happens_elsewhere() {
 /// Two pendulums, one ten times as fast as the other, which cannot collide with anything, or are far from everything.
 fn two_pendulums(collisions: bool) -> World {
     let mut shop = Workshop::new(1e-9);
-    shop.builder = WorldBuilder::new(WorldSettings { tolerance: 1e-9, collisions, ..WorldSettings::default() });
+    shop.builder =
+        WorldBuilder::new(WorldSettings { tolerance: 1e-9, collisions, ..WorldSettings::default() });
     for (name, x, length) in [("slow", 0.0, 3.0), ("fast", 20.0, 0.03)] {
         let bob = shop.body(name, disc(0.01), 1.0, at_rest(x + length, 0.0));
         shop.connect(ConnectorKind::Rod { a: at(WORLD, x, 0.0), b: at(bob, 0.0, 0.0), length }, 0.0);
