@@ -28,7 +28,7 @@ pub struct MovingShape<'a, M> {
     pub offset: f64,
 }
 
-/// Limits of a search that do not change what it finds.
+/// Limits of a search; all but the last two do not change what it finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchSettings {
     /// Steps of one march before the search pauses; the next call goes on from there.
@@ -42,11 +42,13 @@ pub struct SearchSettings {
     /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper ones lie on the
     /// far sides of their bodies.
     pub depth: f64,
+    /// A march tells of what lies at its target or below and opens by no more than this [m/s]: it would crawl along it.
+    pub rest: f64,
 }
 
 impl Default for SearchSettings {
     fn default() -> Self {
-        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0 }
+        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0, rest: 0.0 }
     }
 }
 
@@ -254,7 +256,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let slack = [slack(a, self.a.shape.lever(ids[0]), b), slack(b, self.b.shape.lever(ids[1]), a)];
         let slack = slack.map(|share| share * tolerances.accuracy);
         let overrun = OVERRUN_SHARE * tolerances.accuracy;
-        Some(Pair { kind, feature_a: a, feature_b: b, target, depth, slack, overrun })
+        let rest = self.settings.rest;
+        Some(Pair { kind, feature_a: a, feature_b: b, target, depth, slack, overrun, rest })
     }
 
     fn by_windows(&self, from: f64, span: f64) -> Search {
@@ -306,6 +309,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             depth: f64::INFINITY,
             slack: [0.0; 2],
             overrun: 0.0,
+            rest: 0.0,
         };
         let offsets = [self.a.offset + start, self.b.offset + start];
         let (a, b) = ((circle_a, self.a.motion), (circle_b, self.b.motion));

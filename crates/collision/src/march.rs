@@ -105,6 +105,8 @@ pub(crate) struct Pair<'a> {
     pub(crate) slack: [f64; 2],
     /// Distance [m] beyond the ends of a line by which it still counts as within.
     pub(crate) overrun: f64,
+    /// Rates [m/s] up to which what lies at the target counts as closing.
+    pub(crate) rest: f64,
 }
 
 /// The round side of a pair, with the angle [rad] by which a contact may lie outside of its range.
@@ -204,7 +206,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             curvature: downward,
             height,
             value_rounding: rounding(size),
-            rate_rounding: rounding(u.length()),
+            rate_rounding: rounding(u.length()).max(pair.rest),
             resolution: quotient(rounding(size), u_max),
             outside_for: self.outside_ranges(
                 pair,
@@ -271,7 +273,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             curvature,
             height,
             value_rounding: rounding(size),
-            rate_rounding: rounding(e_rate.length() + w.abs() * e.length()),
+            rate_rounding: rounding(e_rate.length() + w.abs() * e.length()).max(pair.rest),
             resolution: quotient(rounding(size), e_speed + spin_b.speed * e_max),
             outside_for: longer(beyond, askew),
         }

@@ -34,7 +34,11 @@ pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> Rigid
         law: settings.impact_law,
         order: settings.impact_order,
         collisions: settings.collisions,
-        search: SearchSettings { depth: sinking(settings, &tolerances, scales), ..SearchSettings::default() },
+        search: SearchSettings {
+            depth: sinking(settings, &tolerances, scales),
+            rest: rest_speed(tolerances.velocity_tol, speed),
+            ..SearchSettings::default()
+        },
         method: method(settings.integrator),
         steps: StepControl {
             local_error: local_error(settings.tolerance, method(settings.integrator)),

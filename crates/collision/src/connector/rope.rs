@@ -56,6 +56,7 @@ pub fn rope_contact<A: Motion, B: Motion>(
         depth: f64::INFINITY,
         slack: [0.0; 2],
         overrun: 0.0,
+        rest: 0.0,
     };
     let offsets = [offset_a, offset_b];
     if let Some(search) = by_closed_form(&pair, motion_a, motion_b, offsets, from, span) {
