@@ -189,8 +189,9 @@ impl Dynamics<'_> {
     /// it formed, and its rate. Returns how many rows depend on others.
     pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) -> usize {
         self.stage.jacobians.clear();
+        let mut twin = None;
         for row in &self.group.rows {
-            let moment = self.physics.mechanism.measure(row, &self.stage.movings);
+            let moment = self.physics.mechanism.measure_next(row, &self.stage.movings, &mut twin);
             self.stage.jacobians.push(moment.kinematics.jacobian);
             visit(moment.gap - row.gap, moment.kinematics.rate);
         }
@@ -212,8 +213,9 @@ impl Dynamics<'_> {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
         self.stage.gap_error = 0.0;
+        let mut twin = None;
         for (row, sides) in self.group.rows.iter().zip(&self.group.sides) {
-            let moment = self.physics.mechanism.measure(row, &self.stage.movings);
+            let moment = self.physics.mechanism.measure_next(row, &self.stage.movings, &mut twin);
             let spins = sides.map(|place| self.spin_at(place));
             let mut offset = moment.kinematics.acceleration(&spins[0], &spins[1]);
             if let Some(extra) = self.physics.extra.filter(|extra| row.bilateral || !extra.joints_only) {

@@ -83,6 +83,32 @@ impl Mechanism<'_> {
         }
     }
 
+    /// As [`Mechanism::measure`], of rows in turn: the second row of a pin is measured with the first.
+    #[inline]
+    pub(crate) fn measure_next(
+        &self,
+        row: &HeldRow,
+        movings: &[Moving],
+        twin: &mut Option<(ConnectorId, RowMoment)>,
+    ) -> RowMoment {
+        let RowSource::Connector(id, index) = row.source else { return self.measure(row, movings) };
+        if let (1, Some((of, moment))) = (index, *twin)
+            && of == id
+        {
+            return moment;
+        }
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match self.connectors[id.index()].measure_pin(a, b) {
+            Some(samples) => {
+                let [first, second] =
+                    samples.map(|sample| RowMoment { gap: sample.gap, kinematics: sample.kinematics });
+                *twin = Some((id, second));
+                if index == 0 { first } else { second }
+            }
+            None => self.measure(row, movings),
+        }
+    }
+
     /// The gap of the features of a row, wherever on them it is.
     #[inline]
     pub(crate) fn sample(

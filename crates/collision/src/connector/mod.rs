@@ -227,6 +227,16 @@ impl Connector {
         self.measure_near(row, a, b, None)
     }
 
+    /// Both rows of a pin at once, which have most of their terms in common; `None` for other connectors.
+    #[must_use]
+    #[inline]
+    pub fn measure_pin(&self, a: &Moving, b: &Moving) -> Option<[ConnectorSample; 2]> {
+        let ConnectorKind::Pin { a: on_a, b: on_b } = &self.kind else { return None };
+        let points = [a.pose.point_to_world(on_a.point), b.pose.point_to_world(on_b.point)];
+        let ends = Ends::of(points, [a, b]);
+        Some([DVec2::X, DVec2::Y].map(|normal| ends.along(normal.dot(points[0] - points[1]), normal, 0.0)))
+    }
+
     /// As [`Connector::measure`]; rails look for the nearest point near `hint`, or stay on its piece.
     ///
     /// A rail that crosses or nears itself needs the hint, and with it the search is quicker.
