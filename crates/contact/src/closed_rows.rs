@@ -10,6 +10,9 @@ use crate::system::System;
 
 const OPEN: u32 = u32::MAX;
 
+/// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
+const LOST: f64 = 0.25;
+
 /// State shared by the phases of the dual active-set method.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClosedRows {
@@ -47,6 +50,9 @@ pub(crate) struct ClosedRows {
     dependence: f64,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
+    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; what forces then
+    /// lack is left to refinement.
+    pub(crate) spread: f64,
 }
 
 /// How a row relates to the closed rows.
@@ -78,6 +84,7 @@ impl ClosedRows {
         self.order.prepare(start, column, self.system.columns());
         self.dependence = dependence;
         self.proximal = 0.0;
+        self.spread = 0.0;
         self.factor.reset(n);
         self.rows.clear();
         self.rows.reserve(n);
@@ -109,9 +116,10 @@ impl ClosedRows {
         self.reach[..closed].fill(0.0);
         let first = self.system.gather(row, &self.position, closed, &mut self.reach);
         let square = self.factor.forward(&mut self.reach[..closed], first);
-        let diagonal = if self.system.movable[row] { 1.0 + self.proximal } else { 0.0 };
+        let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;
-        Relation { complement, dependent: complement <= self.dependence, first }
+        let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
+        Relation { complement, dependent: complement <= dependence, first }
     }
 
     /// Closes the row last considered, which must be independent.

@@ -27,7 +27,7 @@ use crate::warm::WarmStart;
 const BLOCKING: f64 = 1e-14;
 
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
-const REFINED: f64 = 0.125;
+pub(crate) const REFINED: f64 = 0.125;
 
 /// Part that a dependent row must have in a closed one, in units of its own, to take its place.
 const LARGER: f64 = 2.0;
@@ -39,6 +39,8 @@ pub struct DualActiveSet {
     pub(crate) closed: ClosedRows,
     /// Rows that start closed.
     pub(crate) start: Vec<bool>,
+    /// The same while others are tried.
+    pub(crate) set_aside: Vec<bool>,
     pub(crate) shift: Shift,
     /// Whether contacts contradicted each other in the last attempt, connectors not counted.
     pub(crate) contacts_contradict: bool,
@@ -198,6 +200,10 @@ impl DualActiveSet {
         loop {
             let noise = self.noise();
             if let Some(row) = self.worst_open_row(problem, noise) {
+                if self.closed.spread > 0.0 {
+                    self.gather_forces();
+                    continue;
+                }
                 match self.drive(row, attempt) {
                     End::Done => self.narrow_factor(),
                     other => return other,

@@ -53,6 +53,7 @@ mod settings;
 mod skyline;
 mod solution;
 mod solver;
+mod spread;
 mod start;
 mod system;
 mod warm;

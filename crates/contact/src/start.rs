@@ -92,9 +92,12 @@ impl DualActiveSet {
     /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
     /// others and the bilateral rows did not come first.
     pub(crate) fn exchange_blocks(&mut self) -> bool {
+        if self.is_still_spread() {
+            return true;
+        }
         let mut fewest = usize::MAX;
         let mut tries = 0;
-        for _ in 0..self.settings.block_rounds {
+        for round in 0..self.settings.block_rounds {
             let independent = self.closed.still_closed(&self.start) || {
                 self.closed.open_all();
                 self.closed.close_flagged(&self.start)
@@ -102,10 +105,17 @@ impl DualActiveSet {
             let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
             self.closed.accelerate();
+            if round == 0 && independent && self.is_worth_spreading(flagged) {
+                if self.spread_forces() {
+                    return true;
+                }
+                self.closed.close_flagged(&self.start);
+                self.closed.solve_closed();
+                self.closed.accelerate();
+            }
             let limit = -self.noise();
             let mut wrong = 0;
             let closed = &self.closed;
-
             for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
                 let is_closed = closed.is_closed(row);
                 let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };

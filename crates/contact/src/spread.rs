@@ -1,0 +1,139 @@
+//! Forces spread over rows that depend on each other, instead of a choice among them.
+//!
+//! Where many contacts are redundant, as in a pyramid of blocks, the rows that would close are more than can be independent.
+//! Which of them carry the forces is then an arbitrary choice, and pivoting to one that has no negative force takes as many
+//! pivots as there are redundant rows. With the diagonal of the factor raised by a little all of them can be closed at once;
+//! the forces are then those of least norm, which weight mostly leaves positive, and what they lack is made good by
+//! refinement, the proximal point method in the forces: each step leaves δ/(δ + λ) of the accelerations in the direction of
+//! an eigenvalue λ of Â, and none are left in a direction of λ = 0 if the rows do not contradict each other. Source of the
+//! method: R. T. Rockafellar, "Monotone operators and the proximal point algorithm", SIAM Journal on Control and
+//! Optimization 14, 1976, 877-898.
+
+use crate::dual_active_set::{DualActiveSet, REFINED};
+use crate::settings::ForceSelection;
+
+/// What the diagonal of the factor is raised by: small beside the least eigenvalue of piles that is not zero, so that few
+/// steps of refinement are needed, large beside rounding.
+const RAISE: f64 = 1e-9;
+
+/// Steps of refinement before it is given up.
+const STEPS: usize = 6;
+
+/// One in so many rows dependent is worth it.
+const REDUNDANT: usize = 5;
+
+/// One in so many rows independent at least: where fewer are (a box on a floor), pivots are cheap.
+const SUBSTANTIAL: usize = 4;
+
+/// One in so many rows wrong with all closed, at most: else they are not redundant, but nearly so, and forces are large.
+const WRONG: usize = 4;
+
+impl DualActiveSet {
+    /// Whether of so many rows that are to be closed, many depend on those that are.
+    pub(crate) fn is_worth_spreading(&self, flagged: usize) -> bool {
+        let closed = self.closed.len();
+        let pulls = |&row: &usize| self.closed.force[row] < 0.0 && !self.closed.free[row];
+        self.settings.selection == ForceSelection::Vertex
+            && self.closed.proximal == 0.0
+            && self.closed.kept == 0
+            && (flagged - closed) * REDUNDANT >= flagged.max(1)
+            && closed * SUBSTANTIAL >= flagged
+            && self.closed.rows.iter().any(pulls)
+    }
+
+    /// Closes all rows with a flag, redundant ones too, and exchanges wrong ones while that leaves fewer. If that does not
+    /// end well, no rows are closed.
+    pub(crate) fn spread_forces(&mut self) -> bool {
+        self.try_spread(Self::exchange_spread)
+    }
+
+    /// Whether forces were spread in the last solve, over the rows that are to start closed now, and can be so again. If not,
+    /// and they were spread, no rows are closed.
+    pub(crate) fn is_still_spread(&mut self) -> bool {
+        self.closed.spread > 0.0
+            && self.try_spread(|solver| {
+                solver.closed.still_closed(&solver.start)
+                    && solver.mark_wrong_spread() == 0
+                    && solver.refine_spread()
+            })
+    }
+
+    /// Leaves the rows to start with, and the factor without a raise, if something does not end well.
+    fn try_spread(&mut self, something: impl FnOnce(&mut Self) -> bool) -> bool {
+        let mut set_aside = std::mem::take(&mut self.set_aside);
+        set_aside.clear();
+        set_aside.extend_from_slice(&self.start);
+        let ended_well = something(self);
+        if !ended_well {
+            self.start.copy_from_slice(&set_aside);
+            self.gather_rows();
+        }
+        self.set_aside = set_aside;
+        ended_well
+    }
+
+    fn exchange_spread(&mut self) -> bool {
+        self.closed.open_all();
+        self.closed.spread = RAISE;
+        let mut fewest = self.start.len() / WRONG;
+        for _ in 0..self.settings.block_rounds {
+            self.closed.close_flagged(&self.start);
+            let wrong = self.mark_wrong_spread();
+            if wrong == 0 {
+                return self.refine_spread();
+            }
+            if wrong >= fewest {
+                return false;
+            }
+            fewest = wrong;
+            self.closed.open_all();
+        }
+        false
+    }
+
+    /// Solves the closed rows, and flags those that should be closed instead. Returns how many that changes.
+    fn mark_wrong_spread(&mut self) -> usize {
+        self.closed.solve_closed();
+        self.closed.accelerate();
+        // Accelerations are known but for the raise times the forces.
+        let limit = -self.noise() - RAISE * self.closed.terms;
+        let closed = &self.closed;
+        let mut wrong = 0;
+        for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
+            let is_closed = closed.is_closed(row);
+            let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
+            *start = is_closed != bad;
+            wrong += usize::from(bad);
+        }
+        wrong
+    }
+
+    /// Refines the forces until the closed rows are at rest. Returns whether they are, with all forces admissible.
+    fn refine_spread(&mut self) -> bool {
+        for _ in 0..STEPS {
+            if self.closed.closed_error() <= REFINED * self.noise() {
+                break;
+            }
+            self.closed.refine();
+            self.closed.accelerate();
+        }
+        self.closed.closed_error() <= self.noise()
+    }
+
+    /// Opens all rows, and ends the raise of the factor.
+    fn gather_rows(&mut self) {
+        self.closed.open_all();
+        self.closed.spread = 0.0;
+    }
+
+    /// Goes on with independent rows only.
+    pub(crate) fn gather_forces(&mut self) {
+        self.start.clear();
+        self.start.extend((0..self.closed.force.len()).map(|row| self.closed.is_closed(row)));
+        self.gather_rows();
+        self.closed.close_flagged(&self.start);
+        self.closed.solve_closed();
+        self.closed.accelerate();
+        self.make_forces_admissible();
+    }
+}
