@@ -3,6 +3,8 @@
 //! All quantities are the scaled ones of [`System`]. Bilateral rows are free: their force may take any sign, and they
 //! never leave C.
 
+use std::ops::Range;
+
 use crate::order::RowOrder;
 use crate::problem::Problem;
 use crate::skyline::Skyline;
@@ -44,6 +46,8 @@ pub(crate) struct ClosedRows {
     pub(crate) terms_bound: bool,
     /// What [`consider`](Self::consider) found: L⁻¹ Â_Cd.
     reach: Vec<f64>,
+    /// Where that may not be zero.
+    reached: Range<usize>,
     /// Solutions of systems with the factor.
     pub(crate) step: Vec<f64>,
     /// Least Schur complement of a row that is independent of the closed rows.
@@ -74,12 +78,13 @@ impl ClosedRows {
             values.clear();
             values.resize(n, 0.0);
         }
+        self.reached = 0..0;
         let plain = self.proximal == 0.0 && self.kept == 0 && self.dependence == dependence;
         self.reusable = same && plain && self.free == problem.bilateral;
         if self.reusable {
             return;
         }
-        self.system.open_everything();
+        self.system.prepare_to_gather(problem);
         let (start, column) = self.system.pattern();
         self.order.prepare(start, column, self.system.columns());
         self.dependence = dependence;
@@ -113,8 +118,10 @@ impl ClosedRows {
     /// [`null_direction`](Self::null_direction).
     pub(crate) fn consider(&mut self, row: usize) -> Relation {
         let closed = self.len();
-        self.reach[..closed].fill(0.0);
+        // Only what an earlier row left is not zero.
+        self.reach[self.reached.clone()].fill(0.0);
         let first = self.system.gather(row, &self.position, closed, &mut self.reach);
+        self.reached = first..closed;
         let square = self.factor.forward(&mut self.reach[..closed], first);
         let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;

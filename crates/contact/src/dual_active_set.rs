@@ -370,7 +370,9 @@ impl DualActiveSet {
         solution.active.sort_unstable();
         solution.iterations = self.pivots;
         solution.inconsistency = self.shift.inconsistency(closed.system.scale);
-        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        let Solution { force, acceleration, .. } = solution;
+        solution.residuals =
+            self.checker.check_with(&self.closed.system.entries, problem, force, acceleration);
         if solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
         }

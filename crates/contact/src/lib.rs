@@ -32,6 +32,7 @@ mod closed_rows;
 mod dependent;
 mod dictionary;
 mod dual_active_set;
+mod entries;
 mod error;
 mod held_rows;
 mod impact;
