@@ -150,11 +150,22 @@ impl ClosedRows {
     /// Closes the rows with a flag, as far as they are independent, in the order that keeps the factor narrow. Returns
     /// whether every bilateral one was.
     pub(crate) fn close_flagged(&mut self, flags: &[bool]) -> bool {
+        self.close_independent(flags, 0.0)
+    }
+
+    /// The same, of unilateral rows only those that leave more than `least` of their squares.
+    pub(crate) fn close_independent(&mut self, flags: &[bool], least: f64) -> bool {
         let mut independent = true;
         for place in 0..self.order.rows.len() {
             let row = self.order.rows[place] as usize;
-            if flags[row] && !self.is_closed(row) && !self.try_close(row) {
+            if !flags[row] || self.is_closed(row) {
+                continue;
+            }
+            let relation = self.consider(row);
+            if relation.dependent {
                 independent &= !self.free[row];
+            } else if relation.complement > least || self.free[row] {
+                self.close(row, relation);
             }
         }
         self.narrow_envelope = self.factor.envelope();

@@ -37,8 +37,9 @@ const LARGER: f64 = 2.0;
 pub struct DualActiveSet {
     pub(crate) settings: Settings,
     pub(crate) closed: ClosedRows,
-    /// Rows that start closed.
+    /// Rows that start closed, and whether they are those of an earlier answer.
     pub(crate) start: Vec<bool>,
+    pub(crate) is_warm: bool,
     /// The same while others are tried.
     pub(crate) set_aside: Vec<bool>,
     pub(crate) shift: Shift,
