@@ -57,6 +57,8 @@ pub(crate) struct ClosedRows {
     /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; what forces then
     /// lack is left to refinement.
     pub(crate) spread: f64,
+    /// Whether there was such a raise in the last solve.
+    pub(crate) was_spread: bool,
 }
 
 /// How a row relates to the closed rows.
@@ -74,6 +76,7 @@ impl ClosedRows {
     pub(crate) fn load(&mut self, problem: &Problem, dependence: f64) {
         let same = self.system.load(problem);
         let n = problem.len();
+        self.was_spread = self.spread > 0.0 && self.dependence == dependence;
         for values in [&mut self.force, &mut self.acceleration, &mut self.reach, &mut self.step] {
             values.clear();
             values.resize(n, 0.0);

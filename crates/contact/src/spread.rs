@@ -25,6 +25,19 @@ const REDUNDANT: usize = 5;
 /// One in so many rows independent at least: where fewer are (a box on a floor), pivots are cheap.
 const SUBSTANTIAL: usize = 4;
 
+/// Part of the scale below which the acceleration of a row that depends on closed ones is none, and one in so many of them
+/// that must have none: else they contradict the closed ones, and some must open.
+const REST: f64 = 1e-4;
+const CONSISTENT: usize = 2;
+
+/// Sum of terms, in units of the scale, beyond which accelerations of dependent rows mean nothing: the closed ones nearly
+/// depend on each other, as in a chain on a floor.
+const UNUSABLE: f64 = 1e6;
+
+/// Exchanges that may leave no fewer rows wrong, and how many rows at most are exchanged one by one.
+const TRIES: usize = 2;
+const FEW: usize = 6;
+
 /// One in so many rows wrong with all closed, at most: else they are not redundant, but nearly so, and forces are large.
 const WRONG: usize = 4;
 
@@ -33,12 +46,18 @@ impl DualActiveSet {
     pub(crate) fn is_worth_spreading(&self, flagged: usize) -> bool {
         let closed = self.closed.len();
         let pulls = |&row: &usize| self.closed.force[row] < 0.0 && !self.closed.free[row];
+        let rest = REST * self.closed.system.scale;
+        let rests = |&row: &usize| {
+            self.start[row] && !self.closed.is_closed(row) && self.closed.acceleration[row].abs() <= rest
+        };
         self.settings.selection == ForceSelection::Vertex
             && self.closed.proximal == 0.0
             && self.closed.kept == 0
             && (flagged - closed) * REDUNDANT >= flagged.max(1)
             && closed * SUBSTANTIAL >= flagged
             && self.closed.rows.iter().any(pulls)
+            && (self.closed.terms > UNUSABLE * self.closed.system.scale
+                || (0..self.start.len()).filter(rests).count() * CONSISTENT >= flagged - closed)
     }
 
     /// Closes all rows with a flag, redundant ones too, and exchanges wrong ones while that leaves fewer. If that does not
@@ -47,14 +66,16 @@ impl DualActiveSet {
         self.try_spread(Self::exchange_spread)
     }
 
-    /// Whether forces were spread in the last solve, over the rows that are to start closed now, and can be so again. If not,
-    /// and they were spread, no rows are closed.
+    /// Whether forces were spread in the last solve, and can be so again, with the rows that are to start closed now. If not,
+    /// and that was tried, no rows are closed.
     pub(crate) fn is_still_spread(&mut self) -> bool {
-        self.closed.spread > 0.0
+        let was_spread = self.closed.was_spread && self.is_warm && self.closed.proximal == 0.0;
+        (self.closed.spread > 0.0 || was_spread)
             && self.try_spread(|solver| {
-                solver.closed.still_closed(&solver.start)
-                    && solver.mark_wrong_spread() == 0
-                    && solver.refine_spread()
+                if solver.closed.spread > 0.0 && solver.closed.still_closed(&solver.start) {
+                    return solver.go_on_spread();
+                }
+                was_spread && solver.exchange_spread()
             })
     }
 
@@ -75,20 +96,49 @@ impl DualActiveSet {
     fn exchange_spread(&mut self) -> bool {
         self.closed.open_all();
         self.closed.spread = RAISE;
+        self.closed.close_flagged(&self.start);
+        self.go_on_spread()
+    }
+
+    /// Exchanges wrong rows until none is left. Returns whether forces are admissible then and closed rows at rest.
+    fn go_on_spread(&mut self) -> bool {
         let mut fewest = self.start.len() / WRONG;
-        for _ in 0..self.settings.block_rounds {
-            self.closed.close_flagged(&self.start);
+        let mut tries = 0;
+        loop {
             let wrong = self.mark_wrong_spread();
             if wrong == 0 {
                 return self.refine_spread();
             }
-            if wrong >= fewest {
+            if wrong < fewest {
+                fewest = wrong;
+                tries = 0;
+            } else {
+                tries += 1;
+            }
+            if tries > TRIES || fewest == self.start.len() / WRONG {
                 return false;
             }
-            fewest = wrong;
-            self.closed.open_all();
+            self.close_marked(wrong);
         }
-        false
+    }
+
+    /// Closes the rows with a flag instead of those that are closed, `wrong` of which differ.
+    fn close_marked(&mut self, wrong: usize) {
+        if wrong > FEW {
+            self.closed.open_all();
+            self.closed.close_flagged(&self.start);
+            return;
+        }
+        for at in (0..self.closed.len()).rev() {
+            if !self.start[self.closed.rows[at]] {
+                self.closed.open_at(at);
+            }
+        }
+        for row in 0..self.start.len() {
+            if self.start[row] && !self.closed.is_closed(row) {
+                self.closed.try_close(row);
+            }
+        }
     }
 
     /// Solves the closed rows, and flags those that should be closed instead. Returns how many that changes.

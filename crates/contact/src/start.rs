@@ -102,10 +102,12 @@ impl DualActiveSet {
         }
         let mut fewest = usize::MAX;
         let mut tries = 0;
+        // The closed rows of an earlier answer stay, unless its forces were spread over more than are independent.
+        let kept = self.is_warm && !self.closed.was_spread;
         for round in 0..self.settings.block_rounds {
             let independent = self.closed.still_closed(&self.start) || {
                 self.closed.open_all();
-                self.closed.close_independent(&self.start, if self.is_warm && round == 0 { 0.0 } else { WELL })
+                self.closed.close_independent(&self.start, if kept && round == 0 { 0.0 } else { WELL })
             };
             let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
