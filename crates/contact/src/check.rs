@@ -152,7 +152,7 @@ impl Checker {
         acceleration: &mut [f64],
     ) -> Residuals {
         self.sum.clear();
-        for ((out, &diagonal), &f) in acceleration.iter_mut().zip(entries.diagonal()).zip(force) {
+        for ((out, &[diagonal, ..]), &f) in acceleration.iter_mut().zip(entries.diagonal()).zip(force) {
             *out = diagonal * f;
             self.sum.push(out.abs());
         }
@@ -167,7 +167,9 @@ impl Checker {
         for (i, out) in acceleration.iter_mut().enumerate() {
             let b = problem.offset[i];
             *out += b;
-            sums.add(entries.diagonal()[i], b, force[i], *out, self.sum[i], problem.bilateral[i]);
+            let [_, s, inverse] = entries.diagonal()[i];
+            let terms = self.sum[i] * inverse;
+            sums.add_scaled(b * inverse, s * force[i], *out * inverse, terms, problem.bilateral[i]);
         }
         sums.finish()
     }
@@ -297,13 +299,17 @@ impl Sums {
         bilateral: bool,
     ) -> f64 {
         let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
-        let scaled = acceleration / s;
-        let residual = if bilateral { scaled.abs() } else { (s * force).min(scaled).abs() };
-        self.broken |= !(residual.is_finite() && (s * force).is_finite() && scaled.is_finite());
-        self.residual = self.residual.max(residual);
-        self.terms = self.terms.max(terms / s);
-        self.scale = self.scale.max(b.abs() / s);
+        self.add_scaled(b / s, s * force, acceleration / s, terms / s, bilateral);
         s
+    }
+
+    /// Adds a row whose quantities are scaled.
+    fn add_scaled(&mut self, b: f64, force: f64, acceleration: f64, terms: f64, bilateral: bool) {
+        let residual = if bilateral { acceleration.abs() } else { force.min(acceleration).abs() };
+        self.broken |= !(residual.is_finite() && force.is_finite() && acceleration.is_finite());
+        self.residual = self.residual.max(residual);
+        self.terms = self.terms.max(terms);
+        self.scale = self.scale.max(b.abs());
     }
 
     fn finish(self) -> Residuals {

@@ -26,6 +26,9 @@ use crate::warm::WarmStart;
 /// Part of a unit change below which a force does not count as changed by a null direction: rounding.
 const BLOCKING: f64 = 1e-14;
 
+/// The same at most, however nearly the closed rows depend on each other.
+const LARGEST_ROUNDING: f64 = 1e-9;
+
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 pub(crate) const REFINED: f64 = 0.125;
 
@@ -302,7 +305,7 @@ impl DualActiveSet {
         let closed = &self.closed;
         let largest = closed.step[..closed.len()].iter().fold(1.0, |m: f64, z| m.max(z.abs()));
         let inverse = closed.factor.largest_inverse_diagonal();
-        BLOCKING * largest * (inverse * inverse).max(1.0)
+        (BLOCKING * (inverse * inverse).max(1.0)).min(LARGEST_ROUNDING) * largest
     }
 
     /// The first unilateral force to vanish within a step of length `limit`, among those that it changes by more than

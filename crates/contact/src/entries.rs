@@ -32,9 +32,12 @@ pub(crate) struct Entries {
     touching: Vec<[u32; 2]>,
     /// Other row, and places, of one row's products.
     found: Vec<[u32; 3]>,
-    /// A_ij [1/kg] by entry, and A_ii.
+    /// A_ij [1/kg] by entry.
     value: Vec<f64>,
-    diagonal: Vec<f64>,
+    /// A_ii, s_i = sqrt(A_ii) (1 where A_ii = 0) and 1/s_i.
+    diagonal: Vec<[f64; 3]>,
+    /// The coefficients and inverse masses that these were formed from.
+    formed_from: [Vec<f64>; 2],
     /// J M⁻¹ by place.
     response: Vec<f64>,
 }
@@ -44,7 +47,12 @@ impl Entries {
     /// worth finding. Returns whether there are entries.
     pub(crate) fn load(&mut self, bodies: &BodyRows) -> bool {
         let listed = self.prepare(bodies);
-        if listed {
+        let BodyRows { rows, inverse_mass } = bodies;
+        let [coefficients, masses] = &self.formed_from;
+        let same = self.are_formed() && *coefficients == rows.value && masses == inverse_mass;
+        if listed && !same {
+            self.formed_from[0].clone_from(&rows.value);
+            self.formed_from[1].clone_from(inverse_mass);
             self.form(bodies);
         }
         listed
@@ -60,8 +68,8 @@ impl Entries {
         !self.value.is_empty()
     }
 
-    /// A_ii [1/kg] by row.
-    pub(crate) fn diagonal(&self) -> &[f64] {
+    /// A_ii [1/kg], s_i = sqrt(A_ii) (1 where A_ii = 0) and 1/s_i by row.
+    pub(crate) fn diagonal(&self) -> &[[f64; 3]] {
         &self.diagonal
     }
 
@@ -93,7 +101,10 @@ impl Entries {
         self.diagonal.clear();
         self.diagonal.extend(rows.start.windows(2).map(|ends| {
             let range = ends[0]..ends[1];
-            j[range.clone()].iter().zip(&self.response[range]).map(|(v, y)| v * y).sum::<f64>()
+            let products = j[range.clone()].iter().zip(&self.response[range]);
+            let diagonal: f64 = products.map(|(v, y)| v * y).sum();
+            let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
+            [diagonal, s, 1.0 / s]
         }));
         let mut begin = 0;
         self.value.clear();
@@ -209,5 +220,34 @@ impl Entries {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ProblemError;
+    use crate::matrix::Matrix;
+    use crate::problem::Problem;
+
+    #[test]
+    fn entries_are_those_of_the_product_from_the_second_time_on() -> Result<(), ProblemError> {
+        // Rows 0 and 1 share a body that moves, rows 1 and 2 one that does not.
+        let rows =
+            [(0, 0, 1.0), (0, 1, 2.0), (1, 0, -3.0), (1, 1, 0.5), (1, 2, 4.0), (2, 2, 5.0), (2, 3, 1.0)];
+        let problem = Problem::from_rows(&rows, &[0.5, 2.0, 0.0, 1.0], &[0.0; 3])?;
+        let Matrix::Bodies(bodies) = &problem.matrix else { panic!("rows of bodies") };
+        let mut entries = Entries::default();
+        assert!(!entries.load(bodies));
+        assert!(entries.load(bodies));
+        let dense = problem.dense();
+        let found: Vec<_> = entries.off_diagonal().collect();
+        assert_eq!(found, [(0, 1, dense[0][1])]);
+        let diagonal: Vec<f64> = entries.diagonal().iter().map(|[a, ..]| *a).collect();
+        assert_eq!(diagonal, [dense[0][0], dense[1][1], dense[2][2]]);
+        let mut by_rows = Vec::new();
+        entries.write_by_rows(&[1.0, 2.0, 1.0], &mut by_rows);
+        assert_eq!((entries.of_row(1), by_rows[1]), ((1..2, &[0][..]), 2.0 * dense[0][1]));
+        Ok(())
     }
 }
