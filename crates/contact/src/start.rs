@@ -112,7 +112,7 @@ impl DualActiveSet {
             let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
             self.closed.accelerate();
-            if round == 0 && independent && self.is_worth_spreading(flagged) {
+            if round == 0 && self.is_worth_spreading(flagged) {
                 if self.spread_forces() {
                     return true;
                 }
