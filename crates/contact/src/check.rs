@@ -14,6 +14,7 @@
 
 use std::fmt;
 
+use crate::entries::Entries;
 use crate::matrix::{BodyRows, Matrix, SparseMatrix};
 use crate::problem::Problem;
 use crate::settings::Settings;
@@ -73,6 +74,10 @@ pub(crate) struct Checker {
     /// One row of A f by row of f, and which of its places are in use.
     term: Vec<f64>,
     used: Vec<usize>,
+    /// The entries of A, if the rows are of bodies seen before.
+    entries: Entries,
+    /// Per row, Σ_j |A_ij f_j|.
+    sum: Vec<f64>,
 }
 
 impl Checker {
@@ -80,6 +85,31 @@ impl Checker {
     pub(crate) fn check(&mut self, problem: &Problem, force: &[f64], acceleration: &mut [f64]) -> Residuals {
         assert_eq!(force.len(), problem.len(), "one force per row");
         match &problem.matrix {
+            Matrix::Bodies(bodies) => {
+                let mut entries = std::mem::take(&mut self.entries);
+                entries.load(bodies);
+                let residuals = self.check_with(&entries, problem, force, acceleration);
+                self.entries = entries;
+                residuals
+            }
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => {
+                check_matrix(problem, matrix, force, acceleration)
+            }
+        }
+    }
+
+    /// The same, where the entries of the problem's A are formed if there are any.
+    pub(crate) fn check_with(
+        &mut self,
+        entries: &Entries,
+        problem: &Problem,
+        force: &[f64],
+        acceleration: &mut [f64],
+    ) -> Residuals {
+        match &problem.matrix {
+            Matrix::Bodies(_) if entries.are_formed() => {
+                self.check_entries(problem, entries, force, acceleration)
+            }
             Matrix::Bodies(bodies) => self.check_bodies(problem, bodies, force, acceleration),
             Matrix::Symmetric(matrix) | Matrix::General(matrix) => {
                 check_matrix(problem, matrix, force, acceleration)
@@ -111,6 +141,36 @@ impl Checker {
             self.bound.push([bound / s, 1.0 / s]);
         }
         sums.terms = self.largest_terms(bodies, force);
+        sums.finish()
+    }
+
+    fn check_entries(
+        &mut self,
+        problem: &Problem,
+        entries: &Entries,
+        force: &[f64],
+        acceleration: &mut [f64],
+    ) -> Residuals {
+        self.sum.clear();
+        for ((out, &[diagonal, ..]), &f) in acceleration.iter_mut().zip(entries.diagonal()).zip(force) {
+            *out = diagonal * f;
+            self.sum.push(out.abs());
+        }
+        for (i, j, entry) in entries.off_diagonal() {
+            let [to_i, to_j] = [entry * force[j], entry * force[i]];
+            acceleration[i] += to_i;
+            acceleration[j] += to_j;
+            self.sum[i] += to_i.abs();
+            self.sum[j] += to_j.abs();
+        }
+        let mut sums = Sums::default();
+        for (i, out) in acceleration.iter_mut().enumerate() {
+            let b = problem.offset[i];
+            *out += b;
+            let [_, s, inverse] = entries.diagonal()[i];
+            let terms = self.sum[i] * inverse;
+            sums.add_scaled(b * inverse, s * force[i], *out * inverse, terms, problem.bilateral[i]);
+        }
         sums.finish()
     }
 
@@ -239,13 +299,17 @@ impl Sums {
         bilateral: bool,
     ) -> f64 {
         let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
-        let scaled = acceleration / s;
-        let residual = if bilateral { scaled.abs() } else { (s * force).min(scaled).abs() };
-        self.broken |= !(residual.is_finite() && (s * force).is_finite() && scaled.is_finite());
-        self.residual = self.residual.max(residual);
-        self.terms = self.terms.max(terms / s);
-        self.scale = self.scale.max(b.abs() / s);
+        self.add_scaled(b / s, s * force, acceleration / s, terms / s, bilateral);
         s
+    }
+
+    /// Adds a row whose quantities are scaled.
+    fn add_scaled(&mut self, b: f64, force: f64, acceleration: f64, terms: f64, bilateral: bool) {
+        let residual = if bilateral { acceleration.abs() } else { force.min(acceleration).abs() };
+        self.broken |= !(residual.is_finite() && force.is_finite() && acceleration.is_finite());
+        self.residual = self.residual.max(residual);
+        self.terms = self.terms.max(terms);
+        self.scale = self.scale.max(b.abs());
     }
 
     fn finish(self) -> Residuals {

@@ -3,12 +3,17 @@
 //! All quantities are the scaled ones of [`System`]. Bilateral rows are free: their force may take any sign, and they
 //! never leave C.
 
+use std::ops::Range;
+
 use crate::order::RowOrder;
 use crate::problem::Problem;
 use crate::skyline::Skyline;
 use crate::system::System;
 
 const OPEN: u32 = u32::MAX;
+
+/// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
+const LOST: f64 = 0.25;
 
 /// State shared by the phases of the dual active-set method.
 #[derive(Clone, Debug, Default)]
@@ -41,12 +46,19 @@ pub(crate) struct ClosedRows {
     pub(crate) terms_bound: bool,
     /// What [`consider`](Self::consider) found: L⁻¹ Â_Cd.
     reach: Vec<f64>,
+    /// Where that may not be zero.
+    reached: Range<usize>,
     /// Solutions of systems with the factor.
     pub(crate) step: Vec<f64>,
     /// Least Schur complement of a row that is independent of the closed rows.
     dependence: f64,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
+    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; what forces then
+    /// lack is left to refinement.
+    pub(crate) spread: f64,
+    /// Whether there was such a raise in the last solve.
+    pub(crate) was_spread: bool,
 }
 
 /// How a row relates to the closed rows.
@@ -64,20 +76,23 @@ impl ClosedRows {
     pub(crate) fn load(&mut self, problem: &Problem, dependence: f64) {
         let same = self.system.load(problem);
         let n = problem.len();
+        self.was_spread = self.spread > 0.0 && self.dependence == dependence;
         for values in [&mut self.force, &mut self.acceleration, &mut self.reach, &mut self.step] {
             values.clear();
             values.resize(n, 0.0);
         }
+        self.reached = 0..0;
         let plain = self.proximal == 0.0 && self.kept == 0 && self.dependence == dependence;
         self.reusable = same && plain && self.free == problem.bilateral;
         if self.reusable {
             return;
         }
-        self.system.open_everything();
+        self.system.prepare_to_gather(problem);
         let (start, column) = self.system.pattern();
         self.order.prepare(start, column, self.system.columns());
         self.dependence = dependence;
         self.proximal = 0.0;
+        self.spread = 0.0;
         self.factor.reset(n);
         self.rows.clear();
         self.rows.reserve(n);
@@ -106,12 +121,15 @@ impl ClosedRows {
     /// [`null_direction`](Self::null_direction).
     pub(crate) fn consider(&mut self, row: usize) -> Relation {
         let closed = self.len();
-        self.reach[..closed].fill(0.0);
+        // Only what an earlier row left is not zero.
+        self.reach[self.reached.clone()].fill(0.0);
         let first = self.system.gather(row, &self.position, closed, &mut self.reach);
+        self.reached = first..closed;
         let square = self.factor.forward(&mut self.reach[..closed], first);
-        let diagonal = if self.system.movable[row] { 1.0 + self.proximal } else { 0.0 };
+        let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;
-        Relation { complement, dependent: complement <= self.dependence, first }
+        let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
+        Relation { complement, dependent: complement <= dependence, first }
     }
 
     /// Closes the row last considered, which must be independent.
@@ -135,11 +153,22 @@ impl ClosedRows {
     /// Closes the rows with a flag, as far as they are independent, in the order that keeps the factor narrow. Returns
     /// whether every bilateral one was.
     pub(crate) fn close_flagged(&mut self, flags: &[bool]) -> bool {
+        self.close_independent(flags, 0.0)
+    }
+
+    /// The same, of unilateral rows only those that leave more than `least` of their squares.
+    pub(crate) fn close_independent(&mut self, flags: &[bool], least: f64) -> bool {
         let mut independent = true;
         for place in 0..self.order.rows.len() {
             let row = self.order.rows[place] as usize;
-            if flags[row] && !self.is_closed(row) && !self.try_close(row) {
+            if !flags[row] || self.is_closed(row) {
+                continue;
+            }
+            let relation = self.consider(row);
+            if relation.dependent {
                 independent &= !self.free[row];
+            } else if relation.complement > least || self.free[row] {
+                self.close(row, relation);
             }
         }
         self.narrow_envelope = self.factor.envelope();

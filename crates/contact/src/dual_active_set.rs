@@ -26,16 +26,25 @@ use crate::warm::WarmStart;
 /// Part of a unit change below which a force does not count as changed by a null direction: rounding.
 const BLOCKING: f64 = 1e-14;
 
+/// The same at most, however nearly the closed rows depend on each other.
+const LARGEST_ROUNDING: f64 = 1e-9;
+
 /// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
-const REFINED: f64 = 0.125;
+pub(crate) const REFINED: f64 = 0.125;
+
+/// Part that a dependent row must have in a closed one, in units of its own, to take its place.
+const LARGER: f64 = 2.0;
 
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
     pub(crate) settings: Settings,
     pub(crate) closed: ClosedRows,
-    /// Rows that start closed.
+    /// Rows that start closed, and whether they are those of an earlier answer.
     pub(crate) start: Vec<bool>,
+    pub(crate) is_warm: bool,
+    /// The same while others are tried.
+    pub(crate) set_aside: Vec<bool>,
     pub(crate) shift: Shift,
     /// Whether contacts contradicted each other in the last attempt, connectors not counted.
     pub(crate) contacts_contradict: bool,
@@ -107,6 +116,17 @@ impl DualActiveSet {
             }
         }
         Err(failure.expect("there is at least one attempt, and each gives an answer or an error"))
+    }
+
+    /// As [`run`](Self::run) with contradictions solved by least squares, but without an attempt at large forces.
+    pub(crate) fn run_modestly(
+        &mut self,
+        problem: &Problem,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let Settings { dependence, inconsistency, .. } = self.settings;
+        let attempt = Attempt { dependence, contradiction: inconsistency };
+        self.attempt(problem, Start::Nothing, solution, attempt)
     }
 
     /// As [`run`](Self::run), but returns `Ok(false)` once many pivots are in sight on a large problem.
@@ -184,6 +204,10 @@ impl DualActiveSet {
         loop {
             let noise = self.noise();
             if let Some(row) = self.worst_open_row(problem, noise) {
+                if self.closed.spread > 0.0 {
+                    self.gather_forces();
+                    continue;
+                }
                 match self.drive(row, attempt) {
                     End::Done => self.narrow_factor(),
                     other => return other,
@@ -196,10 +220,38 @@ impl DualActiveSet {
                 refinements += 1;
                 self.closed.refine();
                 self.closed.accelerate();
+            } else if self.exchange_connector(noise) {
+                refinements = 0;
             } else {
                 return End::Done;
             }
         }
+    }
+
+    /// Closes the bilateral row that moves most although it depends on closed ones, in place of the one in which it has the
+    /// largest part, if that exceeds `LARGER`. The closed rows are then further from dependent on each other, by that factor
+    /// at least, and magnify the rounding of their forces less (M. Gu, S. Eisenstat, "Efficient algorithms for computing a
+    /// strong rank-revealing QR factorization", SIAM Journal on Scientific Computing 17, 1996, 848-869). Returns whether it
+    /// did.
+    fn exchange_connector(&mut self, noise: f64) -> bool {
+        let closed = &mut self.closed;
+        let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
+        let worst =
+            open.max_by(|&p, &q| closed.acceleration[p].abs().total_cmp(&closed.acceleration[q].abs()));
+        let Some(row) = worst.filter(|&row| closed.acceleration[row].abs() > noise) else { return false };
+        closed.consider(row);
+        closed.find_response();
+        let connectors = (0..closed.len()).filter(|&at| closed.free[closed.rows[at]]);
+        let most = connectors.max_by(|&p, &q| closed.step[p].abs().total_cmp(&closed.step[q].abs()));
+        let Some(at) = most.filter(|&at| closed.step[at].abs() > LARGER) else { return false };
+        self.pivots += 1;
+        closed.kept -= usize::from(at < closed.kept);
+        closed.open_at(at);
+        closed.try_close(row);
+        closed.solve_closed();
+        closed.accelerate();
+        self.make_forces_admissible();
+        true
     }
 
     /// The open row that closes fastest, if any does.
@@ -229,7 +281,8 @@ impl DualActiveSet {
             } else {
                 -self.closed.acceleration[row] / relation.complement
             };
-            match self.blocking(full) {
+            let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
+            match self.blocking(full, rounding) {
                 Some((at, length)) => {
                     self.advance(row, length);
                     self.closed.acceleration[row] += length * relation.complement.max(0.0);
@@ -246,13 +299,23 @@ impl DualActiveSet {
         }
     }
 
-    /// The first unilateral force to vanish within a step of length `limit`: its position and the length.
-    fn blocking(&self, limit: f64) -> Option<(usize, f64)> {
+    /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on each other, by
+    /// the reciprocal of the least part that one of them leaves of its square.
+    fn rounding_of_response(&self) -> f64 {
+        let closed = &self.closed;
+        let largest = closed.step[..closed.len()].iter().fold(1.0, |m: f64, z| m.max(z.abs()));
+        let inverse = closed.factor.largest_inverse_diagonal();
+        (BLOCKING * (inverse * inverse).max(1.0)).min(LARGEST_ROUNDING) * largest
+    }
+
+    /// The first unilateral force to vanish within a step of length `limit`, among those that it changes by more than
+    /// `rounding`: its position and the length.
+    fn blocking(&self, limit: f64, rounding: f64) -> Option<(usize, f64)> {
         let closed = &self.closed;
         let mut found = None;
         let mut shortest = limit;
         for (at, &row) in closed.rows.iter().enumerate() {
-            if closed.step[at] > BLOCKING && !closed.free[row] {
+            if closed.step[at] > rounding && !closed.free[row] {
                 let length = closed.force[row] / closed.step[at];
                 if length < shortest {
                     shortest = length;
@@ -311,7 +374,9 @@ impl DualActiveSet {
         solution.active.sort_unstable();
         solution.iterations = self.pivots;
         solution.inconsistency = self.shift.inconsistency(closed.system.scale);
-        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        let Solution { force, acceleration, .. } = solution;
+        solution.residuals =
+            self.checker.check_with(&self.closed.system.entries, problem, force, acceleration);
         if solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
         }

@@ -53,6 +53,11 @@ impl Skyline {
         length * length.saturating_sub(1) / 2 - self.first.iter().sum::<usize>()
     }
 
+    /// The reciprocal of the least diagonal entry; zero without rows.
+    pub(crate) fn largest_inverse_diagonal(&self) -> f64 {
+        self.inverse_diagonal.iter().fold(0.0, |m: f64, d| m.max(*d))
+    }
+
     /// y := L⁻¹ y, where y is zero before `from`. Returns the squared length of the result.
     pub(crate) fn forward(&self, y: &mut [f64], from: usize) -> f64 {
         let mut square = 0.0;

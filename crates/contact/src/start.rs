@@ -16,6 +16,10 @@ use crate::warm::WarmStart;
 const REDUNDANT: usize = 5;
 const SUBSTANTIAL: usize = 4;
 
+/// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the forces,
+/// which of them are wrong means nothing. Pivots close what has less.
+const WELL: f64 = 1e-7;
+
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
 const MOVING: usize = 50;
 
@@ -70,6 +74,7 @@ impl DualActiveSet {
     pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
         let limit = self.settings.start_closed * system.scale;
+        self.is_warm = !matches!(start, Start::Nothing);
         let lookup = match start {
             Start::Earlier(warm) => Some(warm.lookup(problem)),
             Start::Nothing => None,
@@ -92,20 +97,32 @@ impl DualActiveSet {
     /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
     /// others and the bilateral rows did not come first.
     pub(crate) fn exchange_blocks(&mut self) -> bool {
+        if self.is_still_spread() {
+            return true;
+        }
         let mut fewest = usize::MAX;
         let mut tries = 0;
-        for _ in 0..self.settings.block_rounds {
+        // The closed rows of an earlier answer stay, unless its forces were spread over more than are independent.
+        let kept = self.is_warm && !self.closed.was_spread;
+        for round in 0..self.settings.block_rounds {
             let independent = self.closed.still_closed(&self.start) || {
                 self.closed.open_all();
-                self.closed.close_flagged(&self.start)
+                self.closed.close_independent(&self.start, if kept && round == 0 { 0.0 } else { WELL })
             };
             let flagged = self.start.iter().filter(|start| **start).count();
             self.closed.solve_closed();
             self.closed.accelerate();
+            if round == 0 && self.is_worth_spreading(flagged) {
+                if self.spread_forces() {
+                    return true;
+                }
+                self.closed.close_independent(&self.start, WELL);
+                self.closed.solve_closed();
+                self.closed.accelerate();
+            }
             let limit = -self.noise();
             let mut wrong = 0;
             let closed = &self.closed;
-
             for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
                 let is_closed = closed.is_closed(row);
                 let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };

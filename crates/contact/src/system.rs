@@ -4,6 +4,7 @@
 //! diagonal and nothing depends on units. For rows of bodies Â = Ĵ Ĵᵀ with Ĵ_ik = J_ik sqrt(M⁻¹_k)/s_i, and Â is never
 //! formed: an entry costs at most six products and a product Â f̂ costs twelve per row. Columns without mass drop out.
 
+use crate::entries::Entries;
 use crate::matrix::{BodyRows, Matrix, SparseMatrix};
 use crate::problem::Problem;
 
@@ -20,6 +21,8 @@ pub(crate) struct System {
     value: Vec<f64>,
     /// s_i.
     pub(crate) row_scale: Vec<f64>,
+    /// 1/s_i.
+    inverse_scale: Vec<f64>,
     /// b̂_i.
     pub(crate) b: Vec<f64>,
     /// max |b̂_i|, or 1 where b = 0.
@@ -34,7 +37,10 @@ pub(crate) struct System {
     /// The matrix that is loaded, to know it again.
     source_rows: SparseMatrix,
     source_mass: Vec<f64>,
-    /// Doubly linked lists of the entries of closed rows, one list per column.
+    /// The entries of A, if the rows are of bodies seen before, and then those of Â off the diagonal, by rows.
+    pub(crate) entries: Entries,
+    entry: Vec<f64>,
+    /// Otherwise doubly linked lists of the coefficients of closed rows, one list per column.
     head: Vec<u32>,
     next: Vec<u32>,
     previous: Vec<u32>,
@@ -58,7 +64,7 @@ impl System {
         let same = self.is_loaded(problem);
         self.b.clear();
         if same {
-            self.b.extend(problem.offset.iter().zip(&self.row_scale).map(|(b, s)| b * (1.0 / s)));
+            self.b.extend(problem.offset.iter().zip(&self.inverse_scale).map(|(b, inverse)| b * inverse));
         } else {
             let (rows, mass, _) = source(problem);
             self.source_rows.clone_from(rows);
@@ -69,6 +75,7 @@ impl System {
             self.column.clear();
             self.value.clear();
             self.row_scale.clear();
+            self.inverse_scale.clear();
             self.movable.clear();
             match &problem.matrix {
                 Matrix::Bodies(bodies) => self.load_bodies(bodies, &problem.offset),
@@ -103,16 +110,28 @@ impl System {
             let inverse = self.finish_row(square, b);
             self.value[begin..].iter_mut().for_each(|v| *v *= inverse);
         }
-        self.head.clear();
-        self.head.resize(bodies.inverse_mass.len(), NONE);
-        self.next.clear();
-        self.next.resize(self.value.len(), NONE);
-        self.previous.clear();
-        self.previous.resize(self.value.len(), NONE);
         self.motion.clear();
         self.motion.resize(bodies.inverse_mass.len(), [0.0; 2]);
         self.speed.clear();
         self.speed.resize(bodies.inverse_mass.len(), 0.0);
+    }
+
+    /// Prepares for [`gather`](Self::gather), with all rows open: forms the entries of Â, or begins the lists.
+    pub(crate) fn prepare_to_gather(&mut self, problem: &Problem) {
+        match &problem.matrix {
+            Matrix::Bodies(bodies) if self.entries.load(bodies) => {
+                self.entries.write_by_rows(&self.inverse_scale, &mut self.entry);
+            }
+            Matrix::Bodies(_) => {
+                self.head.clear();
+                self.head.resize(self.root.len(), NONE);
+                self.next.clear();
+                self.next.resize(self.value.len(), NONE);
+                self.previous.clear();
+                self.previous.resize(self.value.len(), NONE);
+            }
+            Matrix::Symmetric(_) | Matrix::General(_) => self.entries.forget(),
+        }
     }
 
     fn load_matrix(&mut self, matrix: &SparseMatrix, offset: &[f64]) {
@@ -143,6 +162,7 @@ impl System {
         self.movable.push(diagonal > 0.0);
         self.start.push(self.value.len());
         self.row_scale.push(s);
+        self.inverse_scale.push(inverse);
         self.b.push(b * inverse);
         inverse
     }
@@ -151,6 +171,17 @@ impl System {
     /// there is none). `position` gives the place of each closed row.
     pub(crate) fn gather(&self, d: usize, position: &[u32], closed: usize, y: &mut [f64]) -> usize {
         let mut first = closed;
+        if self.entries.are_formed() {
+            let (range, others) = self.entries.of_row(d);
+            for (&other, &value) in others.iter().zip(&self.entry[range]) {
+                let at = position[other as usize];
+                if at != NONE {
+                    y[at as usize] = value;
+                    first = first.min(at as usize);
+                }
+            }
+            return first;
+        }
         for e in self.start[d]..self.start[d + 1] {
             let (k, v) = (self.column[e] as usize, self.value[e]);
             if self.bodies {
@@ -170,14 +201,13 @@ impl System {
         first
     }
 
-    /// Takes all rows off the lists of closed rows.
-    pub(crate) fn open_everything(&mut self) {
-        self.head.fill(NONE);
+    fn has_lists(&self) -> bool {
+        self.bodies && !self.entries.are_formed()
     }
 
     /// Lists a row as closed.
     pub(crate) fn close(&mut self, row: usize) {
-        if self.bodies {
+        if self.has_lists() {
             for e in self.start[row]..self.start[row + 1] {
                 let k = self.column[e] as usize;
                 let old = self.head[k];
@@ -193,7 +223,7 @@ impl System {
 
     /// Takes a row off the lists of closed rows.
     pub(crate) fn open(&mut self, row: usize) {
-        if self.bodies {
+        if self.has_lists() {
             for e in self.start[row]..self.start[row + 1] {
                 let (before, after) = (self.previous[e], self.next[e]);
                 match before {

@@ -5,7 +5,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use halfgap_collision::BodyId;
 use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, Inertia};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 const LAWS: [ImpactLaw; 6] = [
     ImpactLaw::Simultaneous,
@@ -171,14 +170,7 @@ fn check(movers: &[Mover], ties: &[Tie], impact: &Impact, what: &str) -> Result<
 }
 
 proptest! {
-    // The same impacts every time: of some 100,000, one has connectors that depend on each other so nearly that its answer
-    // varies by more than is allowed here.
-    #![proptest_config(ProptestConfig {
-        cases: 1500,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_law_loses_energy_and_leaves_no_row_violated((movers, ties) in any_impact()) {
@@ -215,16 +207,48 @@ proptest! {
 
     #[test]
     fn the_order_of_rows_changes_no_simultaneous_impact((movers, ties) in any_impact()) {
-        let reversed: Vec<Tie> = ties.iter().rev().copied().collect();
-        let (forth, impact) = resolve(ImpactLaw::Simultaneous, &movers, &ties);
-        let (back, _) = resolve(ImpactLaw::Simultaneous, &movers, &reversed);
-        let scale = largest_impulse(&impact);
-        for (p, q) in forth.iter().zip(&back) {
-            for k in 0..3 {
-                prop_assert!((p.velocity[k] - q.velocity[k]).abs() <= 1e-9 * scale * scale);
-            }
-        }
+        let (difference, allowed) = difference_by_order(&movers, &ties);
+        prop_assert!(
+            difference <= allowed || difference <= 4.0 * sensitivity(&movers, &ties),
+            "speeds differ by {}, {} allowed", difference, allowed
+        );
     }
+}
+
+fn reversed(ties: &[Tie]) -> Vec<Tie> {
+    ties.iter().rev().copied().collect()
+}
+
+/// Largest difference between the velocities of the same bodies.
+fn difference(these: &[Mover], those: &[Mover]) -> f64 {
+    let pairs = these.iter().zip(those).flat_map(|(p, q)| p.velocity.into_iter().zip(q.velocity));
+    pairs.fold(0.0, |most, (p, q)| most.max((p - q).abs()))
+}
+
+/// By how much the motion after a simultaneous impact depends on the order of its rows, and by how much it may.
+fn difference_by_order(movers: &[Mover], ties: &[Tie]) -> (f64, f64) {
+    let (forth, impact) = resolve(ImpactLaw::Simultaneous, movers, ties);
+    let (back, _) = resolve(ImpactLaw::Simultaneous, movers, &reversed(ties));
+    let scale = largest_impulse(&impact);
+    (difference(&forth, &back), 1e-9 * scale * scale)
+}
+
+/// By how much the motion after a simultaneous impact changes with speeds that change by a few roundings.
+///
+/// Ricochets enlarge rounding, and a row that an earlier round left at rest may open by rounding in a later one: then the
+/// next round leaves it out, which is another motion. What rounding decides the order of rows may decide too.
+fn sensitivity(movers: &[Mover], ties: &[Tie]) -> f64 {
+    let (as_given, _) = resolve(ImpactLaw::Simultaneous, movers, ties);
+    let varied = |variant: usize| {
+        let mut varied = movers.to_vec();
+        for (k, velocity) in varied.iter_mut().flat_map(|mover| &mut mover.velocity).enumerate() {
+            let roundings = ((k * 5 + variant * 3) % 7) as f64 - 3.0;
+            *velocity *= 1.0 + roundings * f64::EPSILON;
+        }
+        varied
+    };
+    let change = |variant| difference(&as_given, &resolve(ImpactLaw::Simultaneous, &varied(variant), ties).0);
+    (0..21).map(change).fold(0.0, f64::max)
 }
 
 fn row_of_discs(count: usize, elasticity: f64, walls: bool) -> (Vec<Mover>, Vec<Tie>) {
@@ -406,4 +430,74 @@ fn the_background_is_shared_by_no_rows() {
     assert!(!rows[0].shares_movable_body(&rows[1]) && rows[0].shares_movable_body(&rows[0]));
     assert_eq!(rows[0].coupling(&rows[1]), 0.0);
     assert_eq!(rows[0].coupling(&rows[0]), 1.0);
+}
+
+fn tie(bodies: [usize; 2], angle: f64, moments: [f64; 2], elasticity: f64, bilateral: bool) -> Tie {
+    Tie { bodies, angle, moments, elasticity, bilateral }
+}
+
+fn mover_of(inverse_mass: f64, inverse_moment: f64, velocity: [f64; 3]) -> Mover {
+    Mover { inertia: Inertia { inverse_mass, inverse_moment }, velocity }
+}
+
+#[test]
+fn which_of_four_connectors_of_one_body_are_independent_does_not_show() {
+    // Three of the four hold the body; some three do so badly, and magnify what rounding leaves of the fourth.
+    let movers = [
+        mover_of(1.0007670227180745, 3.3333333333333335, [0.6514338096216623, 0.0, 0.0]),
+        Mover::fixed([0.0; 3]),
+        mover_of(0.6525856843542307, 0.5034361718141036, [0.0, 0.53879329423446, 0.0]),
+    ];
+    let once = [
+        tie([0, 1], 0.0, [0.0, 0.0], 0.0, false),
+        tie([0, 2], 3.0176258530528237, [0.0, -0.9618792360727745], 0.0, false),
+        tie([2, 1], -1.7101940030013938, [-0.2765465693573402, 0.0], 0.0, true),
+        tie([2, 1], -1.9985362460097595, [0.0, 0.0], 1.0, false),
+        tie([1, 2], 2.9923638326742905, [0.0, 0.7825371243026156], 0.0, true),
+        tie([2, WORLD], -3.004724154428924, [0.7072593263848038, 0.0], 0.0, true),
+        tie([1, 0], 0.0, [0.0, -0.2979929408741181], 0.0, true),
+        tie([2, 1], 1.0557504242128442, [-0.905557674438499, 0.0], 0.0, true),
+    ];
+    let ties: Vec<Tie> = once.into_iter().flat_map(|tie| [tie, tie]).collect();
+    let (difference, _) = difference_by_order(&movers, &ties);
+    assert!(difference < 1e-12, "{difference}");
+    let (_, impact) = resolve(ImpactLaw::Simultaneous, &movers, &ties);
+    assert!(impact.solves() <= 2, "{} solves", impact.solves());
+}
+
+#[test]
+fn connectors_that_nearly_depend_on_each_other_have_modest_impulses() {
+    // The three connectors of the second body depend on each other but for 1e-6, and all contacts work against them.
+    let movers = [
+        mover_of(
+            0.7149984689577534,
+            0.3531101210289318,
+            [-0.08881969859850015, -0.4975416733522855, -0.7399501753470457],
+        ),
+        mover_of(1.0343908311578132, 0.6436807219051828, [-0.5038051740265443, 0.0, -0.21599106749031474]),
+    ];
+    let ties = [
+        tie([0, 1], -0.7865153697149554, [0.34432814260406275, -0.10457921678829821], 0.0, true),
+        tie([0, 1], -0.7865153697149554, [0.34432814260406275, -0.10457921678829821], 0.0, true),
+        tie([1, WORLD], 3.151910392268887, [0.39609074773566033, 0.0], 1.0, false),
+        tie([1, WORLD], 3.151910392268887, [0.39609074773566033, 0.0], 1.0, false),
+        tie([1, WORLD], -0.8558171187543877, [0.16989834385893568, 0.0], 0.0, true),
+        tie([1, WORLD], -3.1933105770559562, [0.4843724932055978, 0.0], 0.0, true),
+        tie([1, WORLD], -3.1933105770559562, [0.4843724932055978, 0.0], 0.0, true),
+        tie([0, 1], 0.0, [-0.5413488812503479, 0.9908807471889515], 1.0, false),
+        tie([0, 1], 0.0, [-0.5413488812503479, 0.9908807471889515], 1.0, false),
+        tie([1, 0], 0.29085218105853894, [0.05338875587622466, 0.010356381498869638], 1.0, false),
+        tie([1, 0], 0.29085218105853894, [0.05338875587622466, 0.010356381498869638], 1.0, false),
+        tie([1, WORLD], 0.94962360086483, [-0.8683773226620571, 0.0], 0.0, true),
+        tie([0, 1], -1.018670599410737, [0.8425737979145524, 0.0], 1.0, false),
+        tie([1, WORLD], 1.0104483568356868, [0.7500107692938491, 0.0], 1.0, false),
+        tie([1, WORLD], 2.022626734886343, [-0.2923257456333828, 0.0], 0.0, false),
+        tie([0, 1], -2.394476005728737, [0.0, 0.0], 0.0, false),
+        tie([0, 1], -2.394476005728737, [0.0, 0.0], 0.0, false),
+        tie([0, WORLD], 3.099548100366386, [-0.4311383915094525, 0.0], 0.0, true),
+    ];
+    let (difference, _) = difference_by_order(&movers, &ties);
+    assert!(difference < 1e-9, "{difference}");
+    let (_, impact) = resolve(ImpactLaw::Simultaneous, &movers, &ties);
+    assert!(largest_impulse(&impact) < 1e6, "{}", largest_impulse(&impact));
 }

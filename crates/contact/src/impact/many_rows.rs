@@ -9,7 +9,6 @@ use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 use crate::settings::{Contradiction, Settings};
 use crate::solution::Solution;
-use crate::solver::Solver;
 
 /// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the impact's
 /// fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak beside the speeds of its
@@ -20,8 +19,9 @@ const CONTRADICTION: f64 = 1e-3;
 /// A: the least part of a row that the solver tells from none is a root of `Settings::dependence`.
 pub(super) const NEARLY: f64 = 1e-5;
 
-/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given.
-const RAISE: f64 = 1e-6;
+/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given:
+/// first just beyond what the solver takes for dependent (`Settings::dependence`), then more.
+const RAISES: [f64; 2] = [1e-10, 1e-6];
 
 const OUTSIDE: u32 = u32::MAX;
 
@@ -76,17 +76,27 @@ impl ManyRows {
         }
     }
 
-    /// Raises the diagonal of A, so that there is one answer whatever the rows. It lacks a part `RAISE` of what it should
-    /// do to the rates, which the next round makes good, and it takes no less energy.
-    fn raise(&mut self) {
+    /// Raises the diagonal of A by a part of it, so that there is one answer whatever the rows. It lacks that part of what it
+    /// should do to the rates, which the next round makes good, and it takes no less energy.
+    fn raise(&mut self, part: f64) {
         let Matrix::Symmetric(matrix) = &mut self.problem.matrix else { return };
         for row in 0..matrix.rows() {
             for e in matrix.start[row]..matrix.start[row + 1] {
                 if matrix.column[e] == row {
-                    matrix.value[e] *= 1.0 + RAISE;
+                    matrix.value[e] *= 1.0 + part;
                 }
             }
         }
+    }
+}
+
+impl ManyRows {
+    /// Solves with the diagonal raised by as little as will do; nothing if none does.
+    fn solve_raised(&mut self) -> Option<()> {
+        RAISES.iter().find_map(|&part| {
+            self.raise(part);
+            self.solver.run_modestly(&self.problem, &mut self.solution).ok()
+        })
     }
 }
 
@@ -103,7 +113,7 @@ impl Impact {
         many.load_matrix(set, &self.couplings, self.rows.len());
         self.load_rates(many, set);
         self.solves += 1;
-        if let Err(error) = many.solver.solve(&many.problem, &mut many.solution) {
+        if let Err(error) = many.solver.run_modestly(&many.problem, &mut many.solution) {
             if self.is_weak(set) {
                 return Ok(());
             }
@@ -112,10 +122,10 @@ impl Impact {
             {
                 return Err(error);
             }
-            many.raise();
-            many.solver.solve(&many.problem, &mut many.solution).map_err(|_| error)?;
+            many.solve_raised().ok_or(error)?;
         }
-        let left = many.solution.inconsistency * many.scale;
+        // What the solver leaves, rounding or contradictions, is not to be taken for motion.
+        let left = many.solution.residuals.natural * many.scale;
         for (place, &row) in set.iter().enumerate() {
             let impulse = many.solution.force[place];
             self.noise = self.noise.max(left * self.length(row));

@@ -1,0 +1,259 @@
+//! Forces spread over rows that depend on each other, instead of a choice among them.
+//!
+//! Where many contacts are redundant, as in a pyramid of blocks, the rows that would close are more than can be independent.
+//! Which of them carry the forces is then an arbitrary choice, and pivoting to one that has no negative force takes as many
+//! pivots as there are redundant rows. With the diagonal of the factor raised by a little all of them can be closed at once;
+//! the forces are then those of least norm, which weight mostly leaves positive, and what they lack is made good by
+//! refinement, the proximal point method in the forces: each step leaves δ/(δ + λ) of the accelerations in the direction of
+//! an eigenvalue λ of Â, and none are left in a direction of λ = 0 if the rows do not contradict each other. Source of the
+//! method: R. T. Rockafellar, "Monotone operators and the proximal point algorithm", SIAM Journal on Control and
+//! Optimization 14, 1976, 877-898.
+
+use crate::dual_active_set::{DualActiveSet, REFINED};
+use crate::settings::ForceSelection;
+
+/// What the diagonal of the factor is raised by: small beside the least eigenvalue of piles that is not zero, so that few
+/// steps of refinement are needed, large beside rounding.
+const RAISE: f64 = 1e-9;
+
+/// Steps of refinement before it is given up.
+const STEPS: usize = 6;
+
+/// One in so many rows dependent is worth it.
+const REDUNDANT: usize = 5;
+
+/// One in so many rows independent at least: where fewer are (a box on a floor), pivots are cheap.
+const SUBSTANTIAL: usize = 4;
+
+/// Part of the scale below which the acceleration of a row that depends on closed ones is none, and one in so many of them
+/// that must have none: else they contradict the closed ones, and some must open.
+const REST: f64 = 1e-4;
+const CONSISTENT: usize = 2;
+
+/// Sum of terms, in units of the scale, beyond which accelerations of dependent rows mean nothing: the closed ones nearly
+/// depend on each other, as in a chain on a floor.
+const UNUSABLE: f64 = 1e6;
+
+/// Exchanges that may leave no fewer rows wrong, and how many rows at most are exchanged one by one.
+const TRIES: usize = 2;
+const FEW: usize = 6;
+
+/// One in so many rows wrong with all closed, at most: else they are not redundant, but nearly so, and forces are large.
+const WRONG: usize = 4;
+
+impl DualActiveSet {
+    /// Whether of so many rows that are to be closed, many depend on those that are.
+    pub(crate) fn is_worth_spreading(&self, flagged: usize) -> bool {
+        let closed = self.closed.len();
+        let pulls = |&row: &usize| self.closed.force[row] < 0.0 && !self.closed.free[row];
+        let rest = REST * self.closed.system.scale;
+        let rests = |&row: &usize| {
+            self.start[row] && !self.closed.is_closed(row) && self.closed.acceleration[row].abs() <= rest
+        };
+        self.settings.selection == ForceSelection::Vertex
+            && self.closed.proximal == 0.0
+            && self.closed.kept == 0
+            && (flagged - closed) * REDUNDANT >= flagged.max(1)
+            && closed * SUBSTANTIAL >= flagged
+            && self.closed.rows.iter().any(pulls)
+            && (self.closed.terms > UNUSABLE * self.closed.system.scale
+                || (0..self.start.len()).filter(rests).count() * CONSISTENT >= flagged - closed)
+    }
+
+    /// Closes all rows with a flag, redundant ones too, and exchanges wrong ones while that leaves fewer. If that does not
+    /// end well, no rows are closed.
+    pub(crate) fn spread_forces(&mut self) -> bool {
+        self.try_spread(Self::exchange_spread)
+    }
+
+    /// Whether forces were spread in the last solve, and can be so again, with the rows that are to start closed now. If not,
+    /// and that was tried, no rows are closed.
+    pub(crate) fn is_still_spread(&mut self) -> bool {
+        let was_spread = self.closed.was_spread && self.is_warm && self.closed.proximal == 0.0;
+        (self.closed.spread > 0.0 || was_spread)
+            && self.try_spread(|solver| {
+                if solver.closed.spread > 0.0 && solver.closed.still_closed(&solver.start) {
+                    return solver.go_on_spread();
+                }
+                was_spread && solver.exchange_spread()
+            })
+    }
+
+    /// Leaves the rows to start with, and the factor without a raise, if something does not end well.
+    fn try_spread(&mut self, something: impl FnOnce(&mut Self) -> bool) -> bool {
+        let mut set_aside = std::mem::take(&mut self.set_aside);
+        set_aside.clear();
+        set_aside.extend_from_slice(&self.start);
+        let ended_well = something(self);
+        if !ended_well {
+            self.start.copy_from_slice(&set_aside);
+            self.gather_rows();
+        }
+        self.set_aside = set_aside;
+        ended_well
+    }
+
+    fn exchange_spread(&mut self) -> bool {
+        self.closed.open_all();
+        self.closed.spread = RAISE;
+        self.closed.close_flagged(&self.start);
+        self.go_on_spread()
+    }
+
+    /// Exchanges wrong rows until none is left. Returns whether forces are admissible then and closed rows at rest.
+    fn go_on_spread(&mut self) -> bool {
+        let mut fewest = self.start.len() / WRONG;
+        let mut tries = 0;
+        loop {
+            let wrong = self.mark_wrong_spread();
+            if wrong == 0 {
+                return self.refine_spread();
+            }
+            if wrong < fewest {
+                fewest = wrong;
+                tries = 0;
+            } else {
+                tries += 1;
+            }
+            if tries > TRIES || fewest == self.start.len() / WRONG {
+                return false;
+            }
+            self.close_marked(wrong);
+        }
+    }
+
+    /// Closes the rows with a flag instead of those that are closed, `wrong` of which differ.
+    fn close_marked(&mut self, wrong: usize) {
+        if wrong > FEW {
+            self.closed.open_all();
+            self.closed.close_flagged(&self.start);
+            return;
+        }
+        for at in (0..self.closed.len()).rev() {
+            if !self.start[self.closed.rows[at]] {
+                self.closed.open_at(at);
+            }
+        }
+        for row in 0..self.start.len() {
+            if self.start[row] && !self.closed.is_closed(row) {
+                self.closed.try_close(row);
+            }
+        }
+    }
+
+    /// Solves the closed rows, and flags those that should be closed instead. Returns how many that changes.
+    fn mark_wrong_spread(&mut self) -> usize {
+        self.closed.solve_closed();
+        self.closed.accelerate();
+        // Accelerations are known but for the raise times the forces.
+        let limit = -self.noise() - RAISE * self.closed.terms;
+        let closed = &self.closed;
+        let mut wrong = 0;
+        for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
+            let is_closed = closed.is_closed(row);
+            let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
+            *start = is_closed != bad;
+            wrong += usize::from(bad);
+        }
+        wrong
+    }
+
+    /// Refines the forces until the closed rows are at rest. Returns whether they are, with all forces admissible.
+    fn refine_spread(&mut self) -> bool {
+        for _ in 0..STEPS {
+            if self.closed.closed_error() <= REFINED * self.noise() {
+                break;
+            }
+            self.closed.refine();
+            self.closed.accelerate();
+        }
+        self.closed.closed_error() <= self.noise()
+    }
+
+    /// Opens all rows, and ends the raise of the factor.
+    fn gather_rows(&mut self) {
+        self.closed.open_all();
+        self.closed.spread = 0.0;
+    }
+
+    /// Goes on with independent rows only.
+    pub(crate) fn gather_forces(&mut self) {
+        self.start.clear();
+        self.start.extend((0..self.closed.force.len()).map(|row| self.closed.is_closed(row)));
+        self.gather_rows();
+        self.closed.close_flagged(&self.start);
+        self.closed.solve_closed();
+        self.closed.accelerate();
+        self.make_forces_admissible();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Inertia, Problem, Row};
+    use crate::solution::Solution;
+    use crate::solver::Solver;
+    use crate::warm::WarmStart;
+
+    /// Blocks in a pyramid, each on two corners of each block below, which are `arm` [m] from their centres.
+    fn pyramid(layers: usize, arm: f64) -> Problem {
+        let mut problem = Problem::new();
+        let mut below = Vec::new();
+        for layer in 0..layers {
+            let inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+            let blocks: Vec<_> =
+                (layer..layers).map(|_| problem.add_body(inertia).expect("a body")).collect();
+            for (k, &block) in blocks.iter().enumerate() {
+                if layer == 0 {
+                    for side in [-arm, arm] {
+                        problem.add_row(&Row::new(block, [0.0, 1.0, side], -9.81)).expect("a row");
+                    }
+                    continue;
+                }
+                for (other, lower, upper) in
+                    [(k, 0.0, -arm), (k, arm, 0.0), (k + 1, -arm, 0.0), (k + 1, 0.0, arm)]
+                {
+                    let row = Row::new(block, [0.0, 1.0, upper], 0.0);
+                    problem.add_row(&row.against(below[other], [0.0, -1.0, -lower])).expect("a row");
+                }
+            }
+            below = blocks;
+        }
+        problem
+    }
+
+    #[test]
+    fn redundant_contacts_of_a_pyramid_carry_force_without_a_pivot() {
+        let (mut solver, mut solution, mut warm) =
+            (DualActiveSet::default(), Solution::new(), WarmStart::new());
+        let problem = pyramid(8, 0.5);
+        solver.solve(&problem, &mut solution).expect("forces of a pyramid");
+        // 36 blocks that rise and turn: so many rows can be independent.
+        let independent = 2 * 36;
+        assert!(solution.iterations == 0 && solution.active.len() > independent);
+        let ground: f64 = solution.force[..16].iter().sum();
+        assert!((ground - 36.0 / 0.8 * 9.81).abs() < 1e-10, "the floor carries {ground} N of 36 blocks");
+        // Wider blocks have another J, as redundant as this one; the next step of the same ones, the same factor.
+        warm.remember(&problem, &solution);
+        let wider = pyramid(8, 0.51);
+        for next in [&wider, &wider, &problem] {
+            solver.solve_from(next, &warm, &mut solution).expect("forces of a pyramid");
+            assert!(solution.iterations == 0 && solution.active.len() > independent);
+        }
+    }
+
+    #[test]
+    fn contacts_that_are_nearly_redundant_are_solved_by_pivots() {
+        // Each block of its own width: the corners no longer meet, and some of them open.
+        let mut problem = pyramid(8, 0.5);
+        if let crate::matrix::Matrix::Bodies(bodies) = &mut problem.matrix {
+            for (k, value) in bodies.rows.value.iter_mut().enumerate() {
+                *value *= 1.0 + 1e-3 * (k as f64 * 1.7).sin();
+            }
+        }
+        let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
+        solver.solve(&problem, &mut solution).expect("forces of a pyramid");
+        assert!(solution.iterations > 0 && solution.active.len() < problem.len());
+    }
+}
