@@ -85,7 +85,22 @@ fn center_path<M: Motion>(round: &RoundFeature, motion: &M, offset: f64) -> Opti
     })
 }
 
-fn of_centers(a: &Polynomial, b: &Polynomial, radii: f64, inner: bool, target: f64) -> Option<Quadratic> {
+/// True if two centres on parabolas are farther apart than `reach` [m] and never come nearer.
+#[inline]
+pub(crate) fn recede(a: &Polynomial, b: &Polynomial, reach: f64) -> bool {
+    let (d, u) = (a.position - b.position, a.velocity - b.velocity);
+    a.acceleration == b.acceleration && d.dot(u) >= 0.0 && d.length() > reach
+}
+
+/// The quadratic of two centres on parabolas, whose discs have radii of the given sum [m].
+#[inline]
+pub(crate) fn of_centers(
+    a: &Polynomial,
+    b: &Polynomial,
+    radii: f64,
+    inner: bool,
+    target: f64,
+) -> Option<Quadratic> {
     if a.acceleration != b.acceleration {
         return None;
     }

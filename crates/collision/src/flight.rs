@@ -58,6 +58,17 @@ impl Flight {
         &self.start
     }
 
+    /// The parabola of the centre of mass from the start on; `None` if damping bends it.
+    #[must_use]
+    pub fn parabola(&self) -> Option<Polynomial> {
+        let (position, velocity) = (self.start.position, self.start.velocity);
+        (self.linear_rate == 0.0).then_some(Polynomial {
+            position,
+            velocity,
+            acceleration: self.acceleration,
+        })
+    }
+
     /// Acceleration of the centre of mass [m/s^2] at an offset [s], damping included.
     #[must_use]
     pub fn acceleration_at(&self, offset: f64) -> DVec2 {

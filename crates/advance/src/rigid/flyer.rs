@@ -102,6 +102,11 @@ impl Flyer {
         }
     }
 
+    /// When the present segment started.
+    pub(crate) fn start(&self) -> Time {
+        self.start
+    }
+
     /// Offset [s] of a time in the present segment.
     #[inline]
     pub(crate) fn offset(&self, time: Time) -> f64 {

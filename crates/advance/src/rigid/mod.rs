@@ -24,6 +24,7 @@ mod group;
 mod groups;
 mod hops;
 mod impacts;
+mod lane;
 mod law;
 mod ledger;
 mod pairs;

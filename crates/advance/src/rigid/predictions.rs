@@ -1,6 +1,7 @@
 //! What may happen next: which bodies are near each other, and when pairs of them come into contact.
 
-use super::pairs::{Pair, PairId, Prediction};
+use super::lane::{Lane, LaneKind};
+use super::pairs::{Link, Pair, PairId, Prediction};
 use super::path::Path;
 use super::system::RigidSystem;
 use crate::queue::SourceId;
@@ -32,11 +33,13 @@ impl RigidSystem {
         self.renew_stay(body);
     }
 
-    /// Predicts anew when the body leaves its box.
+    /// Predicts anew when the body, whose motion may be new, leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
         let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
         let stay = self.broad.bounds(body).and_then(|fat_box| room.stays_until(flyer, fat_box, self.now));
-        self.stays[body.index()] = stay;
+        let lane = &mut self.lanes[body.index()];
+        lane.follow(flyer);
+        lane.stay = stay.unwrap_or(Time::NEVER);
         match stay {
             Some(time) => self.queue.set(SourceId(body.0), time),
             None => self.queue.clear(SourceId(body.0)),
@@ -51,12 +54,10 @@ impl RigidSystem {
         self.broad.visit_overlapping(&fat_box, &mut |other| near.push(other));
         near.retain(|&other| other != body && self.may_collide(body, other));
         near.sort_unstable();
-        self.touched.clear();
-        self.touched.extend_from_slice(self.pairs.of_body(body));
-        for index in 0..self.touched.len() {
-            let pair = self.touched[index];
-            let [a, b] = self.pairs.get(pair).bodies;
-            let other = if a == body { b } else { a };
+        self.links.clear();
+        self.links.extend_from_slice(self.pairs.of_body(body));
+        for index in 0..self.links.len() {
+            let Link { pair, other } = self.links[index];
             if near.binary_search(&other).is_err() {
                 self.queue.clear(self.pair_source(pair));
                 self.pairs.remove(pair);
@@ -81,67 +82,68 @@ impl RigidSystem {
         if body.is_world() { None } else { self.group_of(body).map(|group| group.end()) }
     }
 
-    /// Until when the present motion of a body is known and near; `None` for ever.
-    fn known_until(&self, body: BodyId) -> Option<Time> {
-        match (self.stays[body.index()], self.segment_end(body)) {
-            (Some(stay), Some(end)) => Some(stay.min(end)),
-            (only, None) | (None, only) => only,
-        }
+    /// Until when the present motion of a body is known and near.
+    fn known_until(&self, body: BodyId) -> Time {
+        let stay = self.lanes[body.index()].stay;
+        self.segment_end(body).map_or(stay, |end| stay.min(end))
     }
 
     /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
     pub(crate) fn predict(&mut self, pair: PairId) {
-        let Pair { bodies: [a, b], clear, .. } = *self.pairs.get(pair);
-        let until = match (self.known_until(a), self.known_until(b)) {
-            (Some(a), Some(b)) => a.min(b),
-            (Some(only), None) | (None, Some(only)) => only,
-            (None, None) => Time::NEVER,
-        };
+        let &Pair { bodies: [a, b], clear, has_rules, .. } = self.pairs.get(pair);
         let from = clear.max(self.now);
-        self.drop_rules(pair, from);
-        let prediction = if until <= from {
-            Prediction::Quiet
-        } else {
-            let span = until.since(from).min(LONGEST_SPAN);
-            match self.search(pair, from, span) {
-                Search::Contact(contact) => {
-                    let features = [contact.feature_a, contact.feature_b];
-                    Prediction::Contact(from.plus(contact.time), features)
-                }
-                Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => Prediction::Quiet,
-                Search::NoneBefore(time) => Prediction::SearchOn(from.plus(time)),
-            }
-        };
-        let source = self.pair_source(pair);
-        let entry = self.pairs.get_mut(pair);
-        entry.prediction = prediction;
-        match prediction {
-            Prediction::Contact(time, _) | Prediction::SearchOn(time) => {
-                entry.clear = time;
-                self.queue.set(source, time);
-            }
-            Prediction::Quiet => {
-                entry.clear = until.max(from);
-                self.queue.clear(source);
+        let lanes = [&self.lanes[a.index()], &self.lanes[b.index()]];
+        let are_discs = lanes.iter().all(|lane| lane.kind == LaneKind::Disc);
+        if are_discs && !has_rules && self.settings.search.depth == 0.0 {
+            // What is in flight has no end but its box.
+            let until = lanes[0].stay.min(lanes[1].stay);
+            let tolerances = self.tolerances_of(lanes);
+            let search = |span| {
+                let [a, b] = lanes.map(|lane| (lane.parabola_from(from), lane.radius));
+                disc_contact(a, b, span, &tolerances)
+            };
+            if let Some(outlook) = look_ahead(from, until, search) {
+                return self.note_prediction(pair, outlook);
             }
         }
+        let until = self.known_until(a).min(self.known_until(b));
+        self.drop_rules(pair, from);
+        if let Some(outlook) = look_ahead(from, until, |span| Some(self.search(pair, from, span))) {
+            self.note_prediction(pair, outlook);
+        }
+    }
+
+    fn note_prediction(&mut self, pair: PairId, (prediction, clear): (Prediction, Time)) {
+        let entry = self.pairs.get_mut(pair);
+        (entry.prediction, entry.clear) = (prediction, clear);
+        let source = self.pair_source(pair);
+        match prediction {
+            Prediction::Contact(_) | Prediction::SearchOn => self.queue.set(source, clear),
+            Prediction::Quiet => self.queue.clear(source),
+        }
+    }
+
+    /// The thresholds of two bodies: the lesser of the gaps at which they fire.
+    fn tolerances_of(&self, lanes: [&Lane; 2]) -> Tolerances {
+        Tolerances { target_gap: lanes[0].halo.min(lanes[1].halo), ..self.settings.tolerances }
     }
 
     /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
     fn drop_rules(&mut self, pair: PairId, time: Time) {
-        if self.pairs.rules(pair).is_empty() {
+        if !self.pairs.get(pair).has_rules {
             return;
         }
         let [a, b] = self.pairs.get(pair).bodies;
         let (pose_a, pose_b) = (self.flyer(a).moving_at(time).pose, self.flyer(b).moving_at(time).pose);
         let (shape_a, shape_b) = (&self.flyers[a.index()].body().shape, &self.flyers[b.index()].body().shape);
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
-        self.pairs.rules_mut(pair).retain(|rule: &FeatureRule| {
+        let is_closed = |rule: &FeatureRule| {
             let [feature_a, feature_b] = rule.features;
             let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
             let sample = GapSample::measure_unbounded(features[0], &pose_a, features[1], &pose_b);
             rule.target.is_none() || sample.is_some_and(|sample| sample.gap < opened)
-        });
+        };
+        self.pairs.change_rules(pair, |rules| rules.retain(is_closed));
     }
 
     /// Searches for a contact of two bodies in the given span [s] from a time on.
@@ -150,8 +152,7 @@ impl RigidSystem {
         let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
-        let target_gap = self.halos[a.index()].min(self.halos[b.index()]);
-        let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
+        let tolerances = self.tolerances_of([&self.lanes[a.index()], &self.lanes[b.index()]]);
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
             let path_a: Path<'_> = flyer_a.path();
@@ -160,13 +161,6 @@ impl RigidSystem {
             let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
             return self.search_shapes(&side_a, &side_b, (rules, &tolerances), span);
         };
-        let is_plain = rules.is_empty() && self.settings.search.depth == 0.0;
-        if let (Some(radius_a), Some(radius_b), true) = (flyer_a.disc(), flyer_b.disc(), is_plain) {
-            let (side_a, side_b) = ((flight_a, offset_a, radius_a), (flight_b, offset_b, radius_b));
-            if let Some(found) = disc_contact(side_a, side_b, span, &tolerances) {
-                return found;
-            }
-        }
         let side_a = MovingShape { shape: shapes[0], motion: flight_a, offset: offset_a };
         let side_b = MovingShape { shape: shapes[1], motion: flight_b, offset: offset_b };
         self.search_shapes(&side_a, &side_b, (rules, &tolerances), span)
@@ -191,19 +185,40 @@ impl RigidSystem {
 
     /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
     pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
-        let mut touched = std::mem::take(&mut self.touched);
-        touched.clear();
-        touched.extend(bodies.iter().flat_map(|&body| self.pairs.of_body(body)));
-        touched.sort_unstable();
-        touched.dedup();
-        for &pair in &touched {
-            if changed {
-                self.pairs.get_mut(pair).clear = self.now;
-                self.predict(pair);
-            } else if self.pairs.get(pair).prediction == Prediction::Quiet {
+        self.pairs.begin_batch();
+        for &body in bodies {
+            for index in 0..self.pairs.of_body(body).len() {
+                let Link { pair, .. } = self.pairs.of_body(body)[index];
+                let now = self.now;
+                let Some(entry) = self.pairs.enter_batch(pair) else { continue };
+                if changed {
+                    entry.clear = now;
+                } else if entry.prediction != Prediction::Quiet {
+                    continue;
+                }
                 self.predict(pair);
             }
         }
-        self.touched = touched;
     }
+}
+
+/// What is known of a pair from a time on while its motions are known, and until when it is clear; `None` if the search
+/// finds no answer.
+#[inline]
+fn look_ahead(
+    from: Time,
+    until: Time,
+    search: impl FnOnce(f64) -> Option<Search>,
+) -> Option<(Prediction, Time)> {
+    if until <= from {
+        return Some((Prediction::Quiet, from));
+    }
+    let span = until.since(from).min(LONGEST_SPAN);
+    Some(match search(span)? {
+        Search::Contact(contact) => {
+            (Prediction::Contact([contact.feature_a, contact.feature_b]), from.plus(contact.time))
+        }
+        Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => (Prediction::Quiet, until),
+        Search::NoneBefore(time) => (Prediction::SearchOn, from.plus(time)),
+    })
 }
