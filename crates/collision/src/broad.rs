@@ -49,23 +49,29 @@ impl BroadPhase {
 
     /// Gives a body its box [m], in place of the one it had.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
-        self.remove(body);
         if self.leaves.len() <= body.index() {
             self.leaves.resize(body.index() + 1, None);
         }
+        // A box that moves seldom goes far: the search for its new place begins where it was.
+        let near = self.take_out(body).map(|sibling| self.least_around(sibling, &bounds));
         let leaf = self.allocate(Node { bounds, parent: NONE, children: [NONE; 2], height: 0, body });
         self.leaves[body.index()] = Some(leaf);
-        self.insert(leaf);
+        self.insert(leaf, near);
     }
 
     /// Takes a body's box away; nothing happens if it has none.
     pub fn remove(&mut self, body: BodyId) {
-        let Some(leaf) = self.leaves.get_mut(body.index()).and_then(Option::take) else { return };
+        self.take_out(body);
+    }
+
+    /// Takes a body's box away; the node that was beside it, if there was one.
+    fn take_out(&mut self, body: BodyId) -> Option<u32> {
+        let leaf = self.leaves.get_mut(body.index()).and_then(Option::take)?;
         self.free.push(leaf);
         let parent = self.nodes[leaf as usize].parent;
         if parent == NONE {
             self.root = None;
-            return;
+            return None;
         }
         let [left, right] = self.nodes[parent as usize].children;
         let sibling = if left == leaf { right } else { left };
@@ -73,25 +79,37 @@ impl BroadPhase {
         self.free.push(parent);
         self.replace_child(above, parent, sibling);
         self.refit_from(above);
+        Some(sibling)
+    }
+
+    /// The least box around a node that holds the given one, or the root.
+    fn least_around(&self, mut node: u32, bounds: &Aabb) -> u32 {
+        loop {
+            let here = &self.nodes[node as usize];
+            if here.bounds.contains(bounds) || here.parent == NONE {
+                return node;
+            }
+            node = here.parent;
+        }
     }
 
     /// Visits every body whose box overlaps the given one.
     pub fn visit_overlapping(&self, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
-        if let Some(root) = self.root {
+        if let Some(root) = self.root.filter(|&root| self.nodes[root as usize].bounds.overlaps(bounds)) {
             self.visit_below(root, bounds, visit);
         }
     }
 
+    /// Visits below a node that overlaps.
     fn visit_below(&self, node: u32, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
         let here = &self.nodes[node as usize];
-        if !here.bounds.overlaps(bounds) {
-            return;
-        }
         if here.height == 0 {
-            visit(here.body);
-        } else {
-            self.visit_below(here.children[0], bounds, visit);
-            self.visit_below(here.children[1], bounds, visit);
+            return visit(here.body);
+        }
+        for child in here.children {
+            if self.nodes[child as usize].bounds.overlaps(bounds) {
+                self.visit_below(child, bounds, visit);
+            }
         }
     }
 
@@ -105,13 +123,14 @@ impl BroadPhase {
             .expect("a tree has fewer than 2^32 nodes: bodies are counted in 32 bits")
     }
 
-    fn insert(&mut self, leaf: u32) {
-        let Some(root) = self.root else {
+    /// Inserts a leaf below a node, or below the root.
+    fn insert(&mut self, leaf: u32, below: Option<u32>) {
+        let Some(below) = below.or(self.root) else {
             self.root = Some(leaf);
             return;
         };
         let bounds = self.nodes[leaf as usize].bounds;
-        let sibling = self.best_sibling(root, &bounds);
+        let sibling = self.best_sibling(below, &bounds);
         let above = self.nodes[sibling as usize].parent;
         let parent = self.allocate(Node {
             bounds: self.nodes[sibling as usize].bounds.union(bounds),
@@ -126,9 +145,8 @@ impl BroadPhase {
         self.refit_from(above);
     }
 
-    /// Descends to where a new box makes the boxes above grow least.
-    fn best_sibling(&self, root: u32, bounds: &Aabb) -> u32 {
-        let mut node = root;
+    /// Descends from a node to where a new box makes the boxes above grow least.
+    fn best_sibling(&self, mut node: u32, bounds: &Aabb) -> u32 {
         loop {
             let here = &self.nodes[node as usize];
             if here.height == 0 {
@@ -161,20 +179,26 @@ impl BroadPhase {
         children[usize::from(children[1] == old)] = new;
     }
 
-    /// Mends boxes, heights and balance from a node up to the root.
+    /// Mends boxes, heights and balance from a node up to the root, or to where nothing changes any more.
     fn refit_from(&mut self, mut node: u32) {
         while node != NONE {
             let node_now = self.balance(node);
-            self.refit(node_now);
+            let is_as_before = !self.refit(node_now);
+            if is_as_before && node_now == node {
+                break;
+            }
             node = self.nodes[node_now as usize].parent;
         }
     }
 
-    fn refit(&mut self, node: u32) {
+    /// True if the box or the height of a node has changed.
+    fn refit(&mut self, node: u32) -> bool {
         let [left, right] = self.nodes[node as usize].children.map(|child| &self.nodes[child as usize]);
         let (bounds, height) = (left.bounds.union(right.bounds), 1 + left.height.max(right.height));
         let here = &mut self.nodes[node as usize];
+        let has_changed = here.bounds != bounds || here.height != height;
         (here.bounds, here.height) = (bounds, height);
+        has_changed
     }
 
     /// Swaps a child with a child of the other where that shrinks the other's box.
