@@ -29,6 +29,8 @@ pub struct BroadPhase {
     nodes: Vec<Node>,
     root: Option<u32>,
     free: Vec<u32>,
+    /// Nodes that a search has still to go to.
+    stack: Vec<u32>,
     /// Leaf of each body, by index.
     leaves: Vec<Option<u32>>,
 }
@@ -93,24 +95,38 @@ impl BroadPhase {
         }
     }
 
-    /// Visits every body whose box overlaps the given one.
-    pub fn visit_overlapping(&self, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
-        if let Some(root) = self.root.filter(|&root| self.nodes[root as usize].bounds.overlaps(bounds)) {
-            self.visit_below(root, bounds, visit);
+    /// Finds every body whose box overlaps the given one, in the order in which the tree has them.
+    pub fn find_overlapping(&mut self, bounds: &Aabb, found: &mut Vec<BodyId>) {
+        found.clear();
+        let Some(root) = self.root else { return };
+        let root_node = &self.nodes[root as usize];
+        if root_node.height == 0 {
+            found.extend(root_node.bounds.overlaps(bounds).then_some(root_node.body));
+            return;
         }
-    }
-
-    /// Visits below a node that overlaps.
-    fn visit_below(&self, node: u32, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
-        let here = &self.nodes[node as usize];
-        if here.height == 0 {
-            return visit(here.body);
-        }
-        for child in here.children {
-            if self.nodes[child as usize].bounds.overlaps(bounds) {
-                self.visit_below(child, bounds, visit);
+        // What overlaps cannot be foretold: everything is written down, and kept if it does. Depth first, no more than one
+        // node of each level waits, and the two that come last.
+        let (mut waiting, mut count) = (1, 0);
+        let deepest = root_node.height as usize + 2;
+        self.stack.resize(self.stack.len().max(deepest), NONE);
+        let stack = &mut self.stack[..];
+        stack[0] = root;
+        while waiting > 0 {
+            waiting -= 1;
+            let children = self.nodes[stack[waiting] as usize].children;
+            if found.len() < count + 2 {
+                found.resize(2 * count + 16, BodyId(NONE));
+            }
+            for child in children {
+                let node = &self.nodes[child as usize];
+                let (overlaps, is_leaf) = (node.bounds.overlaps(bounds), node.height == 0);
+                found[count] = node.body;
+                count += usize::from(overlaps & is_leaf);
+                stack[waiting] = child;
+                waiting += usize::from(overlaps & !is_leaf);
             }
         }
+        found.truncate(count);
     }
 
     fn allocate(&mut self, node: Node) -> u32 {
@@ -271,9 +287,10 @@ mod tests {
         DVec2::new(turn.fract() * 100.0, (turn * 7.1).fract() * 100.0)
     }
 
-    fn found(broad: &BroadPhase, bounds: &Aabb) -> Vec<u32> {
+    fn found(broad: &mut BroadPhase, bounds: &Aabb) -> Vec<u32> {
         let mut bodies = Vec::new();
-        broad.visit_overlapping(bounds, &mut |body| bodies.push(body.0));
+        broad.find_overlapping(bounds, &mut bodies);
+        let mut bodies: Vec<u32> = bodies.into_iter().map(|body| body.0).collect();
         bodies.sort_unstable();
         bodies
     }
@@ -293,7 +310,7 @@ mod tests {
             for (index, query) in boxes.iter().enumerate().step_by(11) {
                 let expected: Vec<u32> =
                     (0..300).filter(|&other| boxes[other as usize].overlaps(query)).collect();
-                assert_eq!(found(&broad, query), expected, "box {index} in round {round}");
+                assert_eq!(found(&mut broad, query), expected, "box {index} in round {round}");
             }
         }
     }
@@ -316,7 +333,7 @@ mod tests {
         }
         for index in 0..10 {
             broad.remove(BodyId(index));
-            assert_eq!(found(&broad, &Aabb::around(DVec2::ZERO)).len(), 9 - index as usize);
+            assert_eq!(found(&mut broad, &Aabb::around(DVec2::ZERO)).len(), 9 - index as usize);
             assert_eq!(broad.bounds(BodyId(index)), None);
         }
     }

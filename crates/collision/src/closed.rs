@@ -28,6 +28,7 @@ impl Quadratic {
     /// First time at which the pair is at or below its target and closes.
     ///
     /// A pair that starts deeper than `depth` [m] lies behind: it must rise to its target before it can close to it.
+    #[inline]
     pub(crate) fn first_closing(&self, depth: f64) -> Option<f64> {
         let deepest = -depth * self.scale;
         if self.c < deepest {
@@ -43,6 +44,20 @@ impl Quadratic {
         } else {
             first_closing_by(self.c, self.v, self.a, self.discriminant)
         }
+    }
+
+    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative.
+    ///
+    /// Whether two discs near each other meet cannot be foretold: apart from those that touch already, they are judged
+    /// without branches.
+    #[inline]
+    pub(crate) fn first_meeting(&self, depth: f64) -> Option<f64> {
+        if self.c <= 0.0 {
+            return self.first_closing(depth);
+        }
+        let meets = (self.v < 0.0) & (self.discriminant >= 0.0);
+        let time = 2.0 * self.c / (self.discriminant.max(0.0).sqrt() - self.v);
+        meets.then_some(time)
     }
 }
 
@@ -83,13 +98,6 @@ fn center_path<M: Motion>(round: &RoundFeature, motion: &M, offset: f64) -> Opti
         let arm = motion.moving_at(offset).pose.vector_to_world(round.center);
         Polynomial { position: body.position + arm, ..body }
     })
-}
-
-/// True if two centres on parabolas are farther apart than `reach` [m] and never come nearer.
-#[inline]
-pub(crate) fn recede(a: &Polynomial, b: &Polynomial, reach: f64) -> bool {
-    let (d, u) = (a.position - b.position, a.velocity - b.velocity);
-    a.acceleration == b.acceleration && d.dot(u) >= 0.0 && d.length() > reach
 }
 
 /// The quadratic of two centres on parabolas, whose discs have radii of the given sum [m].

@@ -3,7 +3,7 @@
 //! Nothing is missed: the search moves through windows of time, in each of which bounds on the motion leave only feature
 //! pairs that can come near; each of these is decided by a closed form or by a march that never passes a contact.
 
-use crate::closed::{of_centers, quadratic, recede};
+use crate::closed::{of_centers, quadratic};
 use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
 use crate::motion::{Motion, Polynomial};
@@ -124,12 +124,8 @@ pub fn disc_contact(
     span: f64,
     tolerances: &Tolerances,
 ) -> Option<Search> {
-    let radii = radius_a + radius_b;
-    if recede(&a, &b, radii + tolerances.target_gap) {
-        return Some(Search::NoneBefore(span));
-    }
-    let curve = of_centers(&a, &b, radii, false, tolerances.target_gap)?;
-    let time = curve.first_closing(tolerances.distance_tol()).filter(|&time| time < span);
+    let curve = of_centers(&a, &b, radius_a + radius_b, false, tolerances.target_gap)?;
+    let time = curve.first_meeting(tolerances.distance_tol()).filter(|&time| time < span);
     // A disc has one feature.
     let (feature_a, feature_b) = (FeatureId(0), FeatureId(0));
     Some(time.map_or(Search::NoneBefore(span), |time| {

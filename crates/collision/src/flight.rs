@@ -46,6 +46,14 @@ impl Flight {
         Self { start, start_rotation, acceleration, linear_rate, angular_rate }
     }
 
+    /// Goes on from another state; a rotation that stays the same is not computed again.
+    pub fn restart(&mut self, start: BodyState) {
+        if start.angle != self.start.angle {
+            self.start_rotation = Rotation::from_angle(start.angle);
+        }
+        self.start = start;
+    }
+
     /// A body that stays where it is.
     #[must_use]
     pub fn fixed(position: DVec2, angle: f64) -> Self {

@@ -154,7 +154,7 @@ impl Flyer {
     pub(crate) fn fly_from(&mut self, time: Time, state: BodyState) {
         self.start = time;
         self.is_integrated = false;
-        self.flight = Flight::new(state, self.law.acceleration, self.law.linear_rate, self.law.angular_rate);
+        self.flight.restart(state);
     }
 
     /// Starts a segment that was integrated: x, y, angle.

@@ -339,8 +339,7 @@ impl RigidSystem {
         });
         self.groups.put(group);
         for &pair in &touched {
-            self.pairs.get_mut(pair).clear = self.now;
-            self.pairs.get_mut(pair).prediction = Prediction::Quiet;
+            self.note_prediction(pair, (Prediction::Quiet, self.now));
         }
         self.touched = touched;
     }

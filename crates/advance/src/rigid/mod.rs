@@ -27,6 +27,7 @@ mod impacts;
 mod lane;
 mod law;
 mod ledger;
+mod marks;
 mod pairs;
 mod path;
 mod predictions;

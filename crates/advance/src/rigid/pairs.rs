@@ -15,7 +15,7 @@ pub(crate) enum Prediction {
     Contact([FeatureId; 2]),
     /// No contact before that time, at which the search goes on.
     SearchOn,
-    /// No contact before one of the bodies leaves its box.
+    /// No contact before one of the bodies leaves its box: nothing is in the queue.
     Quiet,
 }
 

@@ -50,25 +50,26 @@ impl RigidSystem {
     fn find_neighbours(&mut self, body: BodyId) {
         let Some(fat_box) = self.broad.bounds(body).copied() else { return };
         let mut near = std::mem::take(&mut self.neighbours);
-        near.clear();
-        self.broad.visit_overlapping(&fat_box, &mut |other| near.push(other));
-        near.retain(|&other| other != body && self.may_collide(body, other));
-        near.sort_unstable();
+        self.broad.find_overlapping(&fat_box, &mut near);
+        self.marks.begin(self.flyers.len());
+        near.iter().for_each(|&other| self.marks.set(other));
         self.links.clear();
         self.links.extend_from_slice(self.pairs.of_body(body));
         for index in 0..self.links.len() {
             let Link { pair, other } = self.links[index];
-            if near.binary_search(&other).is_err() {
-                self.queue.clear(self.pair_source(pair));
+            // What is left marked is new.
+            if !self.marks.take(other) {
+                self.note_prediction(pair, (Prediction::Quiet, self.now));
                 self.pairs.remove(pair);
             }
         }
+        near.retain(|&other| self.marks.take(other));
+        near.retain(|&other| other != body && self.may_collide(body, other));
+        near.sort_unstable();
         for &other in &near {
-            if self.pairs.between(body, other).is_none() {
-                self.pairs.add(body, other, self.now);
-            }
+            self.pairs.add(body, other, self.now);
         }
-        self.rooms[body.index()].adapt(near.len());
+        self.rooms[body.index()].adapt(self.pairs.of_body(body).len());
         self.neighbours = near;
     }
 
@@ -89,23 +90,35 @@ impl RigidSystem {
     }
 
     /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
+    #[inline]
     pub(crate) fn predict(&mut self, pair: PairId) {
-        let &Pair { bodies: [a, b], clear, has_rules, .. } = self.pairs.get(pair);
-        let from = clear.max(self.now);
-        let lanes = [&self.lanes[a.index()], &self.lanes[b.index()]];
-        let are_discs = lanes.iter().all(|lane| lane.kind == LaneKind::Disc);
-        if are_discs && !has_rules && self.settings.search.depth == 0.0 {
-            // What is in flight has no end but its box.
-            let until = lanes[0].stay.min(lanes[1].stay);
-            let tolerances = self.tolerances_of(lanes);
-            let search = |span| {
-                let [a, b] = lanes.map(|lane| (lane.parabola_from(from), lane.radius));
-                disc_contact(a, b, span, &tolerances)
-            };
-            if let Some(outlook) = look_ahead(from, until, search) {
-                return self.note_prediction(pair, outlook);
-            }
+        match self.look_at_discs(self.pairs.get(pair)) {
+            Some(outlook) => self.note_prediction(pair, outlook),
+            None => self.predict_any(pair),
         }
+    }
+
+    /// The outlook of a pair of free discs; `None` of all else.
+    #[inline]
+    fn look_at_discs(&self, pair: &Pair) -> Option<(Prediction, Time)> {
+        let (a, b) = (&self.lanes[pair.bodies[0].index()], &self.lanes[pair.bodies[1].index()]);
+        let are_discs = a.kind == LaneKind::Disc && b.kind == LaneKind::Disc;
+        if !are_discs || pair.has_rules || self.settings.search.depth != 0.0 {
+            return None;
+        }
+        let from = pair.clear.max(self.now);
+        // What is in flight has no end but its box.
+        look_ahead(from, a.stay.min(b.stay), |span| {
+            let sides = [a, b].map(|lane| (lane.parabola_from(from), lane.radius));
+            disc_contact(sides[0], sides[1], span, &self.tolerances_of([a, b]))
+        })
+    }
+
+    /// Kept apart: most pairs do not come here.
+    #[inline(never)]
+    fn predict_any(&mut self, pair: PairId) {
+        let &Pair { bodies: [a, b], clear, .. } = self.pairs.get(pair);
+        let from = clear.max(self.now);
         let until = self.known_until(a).min(self.known_until(b));
         self.drop_rules(pair, from);
         if let Some(outlook) = look_ahead(from, until, |span| Some(self.search(pair, from, span))) {
@@ -113,17 +126,20 @@ impl RigidSystem {
         }
     }
 
-    fn note_prediction(&mut self, pair: PairId, (prediction, clear): (Prediction, Time)) {
+    #[inline]
+    pub(crate) fn note_prediction(&mut self, pair: PairId, (prediction, clear): (Prediction, Time)) {
         let entry = self.pairs.get_mut(pair);
+        let was_quiet = entry.prediction == Prediction::Quiet;
         (entry.prediction, entry.clear) = (prediction, clear);
-        let source = self.pair_source(pair);
-        match prediction {
-            Prediction::Contact(_) | Prediction::SearchOn => self.queue.set(source, clear),
-            Prediction::Quiet => self.queue.clear(source),
+        if prediction != Prediction::Quiet {
+            self.queue.set(self.pair_source(pair), clear);
+        } else if !was_quiet {
+            self.queue.clear(self.pair_source(pair));
         }
     }
 
     /// The thresholds of two bodies: the lesser of the gaps at which they fire.
+    #[inline]
     fn tolerances_of(&self, lanes: [&Lane; 2]) -> Tolerances {
         Tolerances { target_gap: lanes[0].halo.min(lanes[1].halo), ..self.settings.tolerances }
     }

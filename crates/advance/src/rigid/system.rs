@@ -14,6 +14,7 @@ use super::impacts::ImpactReport;
 use super::lane::Lane;
 use super::law::{ForceLaw, Snapshot};
 use super::ledger::Ledger;
+use super::marks::Marks;
 use super::pairs::{Link, PairId, Pairs, Prediction};
 use super::report::ContactChanges;
 use super::rows::Mechanism;
@@ -163,6 +164,7 @@ pub struct RigidSystem {
     pub(crate) touched: Vec<PairId>,
     pub(crate) links: Vec<Link>,
     pub(crate) neighbours: Vec<BodyId>,
+    pub(crate) marks: Marks,
 }
 
 impl RigidSystem {
@@ -222,6 +224,7 @@ impl RigidSystem {
             touched: Vec::new(),
             links: Vec::new(),
             neighbours: Vec::new(),
+            marks: Marks::default(),
         };
         if settings.collisions {
             system.set_up_boxes();
