@@ -65,7 +65,8 @@ impl Time {
     #[must_use]
     #[inline]
     pub fn min(self, other: Time) -> Time {
-        if other < self { other } else { self }
+        // Which it is can seldom be foretold: no branch.
+        [self, other][usize::from(other < self)]
     }
 
     /// The later of two times.

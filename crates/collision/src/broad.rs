@@ -13,7 +13,9 @@ const NONE: u32 = u32::MAX;
 /// Heights of two children may differ by so much: small boxes matter more than perfect balance.
 const LOPSIDED: u32 = 4;
 
+/// A line of the cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 struct Node {
     bounds: Aabb,
     parent: u32,

@@ -46,18 +46,18 @@ impl Quadratic {
         }
     }
 
-    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative.
+    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative; infinite if there is none.
     ///
     /// Whether two discs near each other meet cannot be foretold: apart from those that touch already, they are judged
     /// without branches.
     #[inline]
-    pub(crate) fn first_meeting(&self, depth: f64) -> Option<f64> {
+    pub(crate) fn first_meeting(&self, depth: f64) -> f64 {
         if self.c <= 0.0 {
-            return self.first_closing(depth);
+            return self.first_closing(depth).unwrap_or(f64::INFINITY);
         }
         let meets = (self.v < 0.0) & (self.discriminant >= 0.0);
         let time = 2.0 * self.c / (self.discriminant.max(0.0).sqrt() - self.v);
-        meets.then_some(time)
+        [f64::INFINITY, time][usize::from(meets)]
     }
 }
 

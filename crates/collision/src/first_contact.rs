@@ -125,12 +125,12 @@ pub fn disc_contact(
     tolerances: &Tolerances,
 ) -> Option<Search> {
     let curve = of_centers(&a, &b, radius_a + radius_b, false, tolerances.target_gap)?;
-    let time = curve.first_meeting(tolerances.distance_tol()).filter(|&time| time < span);
+    let time = curve.first_meeting(tolerances.distance_tol());
+    if time >= span {
+        return Some(Search::NoneBefore(span));
+    }
     // A disc has one feature.
-    let (feature_a, feature_b) = (FeatureId(0), FeatureId(0));
-    Some(time.map_or(Search::NoneBefore(span), |time| {
-        Search::Contact(FirstContact { time, feature_a, feature_b })
-    }))
+    Some(Search::Contact(FirstContact { time, feature_a: FeatureId(0), feature_b: FeatureId(0) }))
 }
 
 /// A search for the first contact of two shapes, with rules for some of their feature pairs.

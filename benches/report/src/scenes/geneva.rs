@@ -14,8 +14,8 @@ use std::f64::consts::PI;
 const PIN: f64 = 0.06;
 /// Width of the rim beside a slot [m].
 const TIP: f64 = 0.05;
-/// How far from the wheel's pivot the round ends of the slots have their centres [m].
-const BOTTOM: f64 = 0.48;
+/// How far from the wheel's pivot the slots end [m]: the pin comes no nearer than 0.442.
+const BOTTOM: f64 = 0.43;
 const PIN_INERTIA: Inertia = Inertia { mass: 4.0, moment: 1.0 };
 const WHEEL: Inertia = Inertia { mass: 2.0, moment: 0.3 };
 /// The crank at the start, from the line of pivots [rad], and its rate [rad/s].
@@ -74,26 +74,18 @@ pub(super) fn scene() -> Scene {
         .with_reference("closed form of the slot's angle, energy and quadrature", error)
 }
 
-/// Round the wheel: along each slot and its rim, then along the arc around the crank's pivot that comes before the next slot.
+/// Round the wheel: along each slot and its rim, then straight to the next. The pin touches nothing but the slots' walls, so that
+/// straight lines will do for the rest, and engines of segments have the wheel as it is.
 fn outline(drive: &Geneva) -> PathSpec {
     let half = PIN + drive.play;
     // Where the crank is square to the slot.
     let mouth = drive.distance * drive.half_pitch().cos();
-    let turned =
-        |slot: u32, point: DVec2| DVec2::from_angle(2.0 * drive.half_pitch() * f64::from(slot)).rotate(point);
-    let mut edges = Vec::new();
-    for slot in 0..drive.slots {
-        let place = |x: f64, y: f64| turned(slot, DVec2::new(x, y));
-        let next = turned(slot + 1, DVec2::new(mouth, -half - TIP));
-        let pivot = turned(slot, DVec2::from_angle(drive.half_pitch()) * drive.distance);
-        edges.extend([
-            EdgeSpec::Line { to: place(mouth, -half) },
-            EdgeSpec::Line { to: place(BOTTOM, -half) },
-            EdgeSpec::Arc { to: place(BOTTOM, half), center: place(BOTTOM, 0.0), clockwise: true },
-            EdgeSpec::Line { to: place(mouth, half) },
-            EdgeSpec::Line { to: place(mouth, half + TIP) },
-            EdgeSpec::Arc { to: next, center: pivot, clockwise: true },
-        ]);
-    }
-    PathSpec { start: turned(0, DVec2::new(mouth, -half - TIP)), edges }
+    let corners = [(mouth, -half), (BOTTOM, -half), (BOTTOM, half), (mouth, half), (mouth, half + TIP)];
+    let turned = |slot: u32, (x, y): (f64, f64)| {
+        DVec2::from_angle(2.0 * drive.half_pitch() * f64::from(slot)).rotate(DVec2::new(x, y))
+    };
+    let rim = (mouth, -half - TIP);
+    let walk = |slot| corners.map(|corner| turned(slot, corner)).into_iter().chain([turned(slot + 1, rim)]);
+    let edges = (0..drive.slots).flat_map(walk).map(|to| EdgeSpec::Line { to }).collect();
+    PathSpec { start: turned(0, rim), edges }
 }

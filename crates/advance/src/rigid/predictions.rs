@@ -90,23 +90,27 @@ impl RigidSystem {
     }
 
     /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
-    #[inline]
     pub(crate) fn predict(&mut self, pair: PairId) {
-        match self.look_at_discs(self.pairs.get(pair)) {
+        let from = self.pairs.get(pair).clear.max(self.now);
+        self.predict_from(pair, from);
+    }
+
+    #[inline]
+    fn predict_from(&mut self, pair: PairId, from: Time) {
+        match self.look_at_discs(self.pairs.get(pair), from) {
             Some(outlook) => self.note_prediction(pair, outlook),
-            None => self.predict_any(pair),
+            None => self.predict_any(pair, from),
         }
     }
 
     /// The outlook of a pair of free discs; `None` of all else.
     #[inline]
-    fn look_at_discs(&self, pair: &Pair) -> Option<(Prediction, Time)> {
+    fn look_at_discs(&self, pair: &Pair, from: Time) -> Option<(Prediction, Time)> {
         let (a, b) = (&self.lanes[pair.bodies[0].index()], &self.lanes[pair.bodies[1].index()]);
         let are_discs = a.kind == LaneKind::Disc && b.kind == LaneKind::Disc;
         if !are_discs || pair.has_rules || self.settings.search.depth != 0.0 {
             return None;
         }
-        let from = pair.clear.max(self.now);
         // What is in flight has no end but its box.
         look_ahead(from, a.stay.min(b.stay), |span| {
             let sides = [a, b].map(|lane| (lane.parabola_from(from), lane.radius));
@@ -116,9 +120,8 @@ impl RigidSystem {
 
     /// Kept apart: most pairs do not come here.
     #[inline(never)]
-    fn predict_any(&mut self, pair: PairId) {
-        let &Pair { bodies: [a, b], clear, .. } = self.pairs.get(pair);
-        let from = clear.max(self.now);
+    fn predict_any(&mut self, pair: PairId, from: Time) {
+        let [a, b] = self.pairs.get(pair).bodies;
         let until = self.known_until(a).min(self.known_until(b));
         self.drop_rules(pair, from);
         if let Some(outlook) = look_ahead(from, until, |span| Some(self.search(pair, from, span))) {
@@ -208,11 +211,10 @@ impl RigidSystem {
                 let now = self.now;
                 let Some(entry) = self.pairs.enter_batch(pair) else { continue };
                 if changed {
-                    entry.clear = now;
-                } else if entry.prediction != Prediction::Quiet {
-                    continue;
+                    self.predict_from(pair, now);
+                } else if entry.prediction == Prediction::Quiet {
+                    self.predict(pair);
                 }
-                self.predict(pair);
             }
         }
     }
