@@ -7,7 +7,7 @@ use super::system::RigidSystem;
 use crate::queue::SourceId;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, Tolerances, disc_contact,
+    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, Tolerances, disc_contact,
 };
 use halfgap_geometry::GapSample;
 
@@ -91,30 +91,42 @@ impl RigidSystem {
 
     /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
     pub(crate) fn predict(&mut self, pair: PairId) {
-        let from = self.pairs.get(pair).clear.max(self.now);
-        self.predict_from(pair, from);
+        let &Pair { bodies: [a, b], clear, .. } = self.pairs.get(pair);
+        let from = clear.max(self.now);
+        let disc = self.disc_at(a, from);
+        self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
 
+    /// Searches from a time on for the next contact of a pair, of whose one body is known how it flies if it is a disc.
     #[inline]
-    fn predict_from(&mut self, pair: PairId, from: Time) {
-        match self.look_at_discs(self.pairs.get(pair), from) {
-            Some(outlook) => self.note_prediction(pair, outlook),
-            None => self.predict_any(pair, from),
+    fn predict_from(&mut self, from: Time, disc: Option<&DiscAt>, link: Link) {
+        match disc.and_then(|disc| self.look_at_discs(from, disc, link)) {
+            Some(outlook) => self.note_prediction(link.pair, outlook),
+            None => self.predict_any(link.pair, from),
         }
+    }
+
+    /// A body from a time on, if it is a disc in flight.
+    #[inline]
+    fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
+        let lane = &self.lanes[body.index()];
+        let is_plain = lane.kind == LaneKind::Disc && self.settings.search.depth == 0.0;
+        let Lane { radius, halo, stay, .. } = *lane;
+        is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
     }
 
     /// The outlook of a pair of free discs; `None` of all else.
     #[inline]
-    fn look_at_discs(&self, pair: &Pair, from: Time) -> Option<(Prediction, Time)> {
-        let (a, b) = (&self.lanes[pair.bodies[0].index()], &self.lanes[pair.bodies[1].index()]);
-        let are_discs = a.kind == LaneKind::Disc && b.kind == LaneKind::Disc;
-        if !are_discs || pair.has_rules || self.settings.search.depth != 0.0 {
+    fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
+        let lane = &self.lanes[link.other.index()];
+        if lane.kind != LaneKind::Disc || self.pairs.get(link.pair).has_rules {
             return None;
         }
         // What is in flight has no end but its box.
-        look_ahead(from, a.stay.min(b.stay), |span| {
-            let sides = [a, b].map(|lane| (lane.parabola_from(from), lane.radius));
-            disc_contact(sides[0], sides[1], span, &self.tolerances_of([a, b]))
+        look_ahead(from, own.stay.min(lane.stay), |span| {
+            let tolerances = Tolerances { target_gap: own.halo.min(lane.halo), ..self.settings.tolerances };
+            let other = (lane.parabola_from(from), lane.radius);
+            disc_contact((own.parabola, own.radius), other, span, &tolerances)
         })
     }
 
@@ -141,12 +153,6 @@ impl RigidSystem {
         }
     }
 
-    /// The thresholds of two bodies: the lesser of the gaps at which they fire.
-    #[inline]
-    fn tolerances_of(&self, lanes: [&Lane; 2]) -> Tolerances {
-        Tolerances { target_gap: lanes[0].halo.min(lanes[1].halo), ..self.settings.tolerances }
-    }
-
     /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
     fn drop_rules(&mut self, pair: PairId, time: Time) {
         if !self.pairs.get(pair).has_rules {
@@ -171,7 +177,8 @@ impl RigidSystem {
         let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
-        let tolerances = self.tolerances_of([&self.lanes[a.index()], &self.lanes[b.index()]]);
+        let target_gap = self.lanes[a.index()].halo.min(self.lanes[b.index()].halo);
+        let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
             let path_a: Path<'_> = flyer_a.path();
@@ -205,19 +212,30 @@ impl RigidSystem {
     /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
     pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
         self.pairs.begin_batch();
+        let now = self.now;
         for &body in bodies {
+            let disc = self.disc_at(body, now);
             for index in 0..self.pairs.of_body(body).len() {
-                let Link { pair, .. } = self.pairs.of_body(body)[index];
-                let now = self.now;
-                let Some(entry) = self.pairs.enter_batch(pair) else { continue };
+                let link = self.pairs.of_body(body)[index];
+                let Some(entry) = self.pairs.enter_batch(link.pair) else { continue };
                 if changed {
-                    self.predict_from(pair, now);
+                    self.predict_from(now, disc.as_ref(), link);
                 } else if entry.prediction == Prediction::Quiet {
-                    self.predict(pair);
+                    self.predict(link.pair);
                 }
             }
         }
     }
+}
+
+/// A disc in flight, at the time from which its pairs are searched.
+struct DiscAt {
+    parabola: Polynomial,
+    /// Radius and gap at which it fires [m].
+    radius: f64,
+    halo: f64,
+    /// Until when it surely stays in its box.
+    stay: Time,
 }
 
 /// What is known of a pair from a time on while its motions are known, and until when it is clear; `None` if the search
