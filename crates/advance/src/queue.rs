@@ -119,8 +119,7 @@ impl EventQueue {
 
     fn sink(&mut self, mut place: usize) {
         let entry = self.heap[place];
-        loop {
-            let Some(child) = self.earliest_child(place) else { break };
+        while let Some(child) = self.earliest_child(place) {
             if !self.heap[child].is_before(&entry) {
                 break;
             }

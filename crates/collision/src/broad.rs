@@ -318,6 +318,26 @@ mod tests {
     }
 
     #[test]
+    fn boxes_that_drift_are_found_and_the_tree_stays_shallow() {
+        let mut broad = BroadPhase::new();
+        let heading = |index: u32| DVec2::from_angle(f64::from(index) * 2.4);
+        let bounds = |index: u32, round: u32| {
+            Aabb::around_disc(place(index) + heading(index) * (0.5 * f64::from(round)), 1.5)
+        };
+        (0..500).for_each(|index| broad.set(BodyId(index), bounds(index, 0)));
+        // The last rounds are hundreds of widths away from the first.
+        for round in 1..1000 {
+            (0..500).for_each(|index| broad.set(BodyId(index), bounds(index, round)));
+            let query = bounds(round % 500, round);
+            let expected: Vec<u32> =
+                (0..500).filter(|&other| bounds(other, round).overlaps(&query)).collect();
+            assert_eq!(found(&mut broad, &query), expected, "round {round}");
+        }
+        let root = broad.root.expect("there are bodies");
+        assert!(broad.nodes[root as usize].height <= 20, "height {}", broad.nodes[root as usize].height);
+    }
+
+    #[test]
     fn the_tree_of_a_sorted_row_stays_shallow() {
         let mut broad = BroadPhase::new();
         for index in 0..1024 {

@@ -114,3 +114,31 @@ fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
     .flatten()
     .min_by(f64::total_cmp)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORE: Aabb = Aabb { min: DVec2::new(-1.0, -2.0), max: DVec2::new(2.0, 5.0) };
+
+    fn leaves(velocity: DVec2, acceleration: DVec2) -> Option<f64> {
+        leaving_time(&Polynomial { position: DVec2::ZERO, velocity, acceleration }, &CORE)
+    }
+
+    #[test]
+    fn a_straight_path_leaves_by_the_side_it_comes_to_first() {
+        assert_eq!(leaves(DVec2::new(3.0, -4.0), DVec2::ZERO), Some(0.5));
+        assert_eq!(leaves(DVec2::new(-4.0, 4.0), DVec2::ZERO), Some(0.25));
+        assert_eq!(leaves(DVec2::new(0.0, 2.0), DVec2::ZERO), Some(2.5));
+        assert_eq!(leaves(DVec2::ZERO, DVec2::ZERO), None);
+    }
+
+    #[test]
+    fn a_path_that_is_all_but_straight_leaves_at_the_same_time() {
+        for velocity in [DVec2::new(3.0, -4.0), DVec2::new(-0.5, 2.0), DVec2::new(0.0, -1.0)] {
+            let straight = leaves(velocity, DVec2::ZERO).expect("it moves");
+            let bent = leaves(velocity, DVec2::new(1e-20, -1e-20)).expect("it moves");
+            assert!((straight - bent).abs() < 1e-15 * 4.0, "{straight} {bent}");
+        }
+    }
+}
