@@ -97,7 +97,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = options()?;
     fs::create_dir_all(&options.out)?;
     if options.gas {
-        let rows = gas::measure();
+        let rows = gas::measure(options.passes);
         println!("{}", gas::table(&rows));
         return Ok(fs::write(options.out.join("gas.svg"), plot::gas(&rows)?)?);
     }

@@ -28,12 +28,22 @@ pub struct GasRow {
     pub per_impact: f64,
 }
 
-/// Measures all gases.
+/// Measures all gases so many times, one after the other; of each the least time counts.
 ///
 /// # Panics
 /// A gas stops: a fault of the engine.
 #[must_use]
-pub fn measure() -> Vec<GasRow> {
+pub fn measure(passes: usize) -> Vec<GasRow> {
+    let mut rows = measure_once();
+    for _ in 1..passes {
+        for (row, again) in rows.iter_mut().zip(measure_once()) {
+            row.per_impact = row.per_impact.min(again.per_impact);
+        }
+    }
+    rows
+}
+
+fn measure_once() -> Vec<GasRow> {
     let disc = || Shape::disc(0.35).expect("a fine disc");
     let block = || Shape::rounded_block(0.6, 0.4, 0.1).expect("a fine block");
     let discs = COUNTS.map(|count| row("discs", count, gas(count, 1.0, 0.0, |_| disc())));

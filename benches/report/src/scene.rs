@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 use halfgap::BodyState;
-use halfgap::geometry::PathSpec;
+use halfgap::geometry::{EdgeSpec, PathSpec};
 
 /// A scene with what is known of its answer.
 #[derive(Clone, Debug)]
@@ -172,8 +172,13 @@ impl Scene {
 
     /// True if some shape has arcs that are no full circle, which engines of segments must cut up.
     #[must_use]
-    pub fn has_outlines(&self) -> bool {
-        self.bodies.iter().any(|body| matches!(body.shape, Shape::Outline(_)))
+    pub fn has_arcs(&self) -> bool {
+        let is_arc = |edge: &EdgeSpec| !matches!(edge, EdgeSpec::Line { .. });
+        let has_arcs = |path: &PathSpec| path.edges.iter().any(is_arc);
+        self.bodies.iter().any(|body| match &body.shape {
+            Shape::Outline(paths) => paths.iter().any(has_arcs),
+            Shape::Disc { .. } | Shape::Block { .. } => false,
+        })
     }
 
     /// Kinetic energy and that of gravity [J].

@@ -184,5 +184,5 @@ pub fn box2d_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
 
 /// Segments for a full circle; none where nothing is cut.
 fn segments<'a>(scene: &Scene, effort: &'a Effort) -> &'a [usize] {
-    if scene.has_outlines() { &effort.segments } else { &[0] }
+    if scene.has_arcs() { &effort.segments } else { &[0] }
 }

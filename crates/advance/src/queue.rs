@@ -1,6 +1,6 @@
 //! The event queue: at most one predicted event a source, the earliest first.
 //!
-//! A binary heap that knows where each source's entry lies, so that a prediction that an event made worthless is replaced
+//! A heap of four children a node that knows where each source's entry lies, so that a prediction that an event made worthless is replaced
 //! in place and nothing stale ever comes out. Equal times come in the order of their sources, so that runs repeat to the
 //! bit. Compare M. Bannerman et al., "Stable algorithm for event detection in event-driven particle dynamics",
 //! arXiv 1211.6718, and the queues they cite.
@@ -20,7 +20,16 @@ pub struct Scheduled {
     pub source: SourceId,
 }
 
+impl Scheduled {
+    #[inline]
+    fn is_before(&self, other: &Self) -> bool {
+        self.time.is_before(other.time) | ((self.time == other.time) & (self.source < other.source))
+    }
+}
+
 const ABSENT: u32 = u32::MAX;
+/// Children of a node of the heap: they lie side by side, and half as many levels are gone through as with two.
+const CHILDREN: usize = 4;
 
 /// The predicted events of all sources.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +83,7 @@ impl EventQueue {
             self.rise(self.heap.len() - 1);
         } else {
             let place = self.places[index] as usize;
-            let is_earlier = entry < self.heap[place];
+            let is_earlier = entry.is_before(&self.heap[place]);
             self.heap[place] = entry;
             if is_earlier { self.rise(place) } else { self.sink(place) }
         }
@@ -89,7 +98,7 @@ impl EventQueue {
         let place = place as usize;
         let Some(last) = self.heap.pop() else { return };
         if place < self.heap.len() {
-            let is_earlier = last < self.heap[place];
+            let is_earlier = last.is_before(&self.heap[place]);
             self.heap[place] = last;
             if is_earlier { self.rise(place) } else { self.sink(place) }
         }
@@ -98,8 +107,8 @@ impl EventQueue {
     fn rise(&mut self, mut place: usize) {
         let entry = self.heap[place];
         while place > 0 {
-            let parent = (place - 1) / 2;
-            if self.heap[parent] <= entry {
+            let parent = (place - 1) / CHILDREN;
+            if !entry.is_before(&self.heap[parent]) {
                 break;
             }
             self.put(place, self.heap[parent]);
@@ -110,15 +119,8 @@ impl EventQueue {
 
     fn sink(&mut self, mut place: usize) {
         let entry = self.heap[place];
-        loop {
-            let mut child = 2 * place + 1;
-            if child >= self.heap.len() {
-                break;
-            }
-            if child + 1 < self.heap.len() && self.heap[child + 1] < self.heap[child] {
-                child += 1;
-            }
-            if entry <= self.heap[child] {
+        while let Some(child) = self.earliest_child(place) {
+            if !self.heap[child].is_before(&entry) {
                 break;
             }
             self.put(place, self.heap[child]);
@@ -127,6 +129,22 @@ impl EventQueue {
         self.put(place, entry);
     }
 
+    /// Place of the earliest child of a place, if it has any.
+    #[inline]
+    fn earliest_child(&self, place: usize) -> Option<usize> {
+        let first = CHILDREN * place + 1;
+        let last = (first + CHILDREN).min(self.heap.len());
+        let children = self.heap.get(first..last)?;
+        // Which child it is cannot be foretold: no branches.
+        let earlier = |a: usize, b: usize| if children[b].is_before(&children[a]) { b } else { a };
+        match children.len() {
+            0 => None,
+            CHILDREN => Some(first + earlier(earlier(0, 1), earlier(2, 3))),
+            few => Some(first + (1..few).fold(0, earlier)),
+        }
+    }
+
+    #[inline]
     fn put(&mut self, place: usize, entry: Scheduled) {
         self.heap[place] = entry;
         self.places[entry.source.0 as usize] =

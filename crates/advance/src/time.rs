@@ -7,7 +7,7 @@ use std::fmt;
 ///
 /// Adding a step is exact to about 1e-32 of the time, so that an event a million seconds into a run is as sharp as one
 /// at its start. Source of the exact sum: D. Knuth, The Art of Computer Programming 2, 4.2.2, theorem B.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Time {
     seconds: f64,
     rest: f64,
@@ -27,6 +27,7 @@ impl Time {
 
     /// The time as one number [s].
     #[must_use]
+    #[inline]
     pub fn seconds(self) -> f64 {
         self.seconds
     }
@@ -54,31 +55,75 @@ impl Time {
         (self.seconds - earlier.seconds) + (self.rest - earlier.rest)
     }
 
+    /// True if this time is earlier, found without a branch.
+    #[inline]
+    pub(crate) fn is_before(self, other: Time) -> bool {
+        (self.seconds < other.seconds) | ((self.seconds == other.seconds) & (self.rest < other.rest))
+    }
+
     /// The earlier of two times.
     #[must_use]
+    #[inline]
     pub fn min(self, other: Time) -> Time {
-        if other < self { other } else { self }
+        // Which it is can seldom be foretold: no branch.
+        [self, other][usize::from(other < self)]
     }
 
     /// The later of two times.
     #[must_use]
+    #[inline]
     pub fn max(self, other: Time) -> Time {
         if other > self { other } else { self }
+    }
+}
+
+impl PartialEq for Time {
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        (self.seconds == other.seconds) & (self.rest == other.rest)
     }
 }
 
 impl Eq for Time {}
 
 impl PartialOrd for Time {
+    #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
+    }
+
+    #[inline]
+    fn lt(&self, other: &Self) -> bool {
+        self.is_before(*other)
+    }
+
+    #[inline]
+    fn gt(&self, other: &Self) -> bool {
+        other < self
+    }
+
+    #[inline]
+    fn le(&self, other: &Self) -> bool {
+        !other.is_before(*self)
+    }
+
+    #[inline]
+    fn ge(&self, other: &Self) -> bool {
+        other <= self
     }
 }
 
 impl Ord for Time {
     #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
-        self.seconds.total_cmp(&other.seconds).then(self.rest.total_cmp(&other.rest))
+        debug_assert!(!self.seconds.is_nan() && !other.seconds.is_nan(), "times are numbers");
+        if self < other {
+            Ordering::Less
+        } else if other < self {
+            Ordering::Greater
+        } else {
+            Ordering::Equal
+        }
     }
 }
 

@@ -13,7 +13,9 @@ const NONE: u32 = u32::MAX;
 /// Heights of two children may differ by so much: small boxes matter more than perfect balance.
 const LOPSIDED: u32 = 4;
 
+/// A line of the cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 struct Node {
     bounds: Aabb,
     parent: u32,
@@ -29,6 +31,8 @@ pub struct BroadPhase {
     nodes: Vec<Node>,
     root: Option<u32>,
     free: Vec<u32>,
+    /// Nodes that a search has still to go to.
+    stack: Vec<u32>,
     /// Leaf of each body, by index.
     leaves: Vec<Option<u32>>,
 }
@@ -49,23 +53,29 @@ impl BroadPhase {
 
     /// Gives a body its box [m], in place of the one it had.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
-        self.remove(body);
         if self.leaves.len() <= body.index() {
             self.leaves.resize(body.index() + 1, None);
         }
+        // A box that moves seldom goes far: the search for its new place begins where it was.
+        let near = self.take_out(body).map(|sibling| self.least_around(sibling, &bounds));
         let leaf = self.allocate(Node { bounds, parent: NONE, children: [NONE; 2], height: 0, body });
         self.leaves[body.index()] = Some(leaf);
-        self.insert(leaf);
+        self.insert(leaf, near);
     }
 
     /// Takes a body's box away; nothing happens if it has none.
     pub fn remove(&mut self, body: BodyId) {
-        let Some(leaf) = self.leaves.get_mut(body.index()).and_then(Option::take) else { return };
+        self.take_out(body);
+    }
+
+    /// Takes a body's box away; the node that was beside it, if there was one.
+    fn take_out(&mut self, body: BodyId) -> Option<u32> {
+        let leaf = self.leaves.get_mut(body.index()).and_then(Option::take)?;
         self.free.push(leaf);
         let parent = self.nodes[leaf as usize].parent;
         if parent == NONE {
             self.root = None;
-            return;
+            return None;
         }
         let [left, right] = self.nodes[parent as usize].children;
         let sibling = if left == leaf { right } else { left };
@@ -73,26 +83,52 @@ impl BroadPhase {
         self.free.push(parent);
         self.replace_child(above, parent, sibling);
         self.refit_from(above);
+        Some(sibling)
     }
 
-    /// Visits every body whose box overlaps the given one.
-    pub fn visit_overlapping(&self, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
-        if let Some(root) = self.root {
-            self.visit_below(root, bounds, visit);
+    /// The least box around a node that holds the given one, or the root.
+    fn least_around(&self, mut node: u32, bounds: &Aabb) -> u32 {
+        loop {
+            let here = &self.nodes[node as usize];
+            if here.bounds.contains(bounds) || here.parent == NONE {
+                return node;
+            }
+            node = here.parent;
         }
     }
 
-    fn visit_below(&self, node: u32, bounds: &Aabb, visit: &mut impl FnMut(BodyId)) {
-        let here = &self.nodes[node as usize];
-        if !here.bounds.overlaps(bounds) {
+    /// Finds every body whose box overlaps the given one, in the order in which the tree has them.
+    pub fn find_overlapping(&mut self, bounds: &Aabb, found: &mut Vec<BodyId>) {
+        found.clear();
+        let Some(root) = self.root else { return };
+        let root_node = &self.nodes[root as usize];
+        if root_node.height == 0 {
+            found.extend(root_node.bounds.overlaps(bounds).then_some(root_node.body));
             return;
         }
-        if here.height == 0 {
-            visit(here.body);
-        } else {
-            self.visit_below(here.children[0], bounds, visit);
-            self.visit_below(here.children[1], bounds, visit);
+        // What overlaps cannot be foretold: everything is written down, and kept if it does. Depth first, no more than one
+        // node of each level waits, and the two that come last.
+        let (mut waiting, mut count) = (1, 0);
+        let deepest = root_node.height as usize + 2;
+        self.stack.resize(self.stack.len().max(deepest), NONE);
+        let stack = &mut self.stack[..];
+        stack[0] = root;
+        while waiting > 0 {
+            waiting -= 1;
+            let children = self.nodes[stack[waiting] as usize].children;
+            if found.len() < count + 2 {
+                found.resize(2 * count + 16, BodyId(NONE));
+            }
+            for child in children {
+                let node = &self.nodes[child as usize];
+                let (overlaps, is_leaf) = (node.bounds.overlaps(bounds), node.height == 0);
+                found[count] = node.body;
+                count += usize::from(overlaps & is_leaf);
+                stack[waiting] = child;
+                waiting += usize::from(overlaps & !is_leaf);
+            }
         }
+        found.truncate(count);
     }
 
     fn allocate(&mut self, node: Node) -> u32 {
@@ -105,13 +141,14 @@ impl BroadPhase {
             .expect("a tree has fewer than 2^32 nodes: bodies are counted in 32 bits")
     }
 
-    fn insert(&mut self, leaf: u32) {
-        let Some(root) = self.root else {
+    /// Inserts a leaf below a node, or below the root.
+    fn insert(&mut self, leaf: u32, below: Option<u32>) {
+        let Some(below) = below.or(self.root) else {
             self.root = Some(leaf);
             return;
         };
         let bounds = self.nodes[leaf as usize].bounds;
-        let sibling = self.best_sibling(root, &bounds);
+        let sibling = self.best_sibling(below, &bounds);
         let above = self.nodes[sibling as usize].parent;
         let parent = self.allocate(Node {
             bounds: self.nodes[sibling as usize].bounds.union(bounds),
@@ -126,9 +163,8 @@ impl BroadPhase {
         self.refit_from(above);
     }
 
-    /// Descends to where a new box makes the boxes above grow least.
-    fn best_sibling(&self, root: u32, bounds: &Aabb) -> u32 {
-        let mut node = root;
+    /// Descends from a node to where a new box makes the boxes above grow least.
+    fn best_sibling(&self, mut node: u32, bounds: &Aabb) -> u32 {
         loop {
             let here = &self.nodes[node as usize];
             if here.height == 0 {
@@ -161,20 +197,26 @@ impl BroadPhase {
         children[usize::from(children[1] == old)] = new;
     }
 
-    /// Mends boxes, heights and balance from a node up to the root.
+    /// Mends boxes, heights and balance from a node up to the root, or to where nothing changes any more.
     fn refit_from(&mut self, mut node: u32) {
         while node != NONE {
             let node_now = self.balance(node);
-            self.refit(node_now);
+            let is_as_before = !self.refit(node_now);
+            if is_as_before && node_now == node {
+                break;
+            }
             node = self.nodes[node_now as usize].parent;
         }
     }
 
-    fn refit(&mut self, node: u32) {
+    /// True if the box or the height of a node has changed.
+    fn refit(&mut self, node: u32) -> bool {
         let [left, right] = self.nodes[node as usize].children.map(|child| &self.nodes[child as usize]);
         let (bounds, height) = (left.bounds.union(right.bounds), 1 + left.height.max(right.height));
         let here = &mut self.nodes[node as usize];
+        let has_changed = here.bounds != bounds || here.height != height;
         (here.bounds, here.height) = (bounds, height);
+        has_changed
     }
 
     /// Swaps a child with a child of the other where that shrinks the other's box.
@@ -247,9 +289,10 @@ mod tests {
         DVec2::new(turn.fract() * 100.0, (turn * 7.1).fract() * 100.0)
     }
 
-    fn found(broad: &BroadPhase, bounds: &Aabb) -> Vec<u32> {
+    fn found(broad: &mut BroadPhase, bounds: &Aabb) -> Vec<u32> {
         let mut bodies = Vec::new();
-        broad.visit_overlapping(bounds, &mut |body| bodies.push(body.0));
+        broad.find_overlapping(bounds, &mut bodies);
+        let mut bodies: Vec<u32> = bodies.into_iter().map(|body| body.0).collect();
         bodies.sort_unstable();
         bodies
     }
@@ -269,9 +312,29 @@ mod tests {
             for (index, query) in boxes.iter().enumerate().step_by(11) {
                 let expected: Vec<u32> =
                     (0..300).filter(|&other| boxes[other as usize].overlaps(query)).collect();
-                assert_eq!(found(&broad, query), expected, "box {index} in round {round}");
+                assert_eq!(found(&mut broad, query), expected, "box {index} in round {round}");
             }
         }
+    }
+
+    #[test]
+    fn boxes_that_drift_are_found_and_the_tree_stays_shallow() {
+        let mut broad = BroadPhase::new();
+        let heading = |index: u32| DVec2::from_angle(f64::from(index) * 2.4);
+        let bounds = |index: u32, round: u32| {
+            Aabb::around_disc(place(index) + heading(index) * (0.5 * f64::from(round)), 1.5)
+        };
+        (0..500).for_each(|index| broad.set(BodyId(index), bounds(index, 0)));
+        // The last rounds are hundreds of widths away from the first.
+        for round in 1..1000 {
+            (0..500).for_each(|index| broad.set(BodyId(index), bounds(index, round)));
+            let query = bounds(round % 500, round);
+            let expected: Vec<u32> =
+                (0..500).filter(|&other| bounds(other, round).overlaps(&query)).collect();
+            assert_eq!(found(&mut broad, &query), expected, "round {round}");
+        }
+        let root = broad.root.expect("there are bodies");
+        assert!(broad.nodes[root as usize].height <= 20, "height {}", broad.nodes[root as usize].height);
     }
 
     #[test]
@@ -292,7 +355,7 @@ mod tests {
         }
         for index in 0..10 {
             broad.remove(BodyId(index));
-            assert_eq!(found(&broad, &Aabb::around(DVec2::ZERO)).len(), 9 - index as usize);
+            assert_eq!(found(&mut broad, &Aabb::around(DVec2::ZERO)).len(), 9 - index as usize);
             assert_eq!(broad.bounds(BodyId(index)), None);
         }
     }

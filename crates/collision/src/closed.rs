@@ -28,6 +28,7 @@ impl Quadratic {
     /// First time at which the pair is at or below its target and closes.
     ///
     /// A pair that starts deeper than `depth` [m] lies behind: it must rise to its target before it can close to it.
+    #[inline]
     pub(crate) fn first_closing(&self, depth: f64) -> Option<f64> {
         let deepest = -depth * self.scale;
         if self.c < deepest {
@@ -43,6 +44,20 @@ impl Quadratic {
         } else {
             first_closing_by(self.c, self.v, self.a, self.discriminant)
         }
+    }
+
+    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative; infinite if there is none.
+    ///
+    /// Whether two discs near each other meet cannot be foretold: apart from those that touch already, they are judged
+    /// without branches.
+    #[inline]
+    pub(crate) fn first_meeting(&self, depth: f64) -> f64 {
+        if self.c <= 0.0 {
+            return self.first_closing(depth).unwrap_or(f64::INFINITY);
+        }
+        let meets = (self.v < 0.0) & (self.discriminant >= 0.0);
+        let time = 2.0 * self.c / (self.discriminant.max(0.0).sqrt() - self.v);
+        [f64::INFINITY, time][usize::from(meets)]
     }
 }
 
@@ -85,7 +100,15 @@ fn center_path<M: Motion>(round: &RoundFeature, motion: &M, offset: f64) -> Opti
     })
 }
 
-fn of_centers(a: &Polynomial, b: &Polynomial, radii: f64, inner: bool, target: f64) -> Option<Quadratic> {
+/// The quadratic of two centres on parabolas, whose discs have radii of the given sum [m].
+#[inline]
+pub(crate) fn of_centers(
+    a: &Polynomial,
+    b: &Polynomial,
+    radii: f64,
+    inner: bool,
+    target: f64,
+) -> Option<Quadratic> {
     if a.acceleration != b.acceleration {
         return None;
     }

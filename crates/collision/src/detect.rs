@@ -46,6 +46,11 @@ pub fn detect_features_of_pair(
     time: f64,
     found: &mut Vec<Collision>,
 ) {
+    if let ([_], [_]) = (a.body.shape.features(), b.body.shape.features()) {
+        // Two discs: nothing to choose from.
+        found.extend(detect_features([a, b], [FeatureId(0); 2], tolerances, depth, time));
+        return;
+    }
     let distance = tolerances.distance_tol().max(depth);
     a.body.shape.tree().visit_near_pairs(
         &a.moving.pose,

@@ -3,10 +3,10 @@
 //! Nothing is missed: the search moves through windows of time, in each of which bounds on the motion leave only feature
 //! pairs that can come near; each of these is decided by a closed form or by a march that never passes a contact.
 
-use crate::closed::quadratic;
+use crate::closed::{of_centers, quadratic};
 use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
-use crate::motion::Motion;
+use crate::motion::{Motion, Polynomial};
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 
@@ -116,24 +116,23 @@ pub struct FeatureRule {
     pub target: Option<f64>,
 }
 
-/// [`first_contact`] of two discs about their centres of mass, given as motion, offset [s] and radius [m], without a look
-/// at their shapes; `None` if it has no closed form.
+/// [`first_contact`] of two discs about their centres of mass, given as parabola and radius [m], without a look at their
+/// shapes; `None` if it has no closed form.
 #[must_use]
-pub fn disc_contact<A: Motion, B: Motion>(
-    (motion_a, offset_a, radius_a): (&A, f64, f64),
-    (motion_b, offset_b, radius_b): (&B, f64, f64),
+#[inline]
+pub fn disc_contact(
+    (a, radius_a): (Polynomial, f64),
+    (b, radius_b): (Polynomial, f64),
     span: f64,
     tolerances: &Tolerances,
 ) -> Option<Search> {
-    let (circle_a, circle_b) = (reach_circle(radius_a), reach_circle(radius_b));
-    let (a, b) = ((&circle_a, motion_a), (&circle_b, motion_b));
-    let curve = quadratic(PairKind::Outer, a, b, [offset_a, offset_b], tolerances.target_gap)?;
-    let time = curve.first_closing(tolerances.distance_tol()).filter(|&time| time < span);
+    let curve = of_centers(&a, &b, radius_a + radius_b, false, tolerances.target_gap)?;
+    let time = curve.first_meeting(tolerances.distance_tol());
+    if time >= span {
+        return Some(Search::NoneBefore(span));
+    }
     // A disc has one feature.
-    let (feature_a, feature_b) = (FeatureId(0), FeatureId(0));
-    Some(time.map_or(Search::NoneBefore(span), |time| {
-        Search::Contact(FirstContact { time, feature_a, feature_b })
-    }))
+    Some(Search::Contact(FirstContact { time, feature_a: FeatureId(0), feature_b: FeatureId(0) }))
 }
 
 /// A search for the first contact of two shapes, with rules for some of their feature pairs.

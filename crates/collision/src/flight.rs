@@ -46,6 +46,14 @@ impl Flight {
         Self { start, start_rotation, acceleration, linear_rate, angular_rate }
     }
 
+    /// Goes on from another state; a rotation that stays the same is not computed again.
+    pub fn restart(&mut self, start: BodyState) {
+        if start.angle != self.start.angle {
+            self.start_rotation = Rotation::from_angle(start.angle);
+        }
+        self.start = start;
+    }
+
     /// A body that stays where it is.
     #[must_use]
     pub fn fixed(position: DVec2, angle: f64) -> Self {
@@ -56,6 +64,17 @@ impl Flight {
     #[must_use]
     pub fn start(&self) -> &BodyState {
         &self.start
+    }
+
+    /// The parabola of the centre of mass from the start on; `None` if damping bends it.
+    #[must_use]
+    pub fn parabola(&self) -> Option<Polynomial> {
+        let (position, velocity) = (self.start.position, self.start.velocity);
+        (self.linear_rate == 0.0).then_some(Polynomial {
+            position,
+            velocity,
+            acceleration: self.acceleration,
+        })
     }
 
     /// Acceleration of the centre of mass [m/s^2] at an offset [s], damping included.

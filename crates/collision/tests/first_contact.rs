@@ -4,7 +4,7 @@
 use glam::DVec2;
 use halfgap_collision::{
     BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
-    first_contact,
+    disc_contact, first_contact,
 };
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape};
 
@@ -323,4 +323,33 @@ fn a_rule_with_a_wider_gap_than_all_others_fires() {
     let search =
         PairSearch { a: &side_a, b: &side_b, tolerances: &narrow, settings: &settings, rules: &rules };
     assert_eq!(search.step(0.0, 1e-3), Search::Contact(found));
+}
+
+#[test]
+fn two_discs_meet_to_the_bit_when_their_shapes_do() {
+    let mut random = Random(7);
+    let tolerances = Tolerances { target_gap: 1e-6, accuracy: 0.6e-6, velocity_tol: 1e-9 };
+    let settings = SearchSettings::default();
+    let mut meetings = 0;
+    for _ in 0..PAIRS {
+        let gravity = DVec2::new(0.3, random.one_of(&[0.0, -9.81]));
+        let radii = [random.between(0.1, 1.0), random.between(0.1, 1.0)];
+        // Some touch already, up to a fifth of their target too near.
+        let apart = radii[0] + radii[1] + random.one_of(&[0.8e-6, 1e-6, 1.1e-6, 0.5, 3.0]);
+        let place = random.direction() * apart;
+        let flights = [DVec2::ZERO, place].map(|position| {
+            let velocity = random.direction() * random.between(0.0, 2.0);
+            Flight::new(BodyState { position, velocity, ..BodyState::default() }, gravity, 0.0, 0.0)
+        });
+        let offset = random.one_of(&[0.0, 0.25]);
+        let shapes = radii.map(|radius| Shape::disc(radius).expect("a fine radius"));
+        let side = |index: usize| MovingShape { shape: &shapes[index], motion: &flights[index], offset };
+        let general = first_contact(&side(0), &side(1), 5.0, &tolerances, &settings);
+        let disc =
+            |index: usize| (flights[index].polynomial_from(offset).expect("nothing damps it"), radii[index]);
+        let special = disc_contact(disc(0), disc(1), 5.0, &tolerances);
+        assert_eq!(special, Some(general));
+        meetings += u32::from(matches!(general, Search::Contact(_)));
+    }
+    assert!(meetings > 500, "{meetings}");
 }

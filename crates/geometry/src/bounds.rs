@@ -45,10 +45,11 @@ impl Aabb {
     /// True if the boxes share a point.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
-        self.min.x <= other.max.x
-            && other.min.x <= self.max.x
-            && self.min.y <= other.max.y
-            && other.min.y <= self.max.y
+        // Without branches: near a tree's leaves none of the four could be foretold.
+        (self.min.x <= other.max.x)
+            & (other.min.x <= self.max.x)
+            & (self.min.y <= other.max.y)
+            & (other.min.y <= self.max.y)
     }
 
     /// True if all of `other` lies inside.

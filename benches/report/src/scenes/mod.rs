@@ -6,6 +6,7 @@ mod chain;
 mod convex_arc;
 mod exact;
 mod four_bar;
+mod geneva;
 mod impacts;
 mod piles;
 mod rail;
@@ -16,7 +17,7 @@ use crate::scene::Scene;
 type Maker = (&'static str, fn() -> Scene);
 
 /// All scenes, in the order of the report: impacts, mechanisms, contacts, and piles of which only the time is measured.
-const MAKERS: [Maker; 18] = [
+const MAKERS: [Maker; 19] = [
     ("ball_bounce", || exact::read("ball_bounce", 0.05)),
     ("bounce_to_rest", impacts::to_rest),
     ("two_discs_e1", || exact::read("two_discs_e1", 0.5)),
@@ -32,6 +33,7 @@ const MAKERS: [Maker; 18] = [
     ("disc_in_bowl", || exact::read("disc_in_bowl", 0.5)),
     ("disc_off_hill", convex_arc::scene),
     ("cam_and_roller", cam::scene),
+    ("geneva_drive", geneva::scene),
     ("brachistochrone", rail::scene),
     ("settling_discs", piles::discs),
     ("stack_of_boxes", piles::stack),

@@ -312,10 +312,7 @@ impl RigidSystem {
     /// that touch without force.
     fn set_rules(&mut self, region: &Region, settling: &Settling) {
         for &body in &region.bodies {
-            for index in 0..self.pairs.of_body(body).len() {
-                let pair = self.pairs.of_body(body)[index];
-                self.pairs.rules_mut(pair).clear();
-            }
+            self.pairs.clear_rules_of(body);
         }
         let rest = self.rest_speed();
         self.set_halos(region);
@@ -328,7 +325,9 @@ impl RigidSystem {
                 let target = if rate <= rest { self.sunk(gap) } else { self.settings.tolerances.target_gap };
                 touch.lowered_to(target)
             };
-            self.pairs.rules_mut(pair).push(rule);
+            if !self.is_idle(touch, &rule) {
+                self.pairs.change_rules(pair, |rules| rules.push(rule));
+            }
         }
     }
 
@@ -338,12 +337,21 @@ impl RigidSystem {
         let Some(fired) = region.fired.filter(|_| repeats > 0) else { return };
         let Some(pair) = self.pairs.between(fired.bodies[0], fired.bodies[1]) else { return };
         let lower = f64::from(repeats) * self.sink();
-        for rule in self.pairs.rules_mut(pair) {
-            rule.target = rule.target.map(|target| target - lower);
-        }
+        self.pairs.change_rules(pair, |rules| {
+            for rule in rules {
+                rule.target = rule.target.map(|target| target - lower);
+            }
+        });
         for body in fired.bodies {
-            self.halos[body.index()] -= lower;
+            self.lanes[body.index()].halo -= lower;
         }
+    }
+
+    /// True if a rule says of two discs what holds of them without it.
+    fn is_idle(&self, touch: &Touch, rule: &FeatureRule) -> bool {
+        let target = self.settings.tolerances.target_gap;
+        let mut lanes = touch.bodies.iter().map(|body| &self.lanes[body.index()]);
+        rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
     }
 
     /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
@@ -352,7 +360,7 @@ impl RigidSystem {
     fn set_halos(&mut self, region: &Region) {
         let target = self.settings.tolerances.target_gap;
         for &body in &region.bodies {
-            self.halos[body.index()] = target;
+            self.lanes[body.index()].halo = target;
         }
         let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
         let least = target - self.settings.tolerances.accuracy;
@@ -361,7 +369,7 @@ impl RigidSystem {
                 continue;
             }
             for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
-                let halo = &mut self.halos[body.index()];
+                let halo = &mut self.lanes[body.index()].halo;
                 *halo = halo.min((gap - seam).max(least));
             }
         }
@@ -395,12 +403,13 @@ impl RigidSystem {
     /// How often the contacts of a pair have been handled at the present time.
     fn note_repeat(&mut self, pair: PairId) -> Result<u32, AdvanceError> {
         let now = self.now;
-        let entry = self.pairs.get_mut(pair);
+        let bodies = self.pairs.get(pair).bodies;
+        let entry = self.pairs.past_mut(pair);
         let same_time = SAME_TIME * f64::EPSILON * now.seconds().abs();
         let is_repeat = entry.last_contact.is_some_and(|last| now.since(last) <= same_time);
         entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
         entry.last_contact = Some(now);
-        let (events, [primary, normal]) = (entry.repeats, entry.bodies);
+        let (events, [primary, normal]) = (entry.repeats, bodies);
         if events > MOST_REPEATS {
             let between = Between { primary, normal };
             return Err(AdvanceError::Stuck { time: now.seconds(), between, events });

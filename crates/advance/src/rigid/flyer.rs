@@ -102,6 +102,11 @@ impl Flyer {
         }
     }
 
+    /// When the present segment started.
+    pub(crate) fn start(&self) -> Time {
+        self.start
+    }
+
     /// Offset [s] of a time in the present segment.
     #[inline]
     pub(crate) fn offset(&self, time: Time) -> f64 {
@@ -149,7 +154,7 @@ impl Flyer {
     pub(crate) fn fly_from(&mut self, time: Time, state: BodyState) {
         self.start = time;
         self.is_integrated = false;
-        self.flight = Flight::new(state, self.law.acceleration, self.law.linear_rate, self.law.angular_rate);
+        self.flight.restart(state);
     }
 
     /// Starts a segment that was integrated: x, y, angle.

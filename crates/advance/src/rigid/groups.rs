@@ -333,7 +333,7 @@ impl RigidSystem {
             let touch = Touch { bodies: row.bodies, features };
             let stays = self.gap_at(touch, self.now).0 < opened;
             if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
-                self.pairs.rules_mut(pair).retain(|rule| rule.features != features);
+                self.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
                 // It has left the target zone: when it comes back it is no low bounce.
                 self.pairs.seen_mut(pair).retain(|seen| seen.features != features);
                 touched.push(pair);
@@ -342,8 +342,7 @@ impl RigidSystem {
         });
         self.groups.put(group);
         for &pair in &touched {
-            self.pairs.get_mut(pair).clear = self.now;
-            self.pairs.get_mut(pair).prediction = Prediction::Quiet;
+            self.note_prediction(pair, (Prediction::Quiet, self.now));
         }
         self.touched = touched;
     }

@@ -1,12 +1,12 @@
 //! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by pair,
 //! events located at their time.
 //!
-//! What moves: `flyer` is one body with its segment, `path` its motion along it; `law` is what a force law is, `rows` are
+//! What moves: `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
 //! motion, `segment` one step of them, `brief` which method makes it, `watch` (with `crossing`) what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
-//! contact, `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
+//! contact (`marks` tells who is near), `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
 //! collects the bodies that touch, `groups` cuts and makes groups, `impacts` applies impulses, `settle` finds what is held,
 //! `bounces` and `hops` tell those that are too low to count, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
 //! keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
@@ -25,8 +25,10 @@ mod group;
 mod groups;
 mod hops;
 mod impacts;
+mod lane;
 mod law;
 mod ledger;
+mod marks;
 mod pairs;
 mod path;
 mod predictions;

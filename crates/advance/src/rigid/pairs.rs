@@ -11,26 +11,55 @@ pub(crate) struct PairId(pub(crate) u32);
 /// What is known of a pair's next contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Prediction {
-    /// A contact at this time, of these features.
-    Contact(Time, [FeatureId; 2]),
-    /// No contact before this time, at which the search goes on.
-    SearchOn(Time),
-    /// No contact before one of the bodies leaves its box.
+    /// A contact of these features, at the time until which the pair is clear.
+    Contact([FeatureId; 2]),
+    /// No contact before that time, at which the search goes on.
+    SearchOn,
+    /// No contact before one of the bodies leaves its box: nothing is in the queue.
     Quiet,
 }
 
-/// Two bodies whose boxes overlap.
+/// Two bodies whose boxes overlap: what every prediction reads, and no more.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub(crate) bodies: [BodyId; 2],
-    /// No contact before this time, other than a predicted one.
+    /// No contact before this time.
     pub(crate) clear: Time,
     pub(crate) prediction: Prediction,
-    /// Contacts of this pair handled one after another without time going by.
-    pub(crate) repeats: u32,
-    /// Time of its last contact.
-    pub(crate) last_contact: Option<Time>,
+    /// The last batch of predictions that it was in.
+    batch: u32,
+    /// False if no feature pair is searched otherwise.
+    pub(crate) has_rules: bool,
     alive: bool,
+}
+
+/// A pair as one of its bodies sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Link {
+    pub(crate) pair: PairId,
+    pub(crate) other: BodyId,
+}
+
+/// What a pair keeps of its past.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PairPast {
+    /// Feature pairs that are searched otherwise.
+    rules: Vec<FeatureRule>,
+    /// Feature pairs that have touched lately.
+    seen: Vec<Seen>,
+    /// Contacts handled one after another without time going by.
+    pub(crate) repeats: u32,
+    /// Time of the last contact.
+    pub(crate) last_contact: Option<Time>,
+}
+
+impl PairPast {
+    /// Forgets everything but the room of its buffers.
+    fn clear(&mut self) {
+        self.rules.clear();
+        self.seen.clear();
+        (self.repeats, self.last_contact) = (0, None);
+    }
 }
 
 /// Two features as they were at the last event in which they touched.
@@ -49,12 +78,11 @@ pub(crate) struct Seen {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
-    /// Feature pairs that are searched otherwise, of each pair.
-    rules: Vec<Vec<FeatureRule>>,
-    /// Feature pairs that have touched lately, of each pair.
-    seen: Vec<Vec<Seen>>,
+    pasts: Vec<PairPast>,
     free: Vec<PairId>,
-    of_body: Vec<Vec<PairId>>,
+    of_body: Vec<Vec<Link>>,
+    /// The present batch of predictions.
+    batch: u32,
     /// Fixed bodies keep no list: nothing ever changes their motion, and theirs would be the longest.
     is_fixed: Vec<bool>,
 }
@@ -74,62 +102,96 @@ impl Pairs {
 
     /// Rules for single pairs of features.
     pub(crate) fn rules(&self, id: PairId) -> &[FeatureRule] {
-        &self.rules[id.0 as usize]
+        &self.pasts[id.0 as usize].rules
     }
 
-    pub(crate) fn rules_mut(&mut self, id: PairId) -> &mut Vec<FeatureRule> {
-        &mut self.rules[id.0 as usize]
+    /// To change the rules, after which `has_rules` says whether there are any.
+    pub(crate) fn change_rules<T>(
+        &mut self,
+        id: PairId,
+        change: impl FnOnce(&mut Vec<FeatureRule>) -> T,
+    ) -> T {
+        let rules = &mut self.pasts[id.0 as usize].rules;
+        let answer = change(rules);
+        self.pairs[id.0 as usize].has_rules = !rules.is_empty();
+        answer
+    }
+
+    /// Drops the rules of all pairs of a body.
+    pub(crate) fn clear_rules_of(&mut self, body: BodyId) {
+        for link in &self.of_body[body.index()] {
+            let pair = &mut self.pairs[link.pair.0 as usize];
+            if pair.has_rules {
+                pair.has_rules = false;
+                self.pasts[link.pair.0 as usize].rules.clear();
+            }
+        }
+    }
+
+    pub(crate) fn past_mut(&mut self, id: PairId) -> &mut PairPast {
+        &mut self.pasts[id.0 as usize]
+    }
+
+    /// Begins a batch of predictions.
+    pub(crate) fn begin_batch(&mut self) {
+        self.batch = self.batch.wrapping_add(1);
+        if self.batch == 0 {
+            self.pairs.iter_mut().for_each(|pair| pair.batch = 0);
+            self.batch = 1;
+        }
+    }
+
+    /// Puts a pair into the present batch; `None` if it is there already.
+    #[inline]
+    pub(crate) fn enter_batch(&mut self, id: PairId) -> Option<&mut Pair> {
+        let batch = self.batch;
+        let pair = self.get_mut(id);
+        (std::mem::replace(&mut pair.batch, batch) != batch).then_some(pair)
     }
 
     /// Feature pairs that have touched lately.
     pub(crate) fn seen(&self, id: PairId) -> &[Seen] {
-        &self.seen[id.0 as usize]
+        &self.pasts[id.0 as usize].seen
     }
 
     pub(crate) fn seen_mut(&mut self, id: PairId) -> &mut Vec<Seen> {
-        &mut self.seen[id.0 as usize]
+        &mut self.pasts[id.0 as usize].seen
     }
 
     /// Pairs of a body that is not fixed, in an order that depends on the past alone.
-    pub(crate) fn of_body(&self, body: BodyId) -> &[PairId] {
+    pub(crate) fn of_body(&self, body: BodyId) -> &[Link] {
         &self.of_body[body.index()]
     }
 
     /// The pair of two bodies, if there is one.
     pub(crate) fn between(&self, a: BodyId, b: BodyId) -> Option<PairId> {
         let (few, other) = if self.is_fixed[a.index()] { (b, a) } else { (a, b) };
-        self.of_body(few).iter().copied().find(|&pair| self.get(pair).bodies.contains(&other))
+        self.of_body(few).iter().find(|link| link.other == other).map(|link| link.pair)
     }
 
     pub(crate) fn add(&mut self, a: BodyId, b: BodyId, clear: Time) -> PairId {
         let bodies = if a < b { [a, b] } else { [b, a] };
-        let pair = Pair {
-            bodies,
-            clear,
-            prediction: Prediction::Quiet,
-            repeats: 0,
-            last_contact: None,
-            alive: true,
-        };
+        let pair =
+            Pair { bodies, clear, prediction: Prediction::Quiet, batch: 0, has_rules: false, alive: true };
         let id = match self.free.pop() {
             Some(id) => {
                 *self.get_mut(id) = pair;
-                self.rules_mut(id).clear();
-                self.seen_mut(id).clear();
+                self.past_mut(id).clear();
                 id
             }
             None => {
                 self.pairs.push(pair);
-                self.rules.push(Vec::new());
-                self.seen.push(Vec::new());
+                self.pasts.push(PairPast::default());
                 PairId(
                     u32::try_from(self.pairs.len() - 1)
                         .expect("pairs of 32-bit bodies that are near each other"),
                 )
             }
         };
-        for body in bodies.into_iter().filter(|body| !self.is_fixed[body.index()]) {
-            self.of_body[body.index()].push(id);
+        for (body, other) in [(a, b), (b, a)] {
+            if !self.is_fixed[body.index()] {
+                self.of_body[body.index()].push(Link { pair: id, other });
+            }
         }
         id
     }
@@ -139,7 +201,7 @@ impl Pairs {
         self.get_mut(id).alive = false;
         for body in self.get(id).bodies {
             let list = &mut self.of_body[body.index()];
-            if let Some(place) = list.iter().position(|&pair| pair == id) {
+            if let Some(place) = list.iter().position(|link| link.pair == id) {
                 list.swap_remove(place);
             }
         }

@@ -1,12 +1,13 @@
 //! What may happen next: which bodies are near each other, and when pairs of them come into contact.
 
-use super::pairs::{Pair, PairId, Prediction};
+use super::lane::{Lane, LaneKind};
+use super::pairs::{Link, Pair, PairId, Prediction};
 use super::path::Path;
 use super::system::RigidSystem;
 use crate::queue::SourceId;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Search, Tolerances, disc_contact,
+    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, Tolerances, disc_contact,
 };
 use halfgap_geometry::GapSample;
 
@@ -34,11 +35,13 @@ impl RigidSystem {
         self.renew_stay(body);
     }
 
-    /// Predicts anew when the body leaves its box.
+    /// Predicts anew when the body, whose motion may be new, leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
         let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
         let stay = self.broad.bounds(body).and_then(|fat_box| room.stays_until(flyer, fat_box, self.now));
-        self.stays[body.index()] = stay;
+        let lane = &mut self.lanes[body.index()];
+        lane.follow(flyer);
+        lane.stay = stay.unwrap_or(Time::NEVER);
         match stay {
             Some(time) => self.queue.set(SourceId(body.0), time),
             None => self.queue.clear(SourceId(body.0)),
@@ -49,27 +52,26 @@ impl RigidSystem {
     fn find_neighbours(&mut self, body: BodyId) {
         let Some(fat_box) = self.broad.bounds(body).copied() else { return };
         let mut near = std::mem::take(&mut self.neighbours);
-        near.clear();
-        self.broad.visit_overlapping(&fat_box, &mut |other| near.push(other));
-        near.retain(|&other| other != body && self.may_collide(body, other));
-        near.sort_unstable();
-        self.touched.clear();
-        self.touched.extend_from_slice(self.pairs.of_body(body));
-        for index in 0..self.touched.len() {
-            let pair = self.touched[index];
-            let [a, b] = self.pairs.get(pair).bodies;
-            let other = if a == body { b } else { a };
-            if near.binary_search(&other).is_err() {
-                self.queue.clear(self.pair_source(pair));
+        self.broad.find_overlapping(&fat_box, &mut near);
+        self.marks.begin(self.flyers.len());
+        near.iter().for_each(|&other| self.marks.set(other));
+        self.links.clear();
+        self.links.extend_from_slice(self.pairs.of_body(body));
+        for index in 0..self.links.len() {
+            let Link { pair, other } = self.links[index];
+            // What is left marked is new.
+            if !self.marks.take(other) {
+                self.note_prediction(pair, (Prediction::Quiet, self.now));
                 self.pairs.remove(pair);
             }
         }
+        near.retain(|&other| self.marks.take(other));
+        near.retain(|&other| other != body && self.may_collide(body, other));
+        near.sort_unstable();
         for &other in &near {
-            if self.pairs.between(body, other).is_none() {
-                self.pairs.add(body, other, self.now);
-            }
+            self.pairs.add(body, other, self.now);
         }
-        self.rooms[body.index()].adapt(near.len());
+        self.rooms[body.index()].adapt(self.pairs.of_body(body).len());
         self.neighbours = near;
     }
 
@@ -83,67 +85,92 @@ impl RigidSystem {
         if body.is_world() { None } else { self.group_of(body).map(|group| group.end()) }
     }
 
-    /// Until when the present motion of a body is known and near; `None` for ever.
-    fn known_until(&self, body: BodyId) -> Option<Time> {
-        match (self.stays[body.index()], self.segment_end(body)) {
-            (Some(stay), Some(end)) => Some(stay.min(end)),
-            (only, None) | (None, only) => only,
-        }
+    /// Until when the present motion of a body is known and near.
+    fn known_until(&self, body: BodyId) -> Time {
+        let stay = self.lanes[body.index()].stay;
+        self.segment_end(body).map_or(stay, |end| stay.min(end))
     }
 
     /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
     pub(crate) fn predict(&mut self, pair: PairId) {
-        let Pair { bodies: [a, b], clear, .. } = *self.pairs.get(pair);
-        let until = match (self.known_until(a), self.known_until(b)) {
-            (Some(a), Some(b)) => a.min(b),
-            (Some(only), None) | (None, Some(only)) => only,
-            (None, None) => Time::NEVER,
-        };
+        let &Pair { bodies: [a, b], clear, .. } = self.pairs.get(pair);
         let from = clear.max(self.now);
+        let disc = self.disc_at(a, from);
+        self.predict_from(from, disc.as_ref(), Link { pair, other: b });
+    }
+
+    /// Searches from a time on for the next contact of a pair, of whose one body is known how it flies if it is a disc.
+    #[inline]
+    fn predict_from(&mut self, from: Time, disc: Option<&DiscAt>, link: Link) {
+        match disc.and_then(|disc| self.look_at_discs(from, disc, link)) {
+            Some(outlook) => self.note_prediction(link.pair, outlook),
+            None => self.predict_any(link.pair, from),
+        }
+    }
+
+    /// A body from a time on, if it is a disc in flight.
+    #[inline]
+    fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
+        let lane = &self.lanes[body.index()];
+        let is_plain = lane.kind == LaneKind::Disc && self.settings.search.depth == 0.0;
+        let Lane { radius, halo, stay, .. } = *lane;
+        is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
+    }
+
+    /// The outlook of a pair of free discs; `None` of all else.
+    #[inline]
+    fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
+        let lane = &self.lanes[link.other.index()];
+        if lane.kind != LaneKind::Disc || self.pairs.get(link.pair).has_rules {
+            return None;
+        }
+        // What is in flight has no end but its box.
+        look_ahead(from, own.stay.min(lane.stay), |span| {
+            let tolerances = Tolerances { target_gap: own.halo.min(lane.halo), ..self.settings.tolerances };
+            let other = (lane.parabola_from(from), lane.radius);
+            disc_contact((own.parabola, own.radius), other, span, &tolerances)
+        })
+    }
+
+    /// Kept apart: most pairs do not come here.
+    #[inline(never)]
+    fn predict_any(&mut self, pair: PairId, from: Time) {
+        let [a, b] = self.pairs.get(pair).bodies;
+        let until = self.known_until(a).min(self.known_until(b));
         self.drop_rules(pair, from);
-        let prediction = if until <= from {
-            Prediction::Quiet
-        } else {
-            let span = until.since(from).min(LONGEST_SPAN);
-            match self.search(pair, from, span) {
-                Search::Contact(contact) => {
-                    let features = [contact.feature_a, contact.feature_b];
-                    Prediction::Contact(from.plus(contact.time), features)
-                }
-                Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => Prediction::Quiet,
-                Search::NoneBefore(time) => Prediction::SearchOn(from.plus(time)),
-            }
-        };
-        let source = self.pair_source(pair);
+        if let Some(outlook) = look_ahead(from, until, |span| Some(self.search(pair, from, span))) {
+            self.note_prediction(pair, outlook);
+        }
+    }
+
+    #[inline]
+    pub(crate) fn note_prediction(&mut self, pair: PairId, (prediction, clear): (Prediction, Time)) {
         let entry = self.pairs.get_mut(pair);
-        entry.prediction = prediction;
-        match prediction {
-            Prediction::Contact(time, _) | Prediction::SearchOn(time) => {
-                entry.clear = time;
-                self.queue.set(source, time);
-            }
-            Prediction::Quiet => {
-                entry.clear = until.max(from);
-                self.queue.clear(source);
-            }
+        let was_quiet = entry.prediction == Prediction::Quiet;
+        (entry.prediction, entry.clear) = (prediction, clear);
+        if prediction != Prediction::Quiet {
+            self.queue.set(self.pair_source(pair), clear);
+        } else if !was_quiet {
+            self.queue.clear(self.pair_source(pair));
         }
     }
 
     /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
     fn drop_rules(&mut self, pair: PairId, time: Time) {
-        if self.pairs.rules(pair).is_empty() {
+        if !self.pairs.get(pair).has_rules {
             return;
         }
         let [a, b] = self.pairs.get(pair).bodies;
         let (pose_a, pose_b) = (self.flyer(a).moving_at(time).pose, self.flyer(b).moving_at(time).pose);
         let (shape_a, shape_b) = (&self.flyers[a.index()].body().shape, &self.flyers[b.index()].body().shape);
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
-        self.pairs.rules_mut(pair).retain(|rule: &FeatureRule| {
+        let is_closed = |rule: &FeatureRule| {
             let [feature_a, feature_b] = rule.features;
             let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
             let sample = GapSample::measure_unbounded(features[0], &pose_a, features[1], &pose_b);
             rule.target.is_none() || sample.is_some_and(|sample| sample.gap < opened)
-        });
+        };
+        self.pairs.change_rules(pair, |rules| rules.retain(is_closed));
     }
 
     /// Searches for a contact of two bodies in the given span [s] from a time on.
@@ -152,7 +179,7 @@ impl RigidSystem {
         let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
-        let target_gap = self.halos[a.index()].min(self.halos[b.index()]);
+        let target_gap = self.lanes[a.index()].halo.min(self.lanes[b.index()].halo);
         let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
@@ -162,13 +189,6 @@ impl RigidSystem {
             let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
             return self.search_shapes(&side_a, &side_b, (rules, &tolerances), span);
         };
-        let is_plain = rules.is_empty() && self.settings.search.depth == 0.0;
-        if let (Some(radius_a), Some(radius_b), true) = (flyer_a.disc(), flyer_b.disc(), is_plain) {
-            let (side_a, side_b) = ((flight_a, offset_a, radius_a), (flight_b, offset_b, radius_b));
-            if let Some(found) = disc_contact(side_a, side_b, span, &tolerances) {
-                return found;
-            }
-        }
         let side_a = MovingShape { shape: shapes[0], motion: flight_a, offset: offset_a };
         let side_b = MovingShape { shape: shapes[1], motion: flight_b, offset: offset_b };
         self.search_shapes(&side_a, &side_b, (rules, &tolerances), span)
@@ -193,19 +213,50 @@ impl RigidSystem {
 
     /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
     pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
-        let mut touched = std::mem::take(&mut self.touched);
-        touched.clear();
-        touched.extend(bodies.iter().flat_map(|&body| self.pairs.of_body(body)));
-        touched.sort_unstable();
-        touched.dedup();
-        for &pair in &touched {
-            if changed {
-                self.pairs.get_mut(pair).clear = self.now;
-                self.predict(pair);
-            } else if self.pairs.get(pair).prediction == Prediction::Quiet {
-                self.predict(pair);
+        self.pairs.begin_batch();
+        let now = self.now;
+        for &body in bodies {
+            let disc = self.disc_at(body, now);
+            for index in 0..self.pairs.of_body(body).len() {
+                let link = self.pairs.of_body(body)[index];
+                let Some(entry) = self.pairs.enter_batch(link.pair) else { continue };
+                if changed {
+                    self.predict_from(now, disc.as_ref(), link);
+                } else if entry.prediction == Prediction::Quiet {
+                    self.predict(link.pair);
+                }
             }
         }
-        self.touched = touched;
     }
+}
+
+/// A disc in flight, at the time from which its pairs are searched.
+struct DiscAt {
+    parabola: Polynomial,
+    /// Radius and gap at which it fires [m].
+    radius: f64,
+    halo: f64,
+    /// Until when it surely stays in its box.
+    stay: Time,
+}
+
+/// What is known of a pair from a time on while its motions are known, and until when it is clear; `None` if the search
+/// finds no answer.
+#[inline]
+fn look_ahead(
+    from: Time,
+    until: Time,
+    search: impl FnOnce(f64) -> Option<Search>,
+) -> Option<(Prediction, Time)> {
+    if until <= from {
+        return Some((Prediction::Quiet, from));
+    }
+    let span = until.since(from).min(LONGEST_SPAN);
+    Some(match search(span)? {
+        Search::Contact(contact) => {
+            (Prediction::Contact([contact.feature_a, contact.feature_b]), from.plus(contact.time))
+        }
+        Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => (Prediction::Quiet, until),
+        Search::NoneBefore(time) => (Prediction::SearchOn, from.plus(time)),
+    })
 }

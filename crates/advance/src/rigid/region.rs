@@ -1,8 +1,11 @@
 //! The region of an event: the bodies that touch each other around some seeds, with the groups that they belong to, and
 //! the records of all places where they touch.
 
+use super::lane::LaneKind;
+use super::pairs::Link;
 use super::system::RigidSystem;
 use crate::time::Time;
+use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
 };
@@ -98,19 +101,19 @@ impl RigidSystem {
     fn collect_touches(&self, region: &mut Region, place: usize, time: Time) {
         let body = region.bodies[place];
         let moving = self.flyer(body).moving_at(time);
-        for &pair in self.pairs.of_body(body) {
-            let [a, b] = self.pairs.get(pair).bodies;
-            let other = if a == body { b } else { a };
+        for &Link { other, .. } in self.pairs.of_body(body) {
             // A pair within the region was looked at with its first body.
             if region.place(other).is_some_and(|earlier| earlier < place) {
                 continue;
             }
-            let (flyer, other_flyer) = (self.flyer(body), self.flyer(other));
-            let reach = flyer.reach() + other_flyer.reach() + self.settings.tolerances.distance_tol();
-            let other_moving = other_flyer.moving_at(time);
-            if (moving.pose.position - other_moving.pose.position).length_squared() > reach * reach {
+            let lanes = [&self.lanes[body.index()], &self.lanes[other.index()]];
+            let reach = lanes[0].reach + lanes[1].reach + self.settings.tolerances.distance_tol();
+            let offset = moving.pose.position - self.position_of(other, time);
+            if offset.length_squared() > reach * reach {
                 continue;
             }
+            let (flyer, other_flyer) = (self.flyer(body), self.flyer(other));
+            let other_moving = other_flyer.moving_at(time);
             // The lesser body first: records do not depend on which of the two was found first.
             let mut moments = [
                 Moment { id: body, body: flyer.body(), moving },
@@ -123,6 +126,17 @@ impl RigidSystem {
                 region.add(other);
             }
         }
+    }
+
+    /// Where the centre of mass of a body is [m] at a time of its present segment.
+    fn position_of(&self, body: BodyId, time: Time) -> DVec2 {
+        let lane = &self.lanes[body.index()];
+        let flown = || self.flyer(body).moving_at(time).pose.position;
+        if lane.kind == LaneKind::Other {
+            return flown();
+        }
+        debug_assert_eq!(lane.position_at(time), flown(), "lanes are renewed with their bodies");
+        lane.position_at(time)
     }
 
     /// Adds the records of two bodies in the target zone or nearer, or held farther away; true if there are any.

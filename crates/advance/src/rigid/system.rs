@@ -12,9 +12,11 @@ use super::events::EventWork;
 use super::flyer::{FlightLaw, Flyer};
 use super::groups::Groups;
 use super::impacts::ImpactReport;
+use super::lane::Lane;
 use super::law::{ForceLaw, Snapshot};
 use super::ledger::Ledger;
-use super::pairs::{PairId, Pairs, Prediction};
+use super::marks::Marks;
+use super::pairs::{Link, PairId, Pairs, Prediction};
 use super::report::ContactChanges;
 use super::rows::Mechanism;
 use super::segment::StepControl;
@@ -134,10 +136,8 @@ pub struct RigidSystem {
     /// Whether each law has a potential.
     pub(crate) has_potential: Vec<bool>,
     pub(crate) rooms: Vec<Room>,
-    /// Until when each body surely stays in its box; `None` for ever.
-    pub(crate) stays: Vec<Option<Time>>,
-    /// Gap [m] at which each body fires.
-    pub(crate) halos: Vec<f64>,
+    /// What predictions read of each body.
+    pub(crate) lanes: Vec<Lane>,
     pub(crate) broad: BroadPhase,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
@@ -165,7 +165,9 @@ pub struct RigidSystem {
     pub(crate) last_impact: ImpactReport,
     pub(crate) changes: ContactChanges,
     pub(crate) touched: Vec<PairId>,
+    pub(crate) links: Vec<Link>,
     pub(crate) neighbours: Vec<BodyId>,
+    pub(crate) marks: Marks,
 }
 
 impl RigidSystem {
@@ -189,8 +191,7 @@ impl RigidSystem {
             counts: Counts { segments: count as u64, ..Counts::default() },
             pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
             rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
-            stays: vec![None; count],
-            halos: vec![settings.tolerances.target_gap; count],
+            lanes: flyers.iter().map(|flyer| Lane::new(flyer, settings.tolerances.target_gap)).collect(),
             broad: BroadPhase::new(),
             loners: loners(count, settings.collisions, &excluded),
             excluded,
@@ -226,7 +227,9 @@ impl RigidSystem {
             last_impact: ImpactReport::default(),
             changes: ContactChanges::default(),
             touched: Vec::new(),
+            links: Vec::new(),
             neighbours: Vec::new(),
+            marks: Marks::default(),
         };
         if settings.collisions {
             system.set_up_boxes();
@@ -349,7 +352,7 @@ impl RigidSystem {
 
     fn handle(&mut self, source: SourceId) -> Result<bool, AdvanceError> {
         if let Some(pair) = source.0.checked_sub(self.first_pair_source()).map(PairId) {
-            if let Prediction::Contact(_, features) = self.pairs.get(pair).prediction {
+            if let Prediction::Contact(features) = self.pairs.get(pair).prediction {
                 return self.handle_contact(pair, features);
             }
             self.predict(pair);

@@ -39,9 +39,10 @@ impl RigidSystem {
             return false;
         }
         let tick = self.next_tick(step);
-        let rules = self.pairs.rules_mut(pair);
-        rules.retain(|rule| rule.features != features);
-        rules.push(FeatureRule { features, target: None });
+        self.pairs.change_rules(pair, |rules| {
+            rules.retain(|rule| rule.features != features);
+            rules.push(FeatureRule { features, target: None });
+        });
         // The search goes on for the other features of the two bodies.
         self.predict(pair);
         if !self.ticks.waiting.contains(&pair) {

@@ -33,16 +33,17 @@ pub(super) fn near_pairs(
     let mut broad = BroadPhase::new();
     let boxes: Vec<_> =
         bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()).grown(skin)).collect();
-    let mut pairs = Vec::new();
+    let (mut pairs, mut near) = (Vec::new(), Vec::new());
     for (index, bounds) in boxes.iter().enumerate() {
         let body = BodyId(u32::try_from(index).unwrap_or(u32::MAX));
-        broad.visit_overlapping(bounds, &mut |other| {
+        broad.find_overlapping(bounds, &mut near);
+        for &other in &near {
             let both_fixed = bodies[index].0.is_fixed() && bodies[other.index()].0.is_fixed();
             let passes = excluded.iter().any(|&(a, b)| (a, b) == (other, body) || (a, b) == (body, other));
             if !both_fixed && !passes {
                 pairs.push((other, body));
             }
-        });
+        }
         broad.set(body, *bounds);
     }
     pairs.sort_unstable();

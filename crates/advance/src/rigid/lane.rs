@@ -1,0 +1,130 @@
+//! What is asked of a body most often, in one place: its parabola, its size, how long it stays in its box.
+//!
+//! An event asks this of every neighbour of its bodies. The body itself, with all else that is known of it, is then left
+//! where it is: memory is slower than what is computed here.
+
+use super::flyer::Flyer;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{Flight, Polynomial};
+
+/// What is known of the course of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LaneKind {
+    /// No parabola: the body itself must be asked.
+    Other,
+    /// The centre of mass follows the parabola.
+    Parabola,
+    /// So it does, and the body is one disc about it.
+    Disc,
+}
+
+/// A copy of the motion of one body, renewed whenever that changes. Two lines of the cache; the first says where it is.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Lane {
+    /// Position [m] and velocity [m/s] at the start.
+    position: DVec2,
+    velocity: DVec2,
+    start: Time,
+    /// Until when the body surely stays in its box.
+    pub(crate) stay: Time,
+    /// Acceleration [m/s^2].
+    acceleration: DVec2,
+    /// Largest distance [m] of a point of the body from its centre of mass.
+    pub(crate) reach: f64,
+    /// Radius [m] of a disc, 0 of all else.
+    pub(crate) radius: f64,
+    /// Gap [m] at which the body fires.
+    pub(crate) halo: f64,
+    pub(crate) kind: LaneKind,
+}
+
+impl Lane {
+    /// The lane of a body that stays in its box for ever and fires at a gap [m].
+    pub(crate) fn new(flyer: &Flyer, halo: f64) -> Self {
+        let mut lane = Self {
+            position: DVec2::ZERO,
+            velocity: DVec2::ZERO,
+            start: Time::ZERO,
+            stay: Time::NEVER,
+            acceleration: DVec2::ZERO,
+            reach: flyer.reach(),
+            radius: flyer.disc().unwrap_or(0.0),
+            halo,
+            kind: LaneKind::Other,
+        };
+        lane.follow(flyer);
+        lane
+    }
+
+    /// Takes over the present motion of the body.
+    pub(crate) fn follow(&mut self, flyer: &Flyer) {
+        let Some(parabola) = flyer.flight().and_then(Flight::parabola) else {
+            self.kind = LaneKind::Other;
+            return;
+        };
+        let Polynomial { position, velocity, acceleration } = parabola;
+        (self.position, self.velocity, self.acceleration) = (position, velocity, acceleration);
+        self.start = flyer.start();
+        self.kind = if flyer.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
+    }
+
+    /// Where the centre of mass is [m] at a time, to the bit what the body itself says; not to be asked of `Other`.
+    #[inline]
+    pub(crate) fn position_at(&self, time: Time) -> DVec2 {
+        let t = time.since(self.start);
+        self.position + (self.velocity + self.acceleration * (0.5 * t)) * t
+    }
+
+    /// How it goes on from a time; not to be asked of `Other`.
+    #[inline]
+    pub(crate) fn parabola_from(&self, time: Time) -> Polynomial {
+        let t = time.since(self.start);
+        Polynomial {
+            position: self.position_at(time),
+            velocity: self.velocity + self.acceleration * t,
+            acceleration: self.acceleration,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::FlightLaw;
+    use halfgap_collision::{Body, BodyState, Motion};
+    use halfgap_geometry::Shape;
+
+    fn thrown(linear_rate: f64) -> Flyer {
+        let shape = Shape::disc(0.7).expect("a fine radius");
+        let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+        let law = FlightLaw { acceleration: DVec2::new(0.1, -9.81), linear_rate, angular_rate: 0.0 };
+        let (position, velocity) = (DVec2::new(1.0 / 3.0, 2.0), DVec2::new(-0.7, 1.1));
+        let state = BodyState { position, velocity, angular_velocity: 3.0, ..BodyState::default() };
+        Flyer::new(body, law, state, Time::from_seconds(1.1))
+    }
+
+    #[test]
+    fn a_lane_says_to_the_bit_what_its_body_says() {
+        let flyer = thrown(0.0);
+        let lane = Lane::new(&flyer, 0.0);
+        assert_eq!(lane.kind, LaneKind::Disc);
+        for time in [1.1, 1.3, 7.9, 0.2].map(Time::from_seconds) {
+            let offset = flyer.offset(time);
+            assert_eq!(lane.position_at(time), flyer.state_at(time).position);
+            let expected = flyer.flight().and_then(|flight| flight.polynomial_from(offset));
+            assert_eq!(Some(lane.parabola_from(time)), expected);
+        }
+    }
+
+    #[test]
+    fn a_damped_body_has_no_parabola() {
+        assert_eq!(Lane::new(&thrown(0.3), 0.0).kind, LaneKind::Other);
+    }
+
+    #[test]
+    fn where_a_body_is_fits_in_a_line_of_the_cache() {
+        assert_eq!(size_of::<Lane>(), 128);
+    }
+}

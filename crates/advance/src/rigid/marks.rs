@@ -1,0 +1,51 @@
+//! Marks on bodies that are all taken away at once.
+
+use halfgap_collision::BodyId;
+
+/// A set of bodies, emptied without a look at them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Marks {
+    /// A body is marked where this is the present stamp.
+    stamps: Vec<u32>,
+    stamp: u32,
+}
+
+impl Marks {
+    /// No body is marked, of so many.
+    pub(crate) fn begin(&mut self, body_count: usize) {
+        self.stamps.resize(body_count, 0);
+        self.stamp = self.stamp.wrapping_add(1);
+        if self.stamp == 0 {
+            self.stamps.fill(0);
+            self.stamp = 1;
+        }
+    }
+
+    #[inline]
+    pub(crate) fn set(&mut self, body: BodyId) {
+        self.stamps[body.index()] = self.stamp;
+    }
+
+    /// True if the body is marked, from now on no longer.
+    #[inline]
+    pub(crate) fn take(&mut self, body: BodyId) -> bool {
+        std::mem::take(&mut self.stamps[body.index()]) == self.stamp
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_taken_once_and_forgotten_together() {
+        let mut marks = Marks { stamps: Vec::new(), stamp: u32::MAX - 1 };
+        for _ in 0..3 {
+            marks.begin(2);
+            assert!(!marks.take(BodyId(1)));
+            marks.set(BodyId(0));
+            assert!(marks.take(BodyId(0)) && !marks.take(BodyId(0)));
+            marks.set(BodyId(1));
+        }
+    }
+}
