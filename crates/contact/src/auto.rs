@@ -148,7 +148,7 @@ impl Methods {
             return self.lemke.solve(problem, solution);
         }
         let start = warm.map_or(Start::Nothing, Start::Earlier);
-        let may_hand_over = problem.has_bodies() && selection == ForceSelection::Vertex;
+        let may_hand_over = problem.has_bodies() && selection != ForceSelection::LeastNorm;
         // What was handed over a step ago is so again: the redundancy lies in the rows, which are the same.
         let again = may_hand_over && warm.is_some() && self.proximal.is_loaded(problem);
         let first = if again {

@@ -79,8 +79,11 @@ pub enum Contradiction {
 /// Which forces to report when redundant contacts leave a choice; the accelerations do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ForceSelection {
-    /// Whatever the pivoting ends at: few rows carry force.
+    /// Whatever is found soonest: where many rows are redundant, all of them may carry force.
     #[default]
+    Quickest,
+    /// Whatever the pivoting ends at: few rows carry force, and those do not depend on each other. For those who go on with the
+    /// rows that carry force, as an integrator does.
     Vertex,
     /// The least sum of squares of the scaled forces `s_i f_i`: symmetric scenes show symmetric forces.
     LeastNorm,
@@ -109,7 +112,7 @@ impl Default for Settings {
             newton_steps: 3000,
             interior_point: 1e-12,
             least_norm_term: 1e-5,
-            selection: ForceSelection::Vertex,
+            selection: ForceSelection::Quickest,
             contradiction: Contradiction::SolveExactly,
         }
     }

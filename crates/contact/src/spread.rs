@@ -50,7 +50,7 @@ impl DualActiveSet {
         let rests = |&row: &usize| {
             self.start[row] && !self.closed.is_closed(row) && self.closed.acceleration[row].abs() <= rest
         };
-        self.settings.selection == ForceSelection::Vertex
+        self.settings.selection == ForceSelection::Quickest
             && self.closed.proximal == 0.0
             && self.closed.kept == 0
             && (flagged - closed) * REDUNDANT >= flagged.max(1)

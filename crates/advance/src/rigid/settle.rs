@@ -52,6 +52,8 @@ impl Default for Settling {
         // Nearly redundant contacts that contradict each other get modest forces.
         let mut settings = Settings::default();
         settings.contradiction = halfgap_contact::Contradiction::LeastSquares;
+        // The rows that carry force are held, and had better not depend on each other.
+        settings.selection = halfgap_contact::ForceSelection::Vertex;
         let solver = |settings| Auto::new(settings).expect("the settings are valid");
         let mut lenient = settings;
         lenient.inconsistency = SMALL_CONTRADICTION;
