@@ -322,7 +322,8 @@ impl RigidSystem {
         leaning.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
-    /// Hands the contacts of a group that have opened beyond the target zone back to the search.
+    /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their features, back to the
+    /// search.
     pub(crate) fn let_go(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
@@ -331,7 +332,7 @@ impl RigidSystem {
         group.leaning.retain(|row| {
             let RowSource::Contact(features) = row.source else { return true };
             let touch = Touch { bodies: row.bodies, features };
-            let stays = self.gap_at(touch, self.now).0 < opened;
+            let stays = self.gap_at(touch, self.now).0 < opened && !self.has_run_off(row, opened);
             if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
                 self.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
                 // It has left the target zone: when it comes back it is no low bounce.
@@ -345,6 +346,12 @@ impl RigidSystem {
             self.note_prediction(pair, (Prediction::Quiet, self.now));
         }
         self.touched = touched;
+    }
+
+    /// True if a contact lies outside of its features by more than a distance [m].
+    fn has_run_off(&self, row: &HeldRow, distance: f64) -> bool {
+        let [a, b] = row.bodies.map(|body| self.moving_at(body, self.now));
+        self.mechanism().room_between(row, [&a, &b]).is_some_and(|room| -room > distance)
     }
 
     fn list_stops(&self, group: &mut Group) {
