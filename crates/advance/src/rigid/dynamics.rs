@@ -4,6 +4,7 @@
 //! (J M^-1 J^T) f = -(J v'_0 + gamma), v'_0 being the acceleration without them; then v' = v'_0 + M^-1 J^T f.
 
 use super::crossing::NODES;
+use super::flyer::Flyer;
 use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 use super::rows::Mechanism;
@@ -58,8 +59,9 @@ pub(crate) struct Stage {
     pub(crate) least: Vec<f64>,
     /// Largest error [m] of a held gap, where forces of rows were last found.
     pub(crate) gap_error: f64,
-    /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows.
+    /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, where it is asked for.
     pub(crate) free_acceleration: f64,
+    pub(crate) asks_free_acceleration: bool,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
     /// Dense output of velocities and works.
@@ -114,7 +116,6 @@ impl Stage {
         let damping = works.iter().position(|&work| work == Work::Damping);
         let mut damped = 0.0;
         self.accelerations.clear();
-        self.free_acceleration = 0.0;
         for &body in bodies {
             let flyer = &physics.mechanism.flyers[body.index()];
             let (law, inertia) = (flyer.law(), flyer.body());
@@ -123,8 +124,6 @@ impl Stage {
             let linear = law.acceleration - v * law.linear_rate + wrench.force * inertia.inverse_mass;
             let angular = wrench.torque * inertia.inverse_moment - law.angular_rate * w;
             self.accelerations.push([linear.x, linear.y, angular]);
-            let of_points = linear.length() + angular.abs() * flyer.reach();
-            self.free_acceleration = self.free_acceleration.max(of_points);
             if damping.is_some() && law.is_damped() {
                 damped -= law.linear_rate * v.length_squared() / inertia.inverse_mass
                     + law.angular_rate * w * w / inertia.inverse_moment;
@@ -133,6 +132,14 @@ impl Stage {
         if let Some(place) = damping {
             powers[place] = damped;
         }
+    }
+
+    /// Notes the largest acceleration of a point of some bodies, before the forces of rows are added.
+    fn note_free_acceleration(&mut self, flyers: &[Flyer], bodies: &[BodyId]) {
+        let of_points = |(&body, &[x, y, angular]): (&BodyId, &[f64; 3])| {
+            DVec2::new(x, y).length() + angular.abs() * flyers[body.index()].reach()
+        };
+        self.free_acceleration = bodies.iter().zip(&self.accelerations).map(of_points).fold(0.0, f64::max);
     }
 
     fn add_law(&mut self, law: &dyn ForceLaw, bodies: &[BodyId], time: f64, power: Option<&mut f64>) {
@@ -298,6 +305,9 @@ impl Ode for Dynamics<'_> {
         let time = self.start.seconds() + offset;
         let of_group = (self.group.bodies.as_slice(), self.group.laws.as_slice());
         self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
+        if self.stage.asks_free_acceleration {
+            self.stage.note_free_acceleration(self.physics.mechanism.flyers, &self.group.bodies);
+        }
         if !self.group.rows.is_empty() {
             self.solve_rows();
         }

@@ -59,12 +59,19 @@ impl Dynamics<'_> {
         let mut rates = std::mem::take(&mut self.group.rates);
         rates.clear();
         rates.resize(state.len(), 0.0);
-        let Ok(()) = self.derivative(0.0, &state, &mut rates);
-        self.group.free_acceleration = self.stage.free_acceleration;
+        self.evaluate_with_free(0.0, &state, &mut rates);
         self.group.forces.clear();
         self.group.forces.extend_from_slice(&self.stage.forces);
         self.group.state = state;
         self.group.rates = rates;
+    }
+
+    /// Evaluates the rates, with the group's largest acceleration without the forces of rows.
+    fn evaluate_with_free(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
+        self.stage.asks_free_acceleration = true;
+        let Ok(()) = self.derivative(offset, state, rates);
+        self.stage.asks_free_acceleration = false;
+        self.group.free_acceleration = self.stage.free_acceleration;
     }
 
     /// Extends the group by one accepted step from its state and rates; its end is projected.
@@ -300,8 +307,7 @@ impl Dynamics<'_> {
         let mut rates = std::mem::take(&mut self.group.end_rates);
         rates.clear();
         rates.resize(end.len(), 0.0);
-        let Ok(()) = self.derivative(self.group.span, &end, &mut rates);
-        self.group.free_acceleration = self.stage.free_acceleration;
+        self.evaluate_with_free(self.group.span, &end, &mut rates);
         self.group.end_forces.clear();
         self.group.end_forces.extend_from_slice(&self.stage.forces);
         (self.group.end_state, self.group.end_rates) = (end, rates);
