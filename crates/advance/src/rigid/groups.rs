@@ -348,10 +348,12 @@ impl RigidSystem {
         self.touched = touched;
     }
 
-    /// True if a contact lies outside of its features by more than a distance [m].
+    /// True if a contact lies beyond the ends of its features by more than a distance [m]: their lines go on without end, and
+    /// meet what touches them from behind after half a turn.
     fn has_run_off(&self, row: &HeldRow, distance: f64) -> bool {
+        let RowSource::Contact(features) = row.source else { return false };
         let [a, b] = row.bodies.map(|body| self.moving_at(body, self.now));
-        self.mechanism().room_between(row, [&a, &b]).is_some_and(|room| -room > distance)
+        self.mechanism().sample(row.bodies, features, [&a, &b]).overrun > distance
     }
 
     fn list_stops(&self, group: &mut Group) {

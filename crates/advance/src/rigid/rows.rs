@@ -135,11 +135,7 @@ impl Mechanism<'_> {
     /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
     /// rows that cannot.
     pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
-        self.room_between(row, row.bodies.map(|body| moving_of(movings, body)))
-    }
-
-    /// The same, given where the two bodies of the row are.
-    pub(crate) fn room_between(&self, row: &HeldRow, [a, b]: [&Moving; 2]) -> Option<f64> {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, _) => {
                 let connector = &self.connectors[id.index()];

@@ -223,11 +223,10 @@ impl Dynamics<'_> {
     }
 
     /// Distance [m] of a contact that is touched without force from its least gap, or that by which it lies outside of its
-    /// features if this is more. What lies behind a feature, which goes on without end here, is as far from it as in front.
+    /// features if this is more.
     fn height(&self, row: usize) -> f64 {
         let (mechanism, row) = (&self.physics.mechanism, &self.group.leaning[row]);
         let height = mechanism.measure(row, &self.stage.movings).gap - row.gap;
-        let height = if height < -mechanism.tolerances.distance_tol() { -height } else { height };
         mechanism.room(row, &self.stage.movings).map_or(height, |room| height.max(-room))
     }
 
