@@ -46,9 +46,15 @@ pub struct SearchSettings {
     pub rest: f64,
 }
 
+impl SearchSettings {
+    /// What serves most scenes.
+    pub const STANDARD: Self =
+        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0, rest: 0.0 };
+}
+
 impl Default for SearchSettings {
     fn default() -> Self {
-        Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0, rest: 0.0 }
+        Self::STANDARD
     }
 }
 

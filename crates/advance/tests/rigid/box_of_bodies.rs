@@ -18,7 +18,7 @@ pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
     collisions: true,
-    search: SearchSettings::default(),
+    search: SearchSettings::STANDARD,
     method: Method::Dop853,
     steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
     projection: true,
