@@ -37,6 +37,7 @@ impl Time {
     #[inline]
     pub fn plus(self, step: f64) -> Self {
         let sum = self.seconds + step;
+        debug_assert!(!sum.is_nan(), "a step is a number");
         if !sum.is_finite() {
             return Self { seconds: sum, rest: 0.0 };
         }

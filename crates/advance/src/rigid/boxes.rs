@@ -76,18 +76,20 @@ impl Room {
             return Some(time);
         }
         let offset = flyer.offset(time);
-        let slack = || {
+        // What does not move stays, also where rounding puts it just outside.
+        let leaving_at = |speed: f64| {
             let position = flyer.path().state_at(offset).position;
-            (position - core.min).min(core.max - position).min_element().max(0.0)
+            let slack = (position - core.min).min(core.max - position).min_element().max(0.0);
+            (speed > 0.0).then(|| time.plus(slack / speed))
         };
         match flyer.path() {
             Path::Flight(flight) => match flight.polynomial_from(offset) {
                 Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
-                None => Some(time.plus(slack() / flight.top_speed(offset))),
+                None => leaving_at(flight.top_speed(offset)),
             },
             // What comes after the segment is another question.
             Path::Dense(dense) if core.contains(&dense.center_box()) => None,
-            Path::Dense(dense) => Some(time.plus(slack() / dense.top_speed())),
+            Path::Dense(dense) => leaving_at(dense.top_speed()),
         }
     }
 }
