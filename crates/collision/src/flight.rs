@@ -97,17 +97,20 @@ impl Flight {
             && self.acceleration == DVec2::ZERO
     }
 
-    /// A speed [m/s] that the centre of mass never exceeds from an offset [s] on; infinite under acceleration without
-    /// damping.
+    /// For how long [s] after an offset [s] the centre of mass surely stays within a distance [m] of where it is then;
+    /// `None` if for ever.
     #[must_use]
-    pub fn top_speed(&self, offset: f64) -> f64 {
-        if self.linear_rate == 0.0 && self.acceleration != DVec2::ZERO {
-            return f64::INFINITY;
-        }
+    pub fn stays_within(&self, distance: f64, offset: f64) -> Option<f64> {
+        let velocity = self.velocity_at(offset);
+        let speed = velocity.length();
+        // Damping lets accelerations only fade.
+        let acceleration = (self.acceleration - velocity * self.linear_rate).length();
+        let by_acceleration =
+            2.0 * distance / (speed + (speed * speed + 2.0 * acceleration * distance).sqrt());
         // Damped velocities run straight towards their final value.
-        let last =
-            if self.linear_rate > 0.0 { self.acceleration / self.linear_rate } else { self.start.velocity };
-        self.velocity_at(offset).length().max(last.length())
+        let by_speed = distance / speed.max(self.acceleration.length() / self.linear_rate);
+        let wait = by_acceleration.max(by_speed);
+        wait.is_finite().then_some(wait)
     }
 
     /// Position and velocity of the centre of mass, for less than one by one.
@@ -268,6 +271,32 @@ mod tests {
             assert!((velocity - flight.state_at(t).velocity).length() < 1e-8);
             assert!((acceleration - flight.acceleration_at(t)).length() < 1e-8);
             assert!((spin_up - flight.angular_acceleration_at(t)).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn what_is_hardly_damped_stays_as_long_as_what_is_not() {
+        let start = BodyState { velocity: DVec2::new(1.0, 4.0), ..BodyState::default() };
+        let gravity = DVec2::new(0.0, -10.0);
+        for linear_rate in [0.0, 1e-12, 1e-7, 1e-3, 1.0, 30.0] {
+            let flight = Flight::new(start, gravity, linear_rate, 0.0);
+            for offset in [0.0, 0.3, 2.0] {
+                let wait = flight.stays_within(0.2, offset).expect("it falls");
+                let moved = |t: f64| {
+                    (flight.state_at(offset + t).position - flight.state_at(offset).position).length()
+                };
+                assert!((0..=50).all(|part| moved(wait * f64::from(part) / 50.0) <= 0.2 * (1.0 + 1e-9)));
+                assert!(moved(2.0 * wait) > 0.05, "a wait of {wait} s at rate {linear_rate}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_does_not_move_stays_for_ever() {
+        for linear_rate in [0.0, 0.5] {
+            let flight = Flight::new(BodyState::default(), DVec2::ZERO, linear_rate, 0.0);
+            assert_eq!(flight.stays_within(0.2, 1.0), None);
+            assert_eq!(flight.stays_within(0.0, 1.0), None);
         }
     }
 

@@ -76,20 +76,22 @@ impl Room {
             return Some(time);
         }
         let offset = flyer.offset(time);
-        // What does not move stays, also where rounding puts it just outside.
-        let leaving_at = |speed: f64| {
+        let slack = || {
             let position = flyer.path().state_at(offset).position;
-            let slack = (position - core.min).min(core.max - position).min_element().max(0.0);
-            (speed > 0.0).then(|| time.plus(slack / speed))
+            (position - core.min).min(core.max - position).min_element().max(0.0)
         };
         match flyer.path() {
             Path::Flight(flight) => match flight.polynomial_from(offset) {
                 Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
-                None => leaving_at(flight.top_speed(offset)),
+                None => flight.stays_within(slack(), offset).map(|wait| time.plus(wait)),
             },
             // What comes after the segment is another question.
             Path::Dense(dense) if core.contains(&dense.center_box()) => None,
-            Path::Dense(dense) => leaving_at(dense.top_speed()),
+            Path::Dense(dense) => {
+                let speed = dense.top_speed();
+                // What does not move stays, also where rounding puts it just outside.
+                (speed > 0.0).then(|| time.plus(slack() / speed))
+            }
         }
     }
 }

@@ -165,17 +165,25 @@ impl RigidSystem {
         if settling.candidates.is_empty() {
             return Ok(());
         }
-        self.pose_problem(region, settling, stage);
-        let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-        let any_bilateral = settling.problem.bilateral().contains(&true);
-        if scale == 0.0 && !any_bilateral {
-            return Ok(());
+        loop {
+            self.pose_problem(region, settling, stage);
+            let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+            let any_bilateral = settling.problem.bilateral().contains(&true);
+            if scale == 0.0 && !any_bilateral {
+                return Ok(());
+            }
+            if settling.solve_strictly().is_err() || self.is_jammed(region, settling, stage) {
+                self.drop_distant(region, settling, stage);
+                settling
+                    .solve_at_all()
+                    .map_err(|source| self.settle_error(region, settling, time, source))?;
+            }
+            // What carries too little to be held carries nothing: the others do without it.
+            if !self.drop_idle(region, settling, stage) {
+                break;
+            }
         }
-        if settling.solve_strictly().is_err() || self.is_jammed(region, settling, stage) {
-            self.drop_distant(region, settling, stage);
-            settling.solve_at_all().map_err(|source| self.settle_error(region, settling, time, source))?;
-        }
-        self.choose_rows(region, settling, stage, time);
+        self.choose_rows(region, settling, time);
         Ok(())
     }
 
@@ -243,31 +251,39 @@ impl RigidSystem {
         }
     }
 
-    /// Holds the bilateral rows and those that carry a force.
-    fn choose_rows(&self, region: &mut Region, settling: &mut Settling, stage: &Stage, time: Time) {
-        let forces = &settling.solution.force;
+    /// Drops the candidates that carry no force to speak of; true if some of them carry any at all.
+    fn drop_idle(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) -> bool {
+        let Settling { candidates, solution, gross, .. } = settling;
         // Loads [N] of each body: its own and those of its rows.
-        let mut gross = std::mem::take(&mut settling.gross);
         gross.clear();
         let bodies = region.bodies.iter().zip(&stage.accelerations);
         gross.extend(bodies.map(|(&body, acceleration)| self.flyer(body).load(acceleration)));
-        for (&index, force) in settling.candidates.iter().zip(forces) {
+        for (&index, force) in candidates.iter().zip(&solution.force) {
             for place in places_of(region, &region.records[index]) {
                 gross[place] += force.abs();
             }
         }
-        for (place, &index) in settling.candidates.iter().enumerate() {
-            let record = &mut region.records[index];
-            record.response.force = Some(forces[place]);
-            let (bilateral, record) = (record.parties.bilateral, *record);
+        let mut any = false;
+        let mut forces = solution.force.iter();
+        candidates.retain(|&index| {
+            let force = forces.next().copied().unwrap_or_default();
+            let record = region.records[index];
             let loads = places_of(region, &record).map(|place| gross[place]);
             let least = FORCE_SHARE * loads.fold(f64::INFINITY, f64::min);
             let lies_deep = record.geometry.distance < deepest(&record);
-            if bilateral || forces[place] > least || lies_deep {
-                settling.held.extend(self.held_row(&record, time).map(|row| (index, row)));
-            }
+            let stays = record.parties.bilateral || force > least || lies_deep;
+            region.records[index].response.force = Some(if stays { force } else { 0.0 });
+            any |= !stays && force > 0.0;
+            stays
+        });
+        any
+    }
+
+    /// Holds the candidates that are left.
+    fn choose_rows(&self, region: &Region, settling: &mut Settling, time: Time) {
+        for &index in &settling.candidates {
+            settling.held.extend(self.held_row(&region.records[index], time).map(|row| (index, row)));
         }
-        settling.gross = gross;
     }
 
     /// A row that knows whether it leans at a time.
