@@ -122,10 +122,7 @@ fn run_all(mut from: u64, to: u64) -> Found {
                 Ok(line) => from = note(&line, from, &mut running, &mut found),
                 Err(end) => {
                     if let Some(seed) = running {
-                        found
-                            .entry(format!("BROKEN process: {end:?}"))
-                            .or_default()
-                            .push((seed, String::new()));
+                        add(&mut found, seed, &format!("BROKEN process: {end:?}"), "");
                         from = seed + 1;
                     }
                     break;
@@ -146,8 +143,16 @@ fn note(line: &str, from: u64, running: &mut Option<u64>, found: &mut Found) -> 
     }
     let (Some(end), Some(seed)) = (line.strip_prefix("end "), running.take()) else { return from };
     let (kind, what) = end.split_once('\t').unwrap_or((end, ""));
-    found.entry(kind.to_owned()).or_default().push((seed, what.to_owned()));
+    add(found, seed, kind, what);
     seed + 1
+}
+
+/// Notes how a scene ended, and tells at once what did not run to its end.
+fn add(found: &mut Found, seed: u64, kind: &str, what: &str) {
+    if kind != Verdict::Finished.kind() {
+        eprintln!("seed {seed}: {kind}: {what}");
+    }
+    found.entry(kind.to_owned()).or_default().push((seed, what.to_owned()));
 }
 
 fn spawn(first: u64, count: u64) -> (Child, Receiver<String>) {

@@ -165,21 +165,29 @@ impl Dynamics<'_> {
         (2.0 * ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / rounding).sqrt()
     }
 
-    /// The longest step [s] along which forces of contacts are surely sampled well: they vary as bodies move by a part of
-    /// their size, and no error estimate sees them where nothing accelerates.
+    /// The longest step [s] along which contacts are surely sampled well: their forces, which no error estimate sees where
+    /// nothing accelerates, and the gaps of those without force vary as bodies move by a part of their size.
     fn longest_watched_step(&self) -> f64 {
         let group = &self.group;
-        if group.rows.iter().all(|row| row.bilateral) {
+        let any_leans = !group.leaning.is_empty();
+        if !any_leans && group.rows.iter().all(|row| row.bilateral) {
             return f64::INFINITY;
         }
         let count = group.bodies.len();
         let waits = group.bodies.iter().enumerate().map(|(place, &body)| {
-            let at = 3 * (count + place);
-            let velocity = DVec2::new(group.state[at], group.state[at + 1]).length();
             let reach = self.reach(body);
             let is_disc = self.physics.mechanism.flyers[body.index()].disc().is_some();
-            let speed = velocity + group.state[at + 2].abs() * reach;
-            if is_disc || speed == 0.0 { f64::INFINITY } else { WATCHED_SHARE * reach / speed }
+            let of_points = |values: &[f64]| {
+                let at = 3 * (count + place);
+                DVec2::new(values[at], values[at + 1]).length() + values[at + 2].abs() * reach
+            };
+            let (speed, acceleration) = (of_points(&group.state), of_points(&group.rates));
+            // What is held of a disc does not vary as it turns.
+            if (is_disc && !any_leans) || (speed == 0.0 && acceleration == 0.0) {
+                return f64::INFINITY;
+            }
+            let way = WATCHED_SHARE * reach;
+            2.0 * way / (speed + (speed * speed + 2.0 * acceleration * way).sqrt())
         });
         waits.fold(f64::INFINITY, f64::min)
     }
