@@ -42,7 +42,8 @@ pub struct SearchSettings {
     /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper ones lie on the
     /// far sides of their bodies.
     pub depth: f64,
-    /// A march tells of what lies at its target or below and opens by no more than this [m/s]: it would crawl along it.
+    /// A march tells of what lies at its target or below and opens by no more than this [m/s], and, if it is not zero, of
+    /// what has not left its target in all its steps: it would crawl along it.
     pub rest: f64,
 }
 

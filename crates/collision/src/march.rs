@@ -138,11 +138,14 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     /// Marches one pair from `start` to `end` [s], at most `steps` steps.
     pub(crate) fn march(&self, pair: &Pair<'_>, start: f64, end: f64, steps: u32) -> MarchEnd {
         let mut time = start;
+        // What lies at its target all the while, and opens too slowly to leave it, is told as what rests there.
+        let mut stays = pair.rest > 0.0;
         for _ in 0..steps {
             let look = self.look(pair, time, end - time);
             if look.is_closing(pair.depth) {
                 return MarchEnd::Closes(time);
             }
+            stays &= look.touches(pair.depth);
             let next = time + look.quiet_for(pair.depth).max(look.resolution);
             // Below the resolution of the clock what is left of the gap is rounding.
             let next = if next > time { next } else { time.next_up() };
@@ -151,7 +154,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             }
             time = next;
         }
-        MarchEnd::NoneBefore(time)
+        if stays { MarchEnd::Closes(time) } else { MarchEnd::NoneBefore(time) }
     }
 
     fn look(&self, pair: &Pair<'_>, time: f64, ahead: f64) -> Look {
@@ -350,13 +353,15 @@ impl Look {
         self.height < -depth
     }
 
-    /// At or below the target, within both features, and not opening. A rate that is only rounding does not open: what
-    /// rests there must be told, or the march would crawl along it.
+    /// At or below the target and within both features.
+    fn touches(&self, depth: f64) -> bool {
+        !self.is_behind(depth) && self.value <= self.value_rounding && self.outside_for.is_none()
+    }
+
+    /// So, and not opening. A rate that is only rounding does not open: what rests there must be told, or the march would
+    /// crawl along it.
     fn is_closing(&self, depth: f64) -> bool {
-        !self.is_behind(depth)
-            && self.value <= self.value_rounding
-            && self.rate <= self.rate_rounding
-            && self.outside_for.is_none()
+        self.touches(depth) && self.rate <= self.rate_rounding
     }
 
     /// For how long [s] nothing happens.
