@@ -2,6 +2,7 @@
 
 use super::group::Stop;
 use super::path::Path;
+use super::predictions::LONGEST_SPAN;
 use super::region::Region;
 use super::rows::{RowSource, knot_rooms};
 use super::settle::Settling;
@@ -26,9 +27,6 @@ pub(crate) struct ConnectorState {
     /// The rope is taut and held.
     held: bool,
 }
-
-/// One search looks at most this far ahead [s].
-const LONGEST_SPAN: f64 = 1e6;
 
 impl RigidSystem {
     pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {

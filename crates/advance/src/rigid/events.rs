@@ -259,7 +259,9 @@ impl RigidSystem {
         self.note_seen(&work.region);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(&work.region, &work.settling);
-        self.lower_insistent(&work.region, work.repeats);
+        if work.repeats > 0 {
+            self.lower_insistent(&work.region);
+        }
         for &body in &work.region.bodies {
             self.renew_stay(body);
         }
@@ -331,20 +333,38 @@ impl RigidSystem {
         }
     }
 
-    /// Lowers the contact that fired, and its neighbours, the more often it did so without time going by: it lies nearer to
-    /// where it fires than the search can tell.
-    fn lower_insistent(&mut self, region: &Region, repeats: u32) {
-        let Some(fired) = region.fired.filter(|_| repeats > 0) else { return };
-        let Some(pair) = self.pairs.between(fired.bodies[0], fired.bodies[1]) else { return };
-        let lower = f64::from(repeats) * self.sink();
-        self.pairs.change_rules(pair, |rules| {
-            for rule in rules {
-                rule.target = rule.target.map(|target| target - lower);
+    /// Lowers the contacts that fired again and again without time going by, and their neighbours, by so much more each
+    /// time: they lie nearer to where they fire than the search can tell.
+    fn lower_insistent(&mut self, region: &Region) {
+        let mut insistent = std::mem::take(&mut self.touched);
+        insistent.clear();
+        let pairs =
+            region.touches.iter().filter_map(|touch| self.pairs.between(touch.bodies[0], touch.bodies[1]));
+        insistent.extend(pairs);
+        insistent.sort_unstable();
+        insistent.dedup();
+        for &pair in &insistent {
+            let lower = f64::from(self.repeats_beyond_calm(pair)) * self.sink();
+            if lower == 0.0 {
+                continue;
             }
-        });
-        for body in fired.bodies {
-            self.lanes[body.index()].halo -= lower;
+            self.pairs.change_rules(pair, |rules| {
+                for rule in rules {
+                    rule.target = rule.target.map(|target| target - lower);
+                }
+            });
+            for body in self.pairs.get(pair).bodies {
+                self.lanes[body.index()].halo -= lower;
+            }
         }
+        self.touched = insistent;
+    }
+
+    /// How often more than is calm a pair has fired at the present time.
+    fn repeats_beyond_calm(&self, pair: PairId) -> u32 {
+        let past = self.pairs.past(pair);
+        let is_now = past.last_contact.is_some_and(|last| is_same_time(last, self.now));
+        if is_now { past.repeats.saturating_sub(CALM_REPEATS) } else { 0 }
     }
 
     /// True if a rule says of two discs what holds of them without it.
@@ -405,8 +425,7 @@ impl RigidSystem {
         let now = self.now;
         let bodies = self.pairs.get(pair).bodies;
         let entry = self.pairs.past_mut(pair);
-        let same_time = SAME_TIME * f64::EPSILON * now.seconds().abs();
-        let is_repeat = entry.last_contact.is_some_and(|last| now.since(last) <= same_time);
+        let is_repeat = entry.last_contact.is_some_and(|last| is_same_time(last, now));
         entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
         entry.last_contact = Some(now);
         let (events, [primary, normal]) = (entry.repeats, bodies);
@@ -424,6 +443,11 @@ const CALM_REPEATS: u32 = 20;
 const MOST_REPEATS: u32 = 100;
 /// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
 const SAME_TIME: f64 = 4.0;
+
+/// True if no time has gone by from one event to the next.
+fn is_same_time(earlier: Time, later: Time) -> bool {
+    later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
+}
 
 #[cfg(test)]
 mod tests {

@@ -146,6 +146,10 @@ impl RigidSystem {
     fn cut_group(&mut self, leader: BodyId, time: Time) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let offset = time.since(group.start).max(0.0);
+        if offset < 0.5 * group.span {
+            // What was read there is not reached.
+            group.largest_error = 0.0;
+        }
         if offset != group.span {
             self.with_group(&mut group, |dynamics, tools| {
                 if dynamics.is_dense_exact() {

@@ -128,6 +128,10 @@ impl Pairs {
         }
     }
 
+    pub(crate) fn past(&self, id: PairId) -> &PairPast {
+        &self.pasts[id.0 as usize]
+    }
+
     pub(crate) fn past_mut(&mut self, id: PairId) -> &mut PairPast {
         &mut self.pasts[id.0 as usize]
     }

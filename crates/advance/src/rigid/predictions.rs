@@ -11,8 +11,8 @@ use halfgap_collision::{
 };
 use halfgap_geometry::GapSample;
 
-/// One search looks at most this far ahead [s], then goes on: bounds over the span stay finite.
-const LONGEST_SPAN: f64 = 1e6;
+/// One search looks at most this far ahead [s], and one step goes no farther: bounds over the span stay finite.
+pub(crate) const LONGEST_SPAN: f64 = 1e6;
 
 impl RigidSystem {
     pub(crate) fn set_up_boxes(&mut self) {

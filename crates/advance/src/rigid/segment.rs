@@ -2,6 +2,7 @@
 
 use super::dynamics::{Dynamics, body_state};
 use super::group::Group;
+use super::predictions::LONGEST_SPAN;
 use super::rows::{RowSource, moving_of};
 use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
@@ -83,7 +84,7 @@ impl Dynamics<'_> {
     ) -> Result<(), StepFailure> {
         self.set_scales(control, scales);
         let longest = self.longest_sound_step().min(self.longest_watched_step());
-        let limit = control.largest_step.unwrap_or(f64::INFINITY).min(longest);
+        let limit = control.largest_step.unwrap_or(LONGEST_SPAN).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);

@@ -6,6 +6,7 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
+use super::predictions::LONGEST_SPAN;
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::system::RigidSystem;
@@ -226,6 +227,7 @@ impl RigidSystem {
 
     fn pose_problem(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
         let (problem, bodies) = (&mut settling.problem, &mut settling.bodies);
+        let least = f64::EPSILON * self.settings.tolerances.accuracy / (LONGEST_SPAN * LONGEST_SPAN);
         problem.clear();
         bodies.clear();
         bodies.extend(region.bodies.iter().map(|&body| {
@@ -235,7 +237,9 @@ impl RigidSystem {
             let record = &region.records[index];
             let sides = [record.parties.primary.body, record.parties.normal.body];
             let places = sides.map(|body| region.place(body));
-            let offset = free_offset(region, record, stage);
+            // What moves nothing in the longest time is rounding.
+            let offset = Some(free_offset(region, record, stage)).filter(|offset| offset.abs() > least);
+            let offset = offset.unwrap_or_default();
             let j = &record.motion.kinematics.jacobian;
             let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
             let row = match places {
