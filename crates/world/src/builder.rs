@@ -3,10 +3,11 @@
 use crate::connector::{ConnectorSpec, kind_name};
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::rigid_settings::rigid_settings;
+use crate::run_error::RunError;
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
 use crate::start::{StartParts, StartRules, correct_start};
-use crate::world::{BACKGROUND, Inertia, Named, Start, World, energy_of};
+use crate::world::{BACKGROUND, Inertia, Named, Start, World, energy_of, name_among};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_advance::Time;
@@ -189,7 +190,9 @@ impl WorldBuilder {
             laws: self.forces.clone(),
             excluded: self.excluded,
         };
-        let system = RigidSystem::new(parts, settings, now).map_err(|source| WorldError::Start { source })?;
+        let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
+            source: RunError::new(error, |body| name_among(&named, body).to_owned()),
+        })?;
         Ok(World::new(system, named, (self.forces, connectors), now, warnings, start))
     }
 

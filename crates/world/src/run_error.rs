@@ -52,11 +52,7 @@ pub enum RunError {
         source: Box<SolveError>,
     },
     /// The integrator's step has fallen to nothing.
-    #[error(
-        "at {time} s the step of {} fell to {step:e} s under the forces of {}",
-        quoted(bodies),
-        quoted(laws)
-    )]
+    #[error("at {time} s the step of {} fell to {step:e} s{}", quoted(bodies), under(laws))]
     StepCollapsed {
         /// When [s].
         time: f64,
@@ -117,6 +113,11 @@ impl RunError {
             other => Self::Advance(other),
         }
     }
+}
+
+/// The force laws that may be to blame.
+fn under(laws: &[String]) -> String {
+    if laws.is_empty() { String::new() } else { format!(" under the forces of {}", quoted(laws)) }
 }
 
 fn quoted(names: &[String]) -> String {

@@ -14,6 +14,11 @@ use std::sync::Arc;
 /// What messages and recordings call the background.
 pub(crate) const BACKGROUND: &str = "world";
 
+/// The name of one of some bodies, or of the background.
+pub(crate) fn name_among(bodies: &[Named], body: BodyId) -> &str {
+    if body.is_world() { BACKGROUND } else { &bodies[body.index()].name }
+}
+
 /// Kinetic and potential energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
@@ -139,7 +144,7 @@ impl World {
     /// As all look-ups here: if the world has no such body.
     #[must_use]
     pub fn name(&self, body: BodyId) -> &str {
-        if body.is_world() { BACKGROUND } else { &self.bodies[body.index()].name }
+        name_among(&self.bodies, body)
     }
 
     /// True for a body that nothing moves.

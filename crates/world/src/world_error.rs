@@ -1,5 +1,7 @@
 //! Why a world could not be built.
 
+use crate::run_error::RunError;
+
 /// Why a world could not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -129,7 +131,7 @@ pub enum WorldError {
     #[error("at the start: {source}")]
     Start {
         /// Why not.
-        source: halfgap_advance::rigid::AdvanceError,
+        source: RunError,
     },
 }
 

@@ -64,7 +64,8 @@ pub(crate) fn correct_start(
     let given: Vec<DVec2> = bodies.iter().map(|(_, _, state)| state.position).collect();
     let mut last_error = f64::INFINITY;
     let mut tight = TightPairs::default();
-    for round in 0.. {
+    let mut round = 0;
+    loop {
         let mut records = touching(bodies, &pairs, rules.tolerances, rules.overlap);
         records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
@@ -73,16 +74,16 @@ pub(crate) fn correct_start(
         if too_near.is_none() && fits(error, has_stalled, rules) {
             break;
         }
-        if round == MOST_ROUNDS {
-            return Err(cannot_correct(too_near, off, named, connectors));
-        }
-        if !correct_positions(bodies, &records, connectors) {
+        let is_stuck = round == MOST_ROUNDS || !correct_positions(bodies, &records, connectors);
+        round += 1;
+        if is_stuck {
             let is_near =
                 |record: &&Collision| is_below_zone(record) && record.geometry.distance >= -rules.rounding;
             let near: Vec<_> = records.iter().filter(is_near).collect();
             if !tight.widen(bodies, connectors, &near) {
                 return Err(cannot_correct(too_near, off, named, connectors));
             }
+            round = 0;
         }
         last_error = error;
     }
