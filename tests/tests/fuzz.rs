@@ -45,6 +45,9 @@ const ONCE_BROKEN: [(u64, &str); 9] = [
     (40917, "a body that was hardly damped left its box again and again"),
     (41019, "a contact was released and taken again without time going by"),
     (80086, "a corner that leaned turned once around within a step, and was not seen when it came back"),
+    (110634, "a corner that had left a hollow was taken for one that still touched it"),
+    (90155, "two contacts fired in turn without time going by"),
+    (90180, "accelerations of nothing contradicted each other"),
     (61154, "the search crawled along two corners that stayed near each other"),
 ];
 

@@ -336,7 +336,9 @@ impl RigidSystem {
         group.leaning.retain(|row| {
             let RowSource::Contact(features) = row.source else { return true };
             let touch = Touch { bodies: row.bodies, features };
-            let stays = self.gap_at(touch, self.now).0 < opened && !self.has_run_off(row, opened);
+            let [a, b] = row.bodies.map(|body| self.moving_at(body, self.now));
+            let has_run_off = self.mechanism().overrun(row.bodies, features, [&a, &b]) > opened;
+            let stays = self.gap_at(touch, self.now).0 < opened && !has_run_off;
             if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
                 self.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
                 // It has left the target zone: when it comes back it is no low bounce.
@@ -350,14 +352,6 @@ impl RigidSystem {
             self.note_prediction(pair, (Prediction::Quiet, self.now));
         }
         self.touched = touched;
-    }
-
-    /// True if a contact lies beyond the ends of its features by more than a distance [m]: their lines go on without end, and
-    /// meet what touches them from behind after half a turn.
-    fn has_run_off(&self, row: &HeldRow, distance: f64) -> bool {
-        let RowSource::Contact(features) = row.source else { return false };
-        let [a, b] = row.bodies.map(|body| self.moving_at(body, self.now));
-        self.mechanism().sample(row.bodies, features, [&a, &b]).overrun > distance
     }
 
     fn list_stops(&self, group: &mut Group) {

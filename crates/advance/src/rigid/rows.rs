@@ -151,6 +151,26 @@ impl Mechanism<'_> {
         }
     }
 
+    /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet what touches them
+    /// from behind after half a turn. How far a corner leans does not count.
+    pub(crate) fn overrun(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let mut sample = self.sample(bodies, features, movings);
+        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
+        sample.find_excess([0, 1].map(|side| (feature(side), &movings[side].pose)));
+        let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
+        let of_arc = |(side, excess): (usize, f64)| match feature(side) {
+            Feature::Round(round) => excess * round.radius.abs(),
+            Feature::Line(_) => 0.0,
+        };
+        let arcs = sides.into_iter().zip([sample.excess_primary, sample.excess_normal]);
+        arcs.map(of_arc).fold(sample.overrun, f64::max)
+    }
+
     /// True if a row is a corner that leans off its line already: to lean further changes nothing.
     pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
         let RowSource::Contact(features) = row.source else { return false };
