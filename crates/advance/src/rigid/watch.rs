@@ -22,22 +22,28 @@ struct Watch {
     place: fn(&mut Dynamics<'_>, f64),
     /// The value of a row there.
     read: fn(&Dynamics<'_>, usize) -> f64,
+    /// True if a fall of a row counts, with the bodies in place.
+    counts: fn(&Dynamics<'_>, usize) -> bool,
     end: fn(usize) -> SegmentEnd,
 }
 
 const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     read: |dynamics, row| dynamics.pressure(row),
+    counts: |_, _| true,
     end: SegmentEnd::Release,
 };
 const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.place_at(offset),
     read: |dynamics, row| dynamics.room(row),
+    counts: |_, _| true,
     end: SegmentEnd::Change,
 };
 const SINKINGS: Watch = Watch {
     place: |dynamics, offset| dynamics.place_at(offset),
     read: |dynamics, row| dynamics.height(row),
+    // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
+    counts: |dynamics, row| dynamics.is_within(row),
     end: SegmentEnd::Sink,
 };
 
@@ -210,7 +216,12 @@ impl Dynamics<'_> {
                 (watch.place)(self, offset);
                 (watch.read)(self, row)
             });
-            if let Some(offset) = fall.filter(|&offset| limit.is_none_or(|(least, _)| offset < least)) {
+            let mut counts = |offset: &f64| {
+                (watch.place)(self, *offset);
+                (watch.counts)(self, row)
+            };
+            let is_first = |offset: &f64| limit.is_none_or(|(least, _)| *offset < least);
+            if let Some(offset) = fall.filter(is_first).filter(&mut counts) {
                 *earliest = Some((offset, (watch.end)(row)));
             }
         }
@@ -222,12 +233,16 @@ impl Dynamics<'_> {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
-    /// Distance [m] of a contact that is touched without force from its least gap, or that by which it lies outside of its
-    /// features if this is more.
+    /// Distance [m] of a contact that is touched without force from its least gap.
     fn height(&self, row: usize) -> f64 {
-        let (mechanism, row) = (&self.physics.mechanism, &self.group.leaning[row]);
-        let height = mechanism.measure(row, &self.stage.movings).gap - row.gap;
-        mechanism.room(row, &self.stage.movings).map_or(height, |room| height.max(-room))
+        let row = &self.group.leaning[row];
+        self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap
+    }
+
+    /// True if a contact that is touched without force lies within its features.
+    fn is_within(&self, row: usize) -> bool {
+        let row = &self.group.leaning[row];
+        self.physics.mechanism.room(row, &self.stage.movings).is_none_or(|room| room >= 0.0)
     }
 
     /// Force [N] of a row, raised by what counts as none; without end for one of either sign.
