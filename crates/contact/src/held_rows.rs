@@ -24,6 +24,8 @@ const NONE: u32 = u32::MAX;
 /// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what depends, far less
 /// than what does not.
 const SOFTNESS: f64 = 1e-6;
+/// A row depends on another that makes up more than this part of its square.
+const SHARE: f64 = 1e-12;
 /// Steps that make good what soft rows lack: each leaves this part of it over the part of a row that is independent. These
 /// are always made, and more, up to the cap, while each leaves less than so much of what is lacking.
 const REFINEMENTS: usize = 3;
@@ -75,6 +77,8 @@ pub struct HeldRows {
     factor: Vec<f64>,
     /// 1/D; 0 for a row that depends on earlier ones.
     inverse_pivot: Vec<f64>,
+    /// True for rows that depend on each other.
+    shares: Vec<bool>,
     /// What the square of each row is raised by, in parts of itself.
     raise: Vec<f64>,
     is_soft: bool,
@@ -115,6 +119,7 @@ impl HeldRows {
             begin: Vec::new(),
             factor: Vec::new(),
             inverse_pivot: Vec::new(),
+            shares: Vec::new(),
             raise: Vec::new(),
             is_soft: false,
             residual: Vec::new(),
@@ -127,17 +132,19 @@ impl HeldRows {
         }
     }
 
-    /// From now on the given rows share what they hold together instead of one of them taking all: none counts as dependent,
-    /// and their forces are nearly the least that do, weighed by the squares of the rows.
+    /// From now on the given rows, of those that the last [`factorize`](Self::factorize) has found to depend on each other,
+    /// share what they hold together instead of one of them taking all: none counts as dependent, and their forces are nearly
+    /// the least that do, weighed by the squares of the rows. The others stay as stiff as they are: between a heavy and a light
+    /// body a row has far less left of its square than what shares may lack.
     ///
     /// Their squares are raised a little, and what forces then lack is made good step by step: the proximal point method.
     /// So which rows depend on which may change on the way without a jump, and a motion that departs a little from what
     /// they agree on has no forces that come from their disagreement alone.
-    pub fn soften(&mut self, is_soft: impl Fn(usize) -> bool) {
-        for (raise, &row) in self.raise.iter_mut().zip(&self.order.rows) {
-            *raise = if is_soft(row as usize) { SOFTNESS } else { 0.0 };
+    pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
+        for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
+            *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
         }
-        self.is_soft = true;
+        self.is_soft = self.raise.iter().any(|&raise| raise > 0.0);
     }
 
     /// Whether any rows share what they hold.
@@ -168,6 +175,7 @@ impl HeldRows {
         assert_eq!(jacobians.len(), self.len(), "coefficients of every row");
         let mut dependent = 0;
         let mut nearly = false;
+        self.shares.fill(false);
         for place in 0..self.len() {
             let coefficients = &jacobians[self.order.rows[place] as usize];
             let diagonal = self.scale_row(place, coefficients);
@@ -180,9 +188,22 @@ impl HeldRows {
             // A small pivot enlarges the rounding of all that follows.
             nearly |= independent && left <= DOUBTFUL * diagonal;
             self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
-            dependent += usize::from(!independent);
+            if !independent {
+                dependent += 1;
+                self.note_shares(place, diagonal);
+            }
         }
         dependent
+    }
+
+    /// Notes which rows one depends on, whose rest has just been measured: those that make up more than rounding of it.
+    fn note_shares(&mut self, place: usize, diagonal: f64) {
+        self.shares[place] = true;
+        for k in 0..place {
+            let (share, row) = (self.work[k], &self.jacobian[k]);
+            let square: f64 = row.iter().map(|entry| entry * entry).sum();
+            self.shares[k] |= share * share * square > SHARE * diagonal;
+        }
     }
 
     /// Sets a row of Ĵ and returns its square.
@@ -492,6 +513,41 @@ mod tests {
         let corner = |arm| [0.0, 1.0, arm, 0.0, 0.0, 0.0];
         let jacobians = [corner(-0.5), corner(0.1), corner(0.5)];
         assert_eq!(check(&[INERTIA], &[[Some(0), None]; 3], &jacobians, &[-9.81; 3]), 1);
+    }
+
+    #[test]
+    fn what_depends_on_nothing_is_as_stiff_as_before() {
+        // A heavy body hangs from a light one, which a pin holds; beside them a body is pinned twice.
+        let (light, heavy) = (
+            Inertia { inverse_mass: 1e3, inverse_moment: 1e3 },
+            Inertia { inverse_mass: 1e-5, inverse_moment: 1e-5 },
+        );
+        let (to_world, between) = (
+            pin([Some(0), None], [[0.3, 0.1], [0.0; 2]]),
+            pin([Some(0), Some(1)], [[-0.2, 0.4], [0.1, -0.5]]),
+        );
+        let doubled =
+            [pin([Some(2), None], [[0.3, 0.1], [0.0; 2]]), pin([Some(2), None], [[-0.7, 0.2], [0.0; 2]])];
+        let pins = [to_world, between, doubled[0], doubled[1]];
+        let rows: Vec<_> = pins.iter().flat_map(|(sides, _)| *sides).collect();
+        let jacobians: Vec<_> = pins.iter().flat_map(|(_, pair)| *pair).collect();
+        let inertia = [light, heavy, INERTIA];
+        let mut held = HeldRows::default();
+        held.set_structure(&inertia, &rows);
+        assert_eq!(held.factorize(&jacobians), 1);
+        held.soften(|_| true);
+        assert!(held.is_soft() && held.factorize(&jacobians) == 0);
+        let falls = |side: Option<u32>| if side.is_some() { -9.81 } else { 0.0 };
+        let offset: Vec<_> = rows
+            .iter()
+            .zip(&jacobians)
+            .map(|(sides, row)| row[1] * falls(sides[0]) + row[4] * falls(sides[1]))
+            .collect();
+        let mut force = vec![0.0; rows.len()];
+        held.solve(&offset, &mut force);
+        let (_, rates) = accelerations(&inertia, &rows, &jacobians, &force);
+        // Forces of 4e5 N on a body of a gram.
+        assert!(rates.iter().zip(&offset).all(|(rate, offset)| (rate + offset).abs() < 1e-6), "{rates:?}");
     }
 
     #[test]
