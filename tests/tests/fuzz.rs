@@ -48,6 +48,10 @@ const ONCE_BROKEN: [(u64, &str); 9] = [
     (110634, "a corner that had left a hollow was taken for one that still touched it"),
     (90155, "two contacts fired in turn without time going by"),
     (90180, "accelerations of nothing contradicted each other"),
+    (112809, "a corner that sank just before it leaned over was not seen"),
+    (120772, "doubled pins made others soft, beside a body a hundred million times heavier"),
+    (120305, "what soft pins lacked was not made good beside a slot"),
+    (130358, "a row beside soft pins had too small a pivot, and blew up"),
     (61154, "the search crawled along two corners that stayed near each other"),
 ];
 

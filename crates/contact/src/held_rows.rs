@@ -26,11 +26,10 @@ const NONE: u32 = u32::MAX;
 const SOFTNESS: f64 = 1e-6;
 /// A row depends on another that makes up more than this part of its square.
 const SHARE: f64 = 1e-12;
-/// Steps that make good what soft rows lack: each leaves this part of it over the part of a row that is independent. These
-/// are always made, and more, up to the cap, while each leaves less than so much of what is lacking.
-const REFINEMENTS: usize = 3;
+/// Cap on the steps that make good what soft rows lack.
 const MOST_REFINEMENTS: usize = 40;
-const WORTHWHILE: f64 = 0.9;
+/// Forces that do less than this part of what softness makes of them do nothing: rows disagree.
+const NULL: f64 = 1e-7;
 /// Part of the offsets that may be lacking in the end.
 const REFINED: f64 = 1e-13;
 
@@ -82,9 +81,7 @@ pub struct HeldRows {
     /// What the square of each row is raised by, in parts of itself.
     raise: Vec<f64>,
     is_soft: bool,
-    /// What forces leave of each row's equation, and what they lack, by row.
-    residual: Vec<f64>,
-    lacking: Vec<f64>,
+    refining: Refining,
     /// Ĵ = J M^(-1/2).
     jacobian: Vec<[f64; 6]>,
     work: Vec<f64>,
@@ -122,8 +119,7 @@ impl HeldRows {
             shares: Vec::new(),
             raise: Vec::new(),
             is_soft: false,
-            residual: Vec::new(),
-            lacking: Vec::new(),
+            refining: Refining::default(),
             jacobian: Vec::new(),
             work: Vec::new(),
             motion: Vec::new(),
@@ -137,7 +133,7 @@ impl HeldRows {
     /// the least that do, weighed by the squares of the rows. The others stay as stiff as they are: between a heavy and a light
     /// body a row has far less left of its square than what shares may lack.
     ///
-    /// Their squares are raised a little, and what forces then lack is made good step by step: the proximal point method.
+    /// Their squares are raised a little, and what forces then lack is made good step by step.
     /// So which rows depend on which may change on the way without a jump, and a motion that departs a little from what
     /// they agree on has no forces that come from their disagreement alone.
     pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
@@ -200,9 +196,7 @@ impl HeldRows {
     fn note_shares(&mut self, place: usize, diagonal: f64) {
         self.shares[place] = true;
         for k in 0..place {
-            let (share, row) = (self.work[k], &self.jacobian[k]);
-            let square: f64 = row.iter().map(|entry| entry * entry).sum();
-            self.shares[k] |= share * share * square > SHARE * diagonal;
+            self.shares[k] |= self.work[k] * self.work[k] * self.square(k) > SHARE * diagonal;
         }
     }
 
@@ -246,9 +240,9 @@ impl HeldRows {
         square
     }
 
-    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|². That has
-    /// the rounding of the difference, squared, where the difference of squares has that of the squares, times what
-    /// earlier small pivots make of it.
+    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|², and what
+    /// squares are raised by times x_k². That has the rounding of the difference, squared, where the difference of squares
+    /// has that of the squares, times what earlier small pivots make of it.
     fn measure_rest(&mut self, place: usize) -> f64 {
         let first = self.first[place];
         self.work[..first].fill(0.0);
@@ -265,7 +259,14 @@ impl HeldRows {
                 }
             }
         }
-        self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum()
+        let rest: f64 = self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum();
+        let raised = self.raise[..place].iter().enumerate().filter(|(_, raise)| **raise > 0.0);
+        rest + raised.map(|(k, raise)| self.work[k] * self.work[k] * raise * self.square(k)).sum::<f64>()
+    }
+
+    /// The square of a row of Ĵ.
+    fn square(&self, place: usize) -> f64 {
+        self.jacobian[place].iter().map(|entry| entry * entry).sum()
     }
 
     /// Adds a multiple of a row of Ĵ to the motion.
@@ -288,37 +289,75 @@ impl HeldRows {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
         self.solve_raised(offset, force);
-        let (mut residual, mut lacking) =
-            (std::mem::take(&mut self.residual), std::mem::take(&mut self.lacking));
-        let enough = REFINED * largest(offset);
-        let mut before = f64::INFINITY;
-        for count in 0..if self.is_soft { MOST_REFINEMENTS } else { 0 } {
-            self.measure_residual(offset, force, &mut residual);
-            let left = largest(&residual);
-            if count >= REFINEMENTS && (left <= enough || left > WORTHWHILE * before) {
-                break;
-            }
-            before = left;
-            self.solve_raised(&residual, &mut lacking);
-            for (force, lacking) in force.iter_mut().zip(&lacking) {
-                *force += lacking;
-            }
+        if self.is_soft {
+            let mut refining = std::mem::take(&mut self.refining);
+            self.refine(offset, force, &mut refining);
+            self.refining = refining;
         }
-        (self.residual, self.lacking) = (residual, lacking);
     }
 
-    /// A f + b of each row.
-    fn measure_residual(&mut self, offset: &[f64], force: &[f64], residual: &mut [f64]) {
+    /// Makes good what soft rows lack, by conjugate gradients: the raised factor differs from A in few directions, and each
+    /// takes about a step. What rows that depend on each other disagree in cannot be made good: the best forces are kept.
+    fn refine(&mut self, offset: &[f64], force: &mut [f64], refining: &mut Refining) {
+        let Refining { residual, lacking, direction, product, best } = refining;
+        for buffer in [&mut *residual, lacking, direction, product, best] {
+            buffer.clear();
+            buffer.resize(force.len(), 0.0);
+        }
+        self.multiply(force, residual);
+        residual.iter_mut().zip(offset).for_each(|(residual, offset)| *residual += offset);
+        best.copy_from_slice(force);
+        let (mut least, mut before) = (largest(residual), f64::INFINITY);
+        let enough = REFINED * largest(offset);
+        for _ in 0..MOST_REFINEMENTS {
+            if least <= enough {
+                break;
+            }
+            self.solve_raised(residual, lacking);
+            let descent = -dot(residual, lacking);
+            let keep = descent / before;
+            direction.iter_mut().zip(&*lacking).for_each(|(p, z)| *p = z + keep * *p);
+            self.multiply(direction, product);
+            let square = dot(direction, product);
+            // Along what rows disagree in, forces would grow without end.
+            if square <= NULL * self.softness_of(direction) {
+                break;
+            }
+            let step = descent / square;
+            force.iter_mut().zip(&*direction).for_each(|(f, p)| *f += step * p);
+            residual.iter_mut().zip(&*product).for_each(|(residual, product)| *residual += step * product);
+            before = descent;
+            let left = largest(residual);
+            if left < least {
+                least = left;
+                best.copy_from_slice(force);
+            }
+        }
+        force.copy_from_slice(best);
+    }
+
+    /// What the raised squares of soft rows make of some forces: f R f.
+    fn softness_of(&self, force: &[f64]) -> f64 {
+        let soft = self.raise.iter().enumerate().filter(|(_, raise)| **raise > 0.0);
+        let part = |(place, raise): (usize, &f64)| {
+            let force = force[self.order.rows[place] as usize];
+            force * force * raise * self.square(place)
+        };
+        soft.map(part).sum()
+    }
+
+    /// A f of each row.
+    fn multiply(&mut self, force: &[f64], product: &mut [f64]) {
         self.motion.fill([0.0; 3]);
         for place in 0..self.len() {
             self.push(place, force[self.order.rows[place] as usize]);
         }
         for (place, sides) in self.bodies.iter().enumerate() {
             let (row, index) = (&self.jacobian[place], self.order.rows[place] as usize);
-            residual[index] = offset[index];
+            product[index] = 0.0;
             for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
                 let motion = &self.motion[body as usize];
-                residual[index] += (0..3).map(|k| row[3 * side + k] * motion[k]).sum::<f64>();
+                product[index] += (0..3).map(|k| row[3 * side + k] * motion[k]).sum::<f64>();
             }
         }
     }
@@ -371,6 +410,20 @@ impl HeldRows {
         let place = self.order.rows.iter().position(|&other| other as usize == row);
         place.is_some_and(|place| self.inverse_pivot[place] == 0.0)
     }
+}
+
+/// Buffers of a refinement, by row.
+#[derive(Clone, Debug, Default)]
+struct Refining {
+    /// What forces leave of each row's equation.
+    residual: Vec<f64>,
+    /// What they lack, by the raised factor.
+    lacking: Vec<f64>,
+    direction: Vec<f64>,
+    /// A times the direction.
+    product: Vec<f64>,
+    /// The forces that leave least.
+    best: Vec<f64>,
 }
 
 /// The largest size of a number.

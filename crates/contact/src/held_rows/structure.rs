@@ -41,8 +41,6 @@ impl HeldRows {
         self.raise.clear();
         self.raise.resize(rows.len(), 0.0);
         self.is_soft = false;
-        self.residual.resize(rows.len(), 0.0);
-        self.lacking.resize(rows.len(), 0.0);
         self.work.clear();
         self.work.resize(rows.len(), 0.0);
         self.motion.clear();
