@@ -6,6 +6,7 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
+use super::hops::is_low_hop;
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::system::RigidSystem;
@@ -43,6 +44,8 @@ pub(crate) struct Settling {
     laws: Vec<usize>,
     /// Loads of the region's bodies [N].
     gross: Vec<f64>,
+    /// Accelerations of the region's bodies under the forces of the candidates.
+    pushed: Vec<[f64; 3]>,
     /// Bodies as the problem numbers them.
     bodies: Vec<halfgap_contact::BodyId>,
 }
@@ -67,6 +70,7 @@ impl Default for Settling {
             held: Vec::new(),
             laws: Vec::new(),
             gross: Vec::new(),
+            pushed: Vec::new(),
             bodies: Vec::new(),
         }
     }
@@ -174,9 +178,59 @@ impl RigidSystem {
         if settling.solve_strictly().is_err() || self.is_jammed(region, settling, stage) {
             self.drop_distant(region, settling, stage);
             settling.solve_at_all().map_err(|source| self.settle_error(region, settling, time, source))?;
+        } else if with_hops {
+            // Those that are held from now on may press others back.
+            while self.add_pressed_hops(region, settling, stage) {
+                self.pose_problem(region, settling, stage);
+                settling
+                    .solve_at_all()
+                    .map_err(|source| self.settle_error(region, settling, time, source))?;
+            }
         }
         self.choose_rows(region, settling, stage, time);
         Ok(())
+    }
+
+    /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if
+    /// there are any.
+    fn add_pressed_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+        let rest = self.rest_speed();
+        let may_hop = |record: &Collision| {
+            self.holds(record) && self.may_hop(record) && record.motion.normal_velocity > rest
+        };
+        if !region.records.iter().any(may_hop) {
+            return false;
+        }
+        self.push_bodies(region, settling, stage);
+        let before = settling.candidates.len();
+        for (index, record) in region.records.iter().enumerate().filter(|(_, record)| may_hop(record)) {
+            let is_new = settling.candidates[..before].binary_search(&index).is_err();
+            let offset = offset_under(region, record, &settling.pushed);
+            if is_new && is_low_hop(record, offset) {
+                settling.candidates.push(index);
+            }
+        }
+        settling.candidates.sort_unstable();
+        settling.candidates.len() > before
+    }
+
+    /// Finds the accelerations of a region's bodies under the forces of the candidates.
+    fn push_bodies(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let Settling { pushed, candidates, solution, .. } = settling;
+        pushed.clear();
+        pushed.extend_from_slice(&stage.accelerations);
+        for (&index, force) in candidates.iter().zip(&solution.force) {
+            let record = &region.records[index];
+            let j = &record.motion.kinematics.jacobian;
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            for (side, body) in sides.into_iter().enumerate() {
+                let Some(place) = region.place(body) else { continue };
+                let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
+                for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
+                    pushed[place][k] += weight * j[3 * side + k] * force;
+                }
+            }
+        }
     }
 
     /// True if a unilateral row may carry a force: connectors always do.
@@ -317,9 +371,14 @@ fn deepest(record: &Collision) -> f64 {
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
 pub(crate) fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    offset_under(region, record, &stage.accelerations)
+}
+
+/// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
+fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
     let sides = [record.parties.primary.body, record.parties.normal.body];
-    let spins = sides
-        .map(|body| region.place(body).map_or(Spin::default(), |place| spin(stage.accelerations[place])));
+    let spins =
+        sides.map(|body| region.place(body).map_or(Spin::default(), |place| spin(accelerations[place])));
     record.motion.kinematics.acceleration(&spins[0], &spins[1])
 }
 
