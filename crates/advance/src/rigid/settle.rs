@@ -41,6 +41,8 @@ pub(crate) struct Settling {
     candidates: Vec<usize>,
     /// The rows to be held, with the record of each.
     pub(crate) held: Vec<(usize, HeldRow)>,
+    /// The contacts among them, sorted.
+    touches: Vec<Touch>,
     laws: Vec<usize>,
     /// Loads of the region's bodies [N].
     gross: Vec<f64>,
@@ -68,6 +70,7 @@ impl Default for Settling {
             lenient: solver(lenient),
             candidates: Vec::new(),
             held: Vec::new(),
+            touches: Vec::new(),
             laws: Vec::new(),
             gross: Vec::new(),
             pushed: Vec::new(),
@@ -94,13 +97,16 @@ impl Settling {
 
     /// True if a contact is held from now on.
     pub(crate) fn holds_touch(&self, touch: Touch) -> bool {
-        self.held.iter().any(|(_, row)| match row.source {
-            RowSource::Contact([p, n]) => {
-                (row.bodies == touch.bodies && [p, n] == touch.features)
-                    || (row.bodies == [touch.bodies[1], touch.bodies[0]] && [n, p] == touch.features)
-            }
-            RowSource::Connector(..) => false,
-        })
+        self.touches.binary_search(&touch).is_ok()
+    }
+
+    fn list_touches(&mut self) {
+        self.touches.clear();
+        self.touches.extend(self.held.iter().filter_map(|(_, row)| match row.source {
+            RowSource::Contact(features) => Some(Touch::new(row.bodies, features)),
+            RowSource::Connector(..) => None,
+        }));
+        self.touches.sort_unstable();
     }
 
     /// Solves another problem with the same solver.
@@ -150,6 +156,7 @@ impl RigidSystem {
         with_hops: bool,
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
+        settling.touches.clear();
         settling.candidates.clear();
         let rest = if region.at_start { self.start_rest() } else { self.rest_speed() };
         let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
@@ -322,6 +329,7 @@ impl RigidSystem {
             }
         }
         settling.gross = gross;
+        settling.list_touches();
     }
 
     /// A row that knows whether it leans at a time.
