@@ -3,6 +3,7 @@
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{BodyId, BodyState, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
+use halfgap_tests::reference_scene;
 
 /// Largest distance [m] or angle [rad] by which a body has moved.
 fn moved(world: &World, start: &[BodyState]) -> f64 {
@@ -146,4 +147,16 @@ fn a_block_that_bounces_and_rocks_comes_to_rest_flat() {
         assert_eq!(world.contact_forces().len(), 2, "e = {elasticity}");
         println!("e = {elasticity}: {:?}", world.statistics());
     }
+}
+
+/// Eight blocks that attract each other gather in a heap. An impact anywhere makes contacts everywhere open a little; what
+/// presses them back at once, through the others, counts as held.
+#[test]
+fn a_heap_comes_to_rest_in_few_impacts() {
+    let mut world = World::from_scene(&reference_scene("apps__pile_attract")).expect("a reference scene");
+    world.advance_to(6.0, &mut |_| {}).expect("it goes on");
+    // Seven hundred if each of them had to be caught again.
+    let impacts = world.statistics().impacts;
+    assert!((50..400).contains(&impacts), "{impacts} impacts");
+    assert!(world.energy().kinetic < 1e-3, "{:?}", world.energy());
 }

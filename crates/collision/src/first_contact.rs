@@ -6,7 +6,7 @@
 use crate::closed::{of_centers, quadratic};
 use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
-use crate::motion::{Motion, Polynomial};
+use crate::motion::{Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 
@@ -190,7 +190,16 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     /// Goes on from a time [s] before which there is known to be no contact; see [`search_step`].
     #[must_use]
     pub fn step(&self, from: f64, span: f64) -> Search {
+        if self.is_left_alone() {
+            return Search::NoneBefore(span);
+        }
         self.directly(from, span).unwrap_or_else(|| self.by_windows(from, span))
+    }
+
+    /// True if there is one pair of features, which is not searched.
+    fn is_left_alone(&self) -> bool {
+        let is_only = self.a.shape.features().len() == 1 && self.b.shape.features().len() == 1;
+        is_only && self.rules.iter().any(|rule| rule.target.is_none())
     }
 
     /// At least one: every call makes progress.
@@ -318,20 +327,16 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             rest: 0.0,
         };
         let offsets = [self.a.offset + start, self.b.offset + start];
-        let (a, b) = ((circle_a, self.a.motion), (circle_b, self.b.motion));
-        let distance = {
-            let pose_a = self.a.motion.moving_at(offsets[0]).pose;
-            let pose_b = self.b.motion.moving_at(offsets[1]).pose;
-            (pose_a.position - pose_b.position).length()
-        };
+        let centers = (Center(self.a.motion), Center(self.b.motion));
+        let (a, b) = ((circle_a, &centers.0), (circle_b, &centers.1));
+        let distance = (a.1.center_at(offsets[0]).0 - b.1.center_at(offsets[1]).0).length();
         if distance <= self.a.shape.reach() + self.b.shape.reach() + target {
             return start;
         }
         match quadratic(PairKind::Outer, a, b, offsets, target) {
             Some(curve) => curve.first_closing(f64::INFINITY).map_or(span, |wait| start + wait),
             None => {
-                let whole =
-                    Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, span);
+                let whole = Window::new(&centers.0, &centers.1, [self.a.offset, self.b.offset], start, span);
                 match whole.march(&pair, start, span, self.march_steps()) {
                     MarchEnd::Closes(time) | MarchEnd::NoneBefore(time) => time,
                 }

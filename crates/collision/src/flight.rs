@@ -113,20 +113,6 @@ impl Flight {
         wait.is_finite().then_some(wait)
     }
 
-    /// Position and velocity of the centre of mass, for less than one by one.
-    #[inline]
-    fn center_at(&self, t: f64) -> (DVec2, DVec2) {
-        if self.linear_rate == 0.0 {
-            return (self.position_at(t), self.velocity_at(t));
-        }
-        // e^-z = 1 - z p1.
-        let z = self.linear_rate * t;
-        let decay = Decay::new(z);
-        let (v, a) = (self.start.velocity, self.acceleration);
-        let position = self.start.position + (v * decay.p1 + a * (t * decay.p2)) * t;
-        (position, v * (1.0 - z * decay.p1) + a * (t * decay.p1))
-    }
-
     fn position_at(&self, t: f64) -> DVec2 {
         if self.linear_rate == 0.0 {
             return self.start.position + (self.start.velocity + self.acceleration * (0.5 * t)) * t;
@@ -171,7 +157,7 @@ impl Motion for Flight {
 
     #[inline]
     fn moving_at(&self, offset: f64) -> Moving {
-        let rotation = if self.start.angular_velocity == 0.0 {
+        let rotation = if self.start.angular_velocity == 0.0 || offset == 0.0 {
             self.start_rotation
         } else {
             Rotation::from_angle(self.angle_at(offset))
@@ -182,6 +168,19 @@ impl Motion for Flight {
             velocity,
             angular_velocity: self.angular_velocity_at(offset),
         }
+    }
+
+    #[inline]
+    fn center_at(&self, t: f64) -> (DVec2, DVec2) {
+        if self.linear_rate == 0.0 {
+            return (self.position_at(t), self.velocity_at(t));
+        }
+        // For less than one by one: e^-z = 1 - z p1.
+        let z = self.linear_rate * t;
+        let decay = Decay::new(z);
+        let (v, a) = (self.start.velocity, self.acceleration);
+        let position = self.start.position + (v * decay.p1 + a * (t * decay.p2)) * t;
+        (position, v * (1.0 - z * decay.p1) + a * (t * decay.p1))
     }
 
     fn bounds(&self, from: f64, to: f64) -> MotionBounds {

@@ -130,6 +130,12 @@ pub trait Motion {
         Moving::from(&self.state_at(offset))
     }
 
+    /// Position [m] and velocity [m/s] of the centre of mass at an offset [s].
+    fn center_at(&self, offset: f64) -> (DVec2, DVec2) {
+        let state = self.state_at(offset);
+        (state.position, state.velocity)
+    }
+
     /// Bounds that hold between two offsets [s].
     fn bounds(&self, from: f64, to: f64) -> MotionBounds;
 
@@ -138,4 +144,37 @@ pub trait Motion {
 
     /// True if the body does not turn during the segment.
     fn is_rotation_free(&self) -> bool;
+}
+
+/// The centre of mass of a body in motion, whose turning does not matter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Center<'a, M>(pub(crate) &'a M);
+
+impl<M: Motion> Motion for Center<'_, M> {
+    fn state_at(&self, offset: f64) -> BodyState {
+        let (position, velocity) = self.0.center_at(offset);
+        BodyState { position, velocity, ..BodyState::default() }
+    }
+
+    fn moving_at(&self, offset: f64) -> Moving {
+        let (position, velocity) = self.0.center_at(offset);
+        let pose = Pose { position, ..Pose::IDENTITY };
+        Moving { pose, velocity, angular_velocity: 0.0 }
+    }
+
+    fn center_at(&self, offset: f64) -> (DVec2, DVec2) {
+        self.0.center_at(offset)
+    }
+
+    fn bounds(&self, from: f64, to: f64) -> MotionBounds {
+        MotionBounds { angular_speed: 0.0, angular_acceleration: 0.0, ..self.0.bounds(from, to) }
+    }
+
+    fn polynomial_from(&self, offset: f64) -> Option<Polynomial> {
+        self.0.polynomial_from(offset)
+    }
+
+    fn is_rotation_free(&self) -> bool {
+        true
+    }
 }

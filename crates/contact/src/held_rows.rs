@@ -30,8 +30,8 @@ const SHARE: f64 = 1e-12;
 const MOST_REFINEMENTS: usize = 40;
 /// Forces that do less than this part of what softness makes of them do nothing: rows disagree.
 const NULL: f64 = 1e-7;
-/// Part of the offsets that may be lacking in the end.
-const REFINED: f64 = 1e-13;
+/// They end where so many in a row have gained nothing.
+const IDLE: u32 = 2;
 
 /// Rows held as equations, with the structure of their factor kept from solve to solve.
 ///
@@ -304,13 +304,13 @@ impl HeldRows {
             buffer.clear();
             buffer.resize(force.len(), 0.0);
         }
-        self.multiply(force, residual);
-        residual.iter_mut().zip(offset).for_each(|(residual, offset)| *residual += offset);
+        self.measure_residual(offset, force, residual);
         best.copy_from_slice(force);
         let (mut least, mut before) = (largest(residual), f64::INFINITY);
-        let enough = REFINED * largest(offset);
+        let enough = f64::EPSILON * largest(offset);
+        let mut idle = 0;
         for _ in 0..MOST_REFINEMENTS {
-            if least <= enough {
+            if least <= enough || idle == IDLE {
                 break;
             }
             self.solve_raised(residual, lacking);
@@ -319,15 +319,17 @@ impl HeldRows {
             direction.iter_mut().zip(&*lacking).for_each(|(p, z)| *p = z + keep * *p);
             self.multiply(direction, product);
             let square = dot(direction, product);
-            // Along what rows disagree in, forces would grow without end.
-            if square <= NULL * self.softness_of(direction) {
-                break;
+            let does_little = square <= NULL * self.softness_of(direction);
+            if does_little {
+                // Along what rows disagree in, forces would grow without end: what is lacking beside that is made good.
+                direction.copy_from_slice(lacking);
             }
-            let step = descent / square;
+            let step = if does_little { 1.0 } else { descent / square };
+            before = if does_little { f64::INFINITY } else { descent };
             force.iter_mut().zip(&*direction).for_each(|(f, p)| *f += step * p);
-            residual.iter_mut().zip(&*product).for_each(|(residual, product)| *residual += step * product);
-            before = descent;
+            self.measure_residual(offset, force, residual);
             let left = largest(residual);
+            idle = if left < least { 0 } else { idle + 1 };
             if left < least {
                 least = left;
                 best.copy_from_slice(force);
@@ -344,6 +346,12 @@ impl HeldRows {
             force * force * raise * self.square(place)
         };
         soft.map(part).sum()
+    }
+
+    /// A f + b of each row.
+    fn measure_residual(&mut self, offset: &[f64], force: &[f64], residual: &mut [f64]) {
+        self.multiply(force, residual);
+        residual.iter_mut().zip(offset).for_each(|(residual, offset)| *residual += offset);
     }
 
     /// A f of each row.

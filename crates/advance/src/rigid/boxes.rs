@@ -48,11 +48,10 @@ impl Room {
         Aabb::around_disc(center, self.reach + self.margin + self.skin)
     }
 
-    /// By how much [m] the box is set ahead of the body. Of what is no parabola only a bound on the speed is known: it has as
+    /// By how much [m] the box is set ahead of the body. Of what does not fly only a bound on the speed is known: it has as
     /// much room on all sides.
     fn ahead(&self, flyer: &Flyer, velocity: DVec2) -> DVec2 {
-        let is_parabola = flyer.flight().and_then(Flight::parabola).is_some();
-        let direction = velocity.try_normalize().filter(|_| is_parabola);
+        let direction = velocity.try_normalize().filter(|_| flyer.flight().is_some());
         direction.map_or(DVec2::ZERO, |direction| direction * (AHEAD * self.margin))
     }
 
@@ -83,7 +82,10 @@ impl Room {
         match flyer.path() {
             Path::Flight(flight) => match flight.polynomial_from(offset) {
                 Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
-                None => flight.stays_within(slack(), offset).map(|wait| time.plus(wait)),
+                None => {
+                    let by_axes = damped_leaving_time(flight, offset, &core)?;
+                    Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))
+                }
             },
             // What comes after the segment is another question.
             Path::Dense(dense) if core.contains(&dense.center_box()) => None,
@@ -108,11 +110,27 @@ fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
         let wait = along_x.min(along_y).max(0.0);
         return wait.is_finite().then_some(wait);
     }
+    leaving_time_within(path, [a, a], core)
+}
+
+/// A time [s] before which a damped flight from an offset [s] surely stays in a box: its acceleration keeps its direction
+/// and dies away, so that along each axis the flight is between a straight line and a parabola.
+fn damped_leaving_time(flight: &Flight, offset: f64, core: &Aabb) -> Option<f64> {
+    let state = flight.state_at(offset);
+    let acceleration = flight.acceleration_at(offset);
+    let path = Polynomial { position: state.position, velocity: state.velocity, acceleration };
+    leaving_time_within(&path, [acceleration.min(DVec2::ZERO), acceleration.max(DVec2::ZERO)], core)
+}
+
+/// When a point first leaves a box at the earliest, if its accelerations [m/s^2] lie between a least and a greatest along
+/// each axis.
+fn leaving_time_within(path: &Polynomial, [least, greatest]: [DVec2; 2], core: &Aabb) -> Option<f64> {
+    let (x, v) = (path.position, path.velocity);
     [
-        first_closing_time(core.max.x - x.x, -v.x, -a.x),
-        first_closing_time(x.x - core.min.x, v.x, a.x),
-        first_closing_time(core.max.y - x.y, -v.y, -a.y),
-        first_closing_time(x.y - core.min.y, v.y, a.y),
+        first_closing_time(core.max.x - x.x, -v.x, -greatest.x),
+        first_closing_time(x.x - core.min.x, v.x, least.x),
+        first_closing_time(core.max.y - x.y, -v.y, -greatest.y),
+        first_closing_time(x.y - core.min.y, v.y, least.y),
     ]
     .into_iter()
     .flatten()
@@ -122,6 +140,7 @@ fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use halfgap_collision::BodyState;
 
     const CORE: Aabb = Aabb { min: DVec2::new(-1.0, -2.0), max: DVec2::new(2.0, 5.0) };
 
@@ -135,6 +154,26 @@ mod tests {
         assert_eq!(leaves(DVec2::new(-4.0, 4.0), DVec2::ZERO), Some(0.25));
         assert_eq!(leaves(DVec2::new(0.0, 2.0), DVec2::ZERO), Some(2.5));
         assert_eq!(leaves(DVec2::ZERO, DVec2::ZERO), None);
+    }
+
+    #[test]
+    fn a_damped_flight_stays_as_long_as_it_is_said_to() {
+        for (velocity, acceleration) in
+            [(DVec2::new(3.0, 4.0), DVec2::new(0.0, -9.81)), (DVec2::new(-0.5, 0.0), DVec2::new(2.0, -1.0))]
+        {
+            for rate in [1e-9, 0.05, 1.0, 30.0] {
+                let start = BodyState { velocity, ..BodyState::default() };
+                let flight = Flight::new(start, acceleration, rate, 0.0);
+                let leaving = damped_leaving_time(&flight, 0.0, &CORE).expect("it falls out");
+                let is_inside = |part: f64| {
+                    CORE.contains(&Aabb::around_disc(flight.state_at(part * leaving).position, 0.0))
+                };
+                assert!(leaving > 0.0 && (0..100).all(|step| is_inside(f64::from(step) / 100.0)));
+                // Where damping hardly bends the path, the time is that of the parabola.
+                let undamped = leaves(velocity, acceleration).expect("it falls out");
+                assert!(rate > 1e-6 || (leaving / undamped - 1.0).abs() < 1e-6, "{leaving} {undamped}");
+            }
+        }
     }
 
     #[test]

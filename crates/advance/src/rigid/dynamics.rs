@@ -3,11 +3,11 @@
 //! With the rows J of the basis and their gap accelerations J v' + gamma, the forces f satisfy
 //! (J M^-1 J^T) f = -(J v'_0 + gamma), v'_0 being the acceleration without them; then v' = v'_0 + M^-1 J^T f.
 
-use super::crossing::NODES;
 use super::flyer::Flyer;
 use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 use super::rows::Mechanism;
+use super::watch::Samples;
 use crate::ode::{Ode, SegmentPolynomial};
 use crate::time::Time;
 use glam::DVec2;
@@ -70,7 +70,7 @@ pub(crate) struct Stage {
     pub(crate) trial: Vec<f64>,
     pub(crate) trial_rates: Vec<f64>,
     /// Values of watched functions at the nodes.
-    pub(crate) samples: Vec<[f64; NODES]>,
+    pub(crate) samples: Samples,
     /// Their values at the earliest event found so far.
     pub(crate) there: Vec<f64>,
     /// Evaluations so far.

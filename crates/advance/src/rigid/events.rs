@@ -18,6 +18,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 const SEAM_SHARE: f64 = 1.0 / 32.0;
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
 const SEAM_ANGLE: f64 = 4e-9;
+/// Cap on the rounds in which the low hops of one event are stilled.
+const HOP_ROUNDS: u32 = 4;
 /// An event's time is corrected while the gap is off by more than this part of the accuracy.
 const TIME_SHARE: f64 = 1e-2;
 
@@ -28,8 +30,8 @@ pub(crate) struct EventWork {
     impact: Impact,
     pub(crate) settling: Settling,
     pub(crate) seeds: Vec<BodyId>,
-    /// Records of held contacts that open in a low hop.
-    pub(crate) hopping: Vec<usize>,
+    /// Records of held contacts that are stopped because one of them opens in a low hop.
+    pub(crate) stilled: Vec<usize>,
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
 }
@@ -250,10 +252,7 @@ impl RigidSystem {
     /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         self.note_rails(&work.region, self.now);
-        self.settle_region(work, !work.region.at_start)?;
-        if self.still_hops(work) {
-            self.settle_region(work, false)?;
-        }
+        self.settle_and_still(work)?;
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
         self.note_seen(&work.region);
@@ -270,6 +269,20 @@ impl RigidSystem {
         Ok(())
     }
 
+    /// Finds what is held, and stills what of it hops: to stop some contacts makes others hop.
+    fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        self.settle_region(work, !work.region.at_start)?;
+        for round in 1..=HOP_ROUNDS {
+            if !self.any_held_hops(work) {
+                break;
+            }
+            let is_stilled = self.still_hops(work);
+            let with_hops = is_stilled && !work.region.at_start && round < HOP_ROUNDS;
+            self.settle_region(work, with_hops)?;
+        }
+        Ok(())
+    }
+
     fn settle_region(&mut self, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
         let mut stage = std::mem::take(&mut self.stage);
         let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now, with_hops);
@@ -278,8 +291,8 @@ impl RigidSystem {
     }
 
     /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
-    /// Where such rows contradict each other, nothing is done: as unilateral ones they need not.
-    pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) {
+    /// Where such rows contradict each other, nothing is done, and it says false: as unilateral ones they need not.
+    pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
         let mut report = ImpactReport::default();
         let now = self.now;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
@@ -290,6 +303,7 @@ impl RigidSystem {
             self.book_impact(&report, true);
             self.remeasure(&mut work.region, now);
         }
+        outcome.is_ok()
     }
 
     /// Distance [m] by which a contact without force may sink before it fires again.

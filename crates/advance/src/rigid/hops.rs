@@ -19,24 +19,32 @@ impl RigidSystem {
 
     /// True if what acts on the bodies of a contact that opens brings them back before it has opened by much.
     pub(crate) fn hops_low(&self, region: &Region, record: &Collision, stage: &Stage) -> bool {
-        let (rate, back) = (record.motion.normal_velocity, -free_offset(region, record, stage));
-        back > 0.0 && rate * rate <= 2.0 * back * HOP_SHARE * record.tolerances.accuracy
+        is_low_hop(record, free_offset(region, record, stage))
     }
 
-    /// Stops the held contacts that open, in no more than a low hop; true if there are any.
-    pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> bool {
-        let rest = self.rest_speed();
-        let records = &mut work.region.records;
-        work.hopping.clear();
-        work.hopping.extend(work.settling.held.iter().map(|&(index, _)| index));
-        work.hopping.retain(|&index| {
-            !records[index].parties.bilateral && records[index].motion.normal_velocity > rest
-        });
-        if work.hopping.is_empty() {
-            return false;
-        }
-        work.hopping.iter().for_each(|&index| records[index].parties.bilateral = true);
-        self.stop_bilaterally(work);
-        true
+    /// True if any held contact opens.
+    pub(crate) fn any_held_hops(&self, work: &EventWork) -> bool {
+        let records = &work.region.records;
+        let mut held = work.settling.held.iter().map(|&(index, _)| &records[index]);
+        held.any(|record| !record.parties.bilateral && record.motion.normal_velocity > self.rest_speed())
     }
+
+    /// Stops the held contacts, all of them at once: what stops some only lets others open. False if they contradict each
+    /// other.
+    pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> bool {
+        let records = &mut work.region.records;
+        work.stilled.clear();
+        work.stilled.extend(work.settling.held.iter().map(|&(index, _)| index));
+        work.stilled.retain(|&index| !records[index].parties.bilateral);
+        work.stilled.iter().for_each(|&index| records[index].parties.bilateral = true);
+        let is_stilled = self.stop_bilaterally(work);
+        work.stilled.iter().for_each(|&index| work.region.records[index].parties.bilateral = false);
+        is_stilled
+    }
+}
+
+/// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.
+pub(crate) fn is_low_hop(record: &Collision, acceleration: f64) -> bool {
+    let rate = record.motion.normal_velocity;
+    acceleration < 0.0 && rate * rate <= -2.0 * acceleration * HOP_SHARE * record.tolerances.accuracy
 }

@@ -86,19 +86,22 @@ impl RigidSystem {
     }
 
     fn apply_impulses(&mut self, region: &mut Region, impact: &Impact, time: Time) {
-        for &body in &region.bodies {
-            self.restart_flight(body, time);
-            let (mut velocity, mut spin) = (DVec2::ZERO, 0.0);
-            for (row, &impulse) in impact.rows().iter().zip(impact.impulses()) {
-                let sides = row.bodies.iter().enumerate();
-                for (side, _) in sides.filter(|&(_, &taking_part)| taking_part == body) {
-                    let change = &row.response[3 * side..];
-                    velocity += DVec2::new(change[0], change[1]) * impulse;
-                    spin += change[2] * impulse;
+        let mut changes = std::mem::take(&mut region.changes);
+        changes.clear();
+        changes.resize(region.bodies.len(), [0.0; 3]);
+        for (row, &impulse) in impact.rows().iter().zip(impact.impulses()) {
+            for (side, place) in row.bodies.iter().map(|&body| region.place(body)).enumerate() {
+                let Some(place) = place else { continue };
+                for (change, response) in changes[place].iter_mut().zip(&row.response[3 * side..]) {
+                    *change += response * impulse;
                 }
             }
-            self.flyer_mut(body).cut(time, velocity, spin);
         }
+        for (&body, &[x, y, spin]) in region.bodies.iter().zip(&changes) {
+            self.restart_flight(body, time);
+            self.flyer_mut(body).cut(time, DVec2::new(x, y), spin);
+        }
+        region.changes = changes;
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);
             if !record.parties.bilateral {

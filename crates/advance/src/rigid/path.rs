@@ -64,6 +64,11 @@ impl Motion for DensePath {
         }
     }
 
+    fn center_at(&self, offset: f64) -> (DVec2, DVec2) {
+        let [x, y] = [self.x.jet_at(offset), self.y.jet_at(offset)];
+        (DVec2::new(x.value, y.value), DVec2::new(x.derivative, y.derivative))
+    }
+
     fn bounds(&self, from: f64, to: f64) -> MotionBounds {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let [x, y, angle] = self.jets_at(middle);
@@ -113,6 +118,10 @@ impl Motion for Path<'_> {
 
     fn moving_at(&self, offset: f64) -> Moving {
         either!(self, motion => motion.moving_at(offset))
+    }
+
+    fn center_at(&self, offset: f64) -> (DVec2, DVec2) {
+        either!(self, motion => motion.center_at(offset))
     }
 
     fn bounds(&self, from: f64, to: f64) -> MotionBounds {

@@ -11,7 +11,7 @@ use halfgap_collision::{
 };
 use halfgap_geometry::GapSample;
 
-/// One search looks at most this far ahead [s], and one step goes no farther: bounds over the span stay finite.
+/// One search looks at most this far ahead [s]: bounds over the span stay finite.
 pub(crate) const LONGEST_SPAN: f64 = 1e6;
 
 impl RigidSystem {

@@ -12,7 +12,7 @@ use halfgap_collision::{
 use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Touch {
     pub(crate) bodies: [BodyId; 2],
     pub(crate) features: [FeatureId; 2],
@@ -38,6 +38,8 @@ pub(crate) struct Region {
     /// A contact that has just run off its features: its neighbours take over, if they touch.
     pub(crate) run_off: Option<Touch>,
     fresh: Vec<Collision>,
+    /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
+    pub(crate) changes: Vec<[f64; 3]>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
     stamp: u32,

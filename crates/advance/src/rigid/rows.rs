@@ -6,7 +6,7 @@ use halfgap_collision::{
     BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailKnot, RailPath, RailPlace,
     Tolerances,
 };
-use halfgap_geometry::{Feature, FeatureId, GapSample, Shape};
+use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
 
 /// Part of the accuracy by which a contact may run off its features before it is said to have changed: more than the
 /// rounding by which one that has run off is still detected, far less than what forces can feel.
@@ -125,7 +125,11 @@ impl Mechanism<'_> {
     /// True if a row may run off its features or its piece of a rail.
     pub(crate) fn can_change(&self, row: &HeldRow) -> bool {
         match row.source {
-            RowSource::Contact(_) => true,
+            RowSource::Contact(features) => {
+                // Full circles have no ends.
+                let mut sides = row.bodies.iter().zip(features);
+                !sides.all(|(&body, feature)| is_full(self.shape(body).feature(feature)))
+            }
             RowSource::Connector(id, _) => {
                 self.connectors[id.index()].path().is_some_and(|path| !path.knots().is_empty())
             }
@@ -135,11 +139,14 @@ impl Mechanism<'_> {
     /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
     /// rows that cannot.
     pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
+        if !self.can_change(row) {
+            return None;
+        }
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, _) => {
                 let connector = &self.connectors[id.index()];
-                let path = connector.path().filter(|path| !path.knots().is_empty())?;
+                let path = connector.path()?;
                 rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
             }
             RowSource::Contact(features) => {
@@ -196,6 +203,10 @@ impl Mechanism<'_> {
         let lever = |side: usize| shape(side).lever(features[side]);
         (sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1))
     }
+}
+
+fn is_full(feature: &Feature) -> bool {
+    matches!(feature, Feature::Round(round) if round.range == DirectionRange::Full)
 }
 
 /// True if a contact that is outside of its features has left them.

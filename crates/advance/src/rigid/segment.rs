@@ -2,7 +2,6 @@
 
 use super::dynamics::{Dynamics, body_state};
 use super::group::Group;
-use super::predictions::LONGEST_SPAN;
 use super::rows::{RowSource, moving_of};
 use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
@@ -21,6 +20,8 @@ pub struct StepControl {
     pub largest_step: Option<f64>,
 }
 
+/// No step is longer [s]: nobody looks so far, and what is read there means nothing.
+pub(crate) const LONGEST_STEP: f64 = 1e12;
 /// Steps shorter than this many machine epsilons of the clock mean that the step size has collapsed.
 const COLLAPSED: f64 = 64.0;
 /// Exponent of the error in the first step: one over the order of the default method.
@@ -84,7 +85,7 @@ impl Dynamics<'_> {
     ) -> Result<(), StepFailure> {
         self.set_scales(control, scales);
         let longest = self.longest_sound_step().min(self.longest_watched_step());
-        let limit = control.largest_step.unwrap_or(LONGEST_SPAN).min(longest);
+        let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);

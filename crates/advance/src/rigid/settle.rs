@@ -6,9 +6,10 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
-use super::predictions::LONGEST_SPAN;
+use super::hops::is_low_hop;
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
+use super::segment::LONGEST_STEP;
 use super::system::RigidSystem;
 use super::watch::FORCE_SHARE;
 use crate::time::Time;
@@ -41,9 +42,13 @@ pub(crate) struct Settling {
     candidates: Vec<usize>,
     /// The rows to be held, with the record of each.
     pub(crate) held: Vec<(usize, HeldRow)>,
+    /// The contacts among them, sorted.
+    touches: Vec<Touch>,
     laws: Vec<usize>,
     /// Loads of the region's bodies [N].
     gross: Vec<f64>,
+    /// Accelerations of the region's bodies under the forces of the candidates.
+    pushed: Vec<[f64; 3]>,
     /// Bodies as the problem numbers them.
     bodies: Vec<halfgap_contact::BodyId>,
 }
@@ -66,11 +71,24 @@ impl Default for Settling {
             lenient: solver(lenient),
             candidates: Vec::new(),
             held: Vec::new(),
+            touches: Vec::new(),
             laws: Vec::new(),
             gross: Vec::new(),
+            pushed: Vec::new(),
             bodies: Vec::new(),
         }
     }
+}
+
+/// How the forces of the candidates were found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Solved {
+    /// There are none: nothing accelerates.
+    Nothing,
+    /// As asked.
+    Soundly,
+    /// With fewer candidates, or to a lesser accuracy.
+    Somehow,
 }
 
 impl Clone for Settling {
@@ -91,13 +109,16 @@ impl Settling {
 
     /// True if a contact is held from now on.
     pub(crate) fn holds_touch(&self, touch: Touch) -> bool {
-        self.held.iter().any(|(_, row)| match row.source {
-            RowSource::Contact([p, n]) => {
-                (row.bodies == touch.bodies && [p, n] == touch.features)
-                    || (row.bodies == [touch.bodies[1], touch.bodies[0]] && [n, p] == touch.features)
-            }
-            RowSource::Connector(..) => false,
-        })
+        self.touches.binary_search(&touch).is_ok()
+    }
+
+    fn list_touches(&mut self) {
+        self.touches.clear();
+        self.touches.extend(self.held.iter().filter_map(|(_, row)| match row.source {
+            RowSource::Contact(features) => Some(Touch::new(row.bodies, features)),
+            RowSource::Connector(..) => None,
+        }));
+        self.touches.sort_unstable();
     }
 
     /// Solves another problem with the same solver.
@@ -147,6 +168,7 @@ impl RigidSystem {
         with_hops: bool,
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
+        settling.touches.clear();
         settling.candidates.clear();
         let rest = if region.at_start { self.start_rest() } else { self.rest_speed() };
         let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
@@ -166,31 +188,92 @@ impl RigidSystem {
         if settling.candidates.is_empty() {
             return Ok(());
         }
-        loop {
-            self.pose_problem(region, settling, stage);
-            let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-            let any_bilateral = settling.problem.bilateral().contains(&true);
-            if scale == 0.0 && !any_bilateral {
-                return Ok(());
-            }
-            if settling.solve_strictly().is_err() || self.is_jammed(region, settling, stage) {
-                self.drop_distant(region, settling, stage);
-                if let Err(source) = settling.solve_at_all() {
-                    // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
-                    if scale > rest * rest / self.settings.steps.length {
-                        return Err(self.settle_error(region, settling, time, source));
-                    }
-                    settling.solution.force.clear();
-                    settling.solution.force.resize(settling.candidates.len(), 0.0);
-                }
-            }
-            // What carries too little to be held carries nothing: the others do without it.
-            if !self.drop_idle(region, settling, stage) {
-                break;
-            }
+        let mut solved = self.solve_candidates(region, settling, stage, (time, rest))?;
+        if solved == Solved::Nothing {
+            return Ok(());
+        }
+        // Those that are held from now on may press others back.
+        while with_hops && solved == Solved::Soundly && self.add_pressed_hops(region, settling, stage) {
+            solved = self.solve_candidates(region, settling, stage, (time, rest))?;
+        }
+        // What carries too little to be held carries nothing: the others do without it.
+        while self.drop_idle(region, settling, stage) {
+            self.solve_candidates(region, settling, stage, (time, rest))?;
         }
         self.choose_rows(region, settling, time);
         Ok(())
+    }
+
+    /// Finds the forces of the candidates; those that jam are thinned out.
+    fn solve_candidates(
+        &self,
+        region: &Region,
+        settling: &mut Settling,
+        stage: &Stage,
+        (time, rest): (Time, f64),
+    ) -> Result<Solved, AdvanceError> {
+        self.pose_problem(region, settling, stage);
+        let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        if scale == 0.0 && !settling.problem.bilateral().contains(&true) {
+            settling.solution.force.clear();
+            settling.solution.force.resize(settling.candidates.len(), 0.0);
+            return Ok(Solved::Nothing);
+        }
+        if settling.solve_strictly().is_ok() && !self.is_jammed(region, settling, stage) {
+            return Ok(Solved::Soundly);
+        }
+        self.drop_distant(region, settling, stage);
+        if let Err(source) = settling.solve_at_all() {
+            // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
+            if scale > rest * rest / self.settings.steps.length {
+                return Err(self.settle_error(region, settling, time, source));
+            }
+            settling.solution.force.clear();
+            settling.solution.force.resize(settling.candidates.len(), 0.0);
+        }
+        Ok(Solved::Somehow)
+    }
+
+    /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if
+    /// there are any.
+    fn add_pressed_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+        let rest = self.rest_speed();
+        let may_hop = |record: &Collision| {
+            self.holds(record) && self.may_hop(record) && record.motion.normal_velocity > rest
+        };
+        if !region.records.iter().any(may_hop) {
+            return false;
+        }
+        self.push_bodies(region, settling, stage);
+        let before = settling.candidates.len();
+        for (index, record) in region.records.iter().enumerate().filter(|(_, record)| may_hop(record)) {
+            let is_new = settling.candidates[..before].binary_search(&index).is_err();
+            let offset = offset_under(region, record, &settling.pushed);
+            if is_new && is_low_hop(record, offset) {
+                settling.candidates.push(index);
+            }
+        }
+        settling.candidates.sort_unstable();
+        settling.candidates.len() > before
+    }
+
+    /// Finds the accelerations of a region's bodies under the forces of the candidates.
+    fn push_bodies(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let Settling { pushed, candidates, solution, .. } = settling;
+        pushed.clear();
+        pushed.extend_from_slice(&stage.accelerations);
+        for (&index, force) in candidates.iter().zip(&solution.force) {
+            let record = &region.records[index];
+            let j = &record.motion.kinematics.jacobian;
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            for (side, body) in sides.into_iter().enumerate() {
+                let Some(place) = region.place(body) else { continue };
+                let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
+                for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
+                    pushed[place][k] += weight * j[3 * side + k] * force;
+                }
+            }
+        }
     }
 
     /// True if a unilateral row may carry a force: connectors always do.
@@ -232,7 +315,7 @@ impl RigidSystem {
 
     fn pose_problem(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
         let (problem, bodies) = (&mut settling.problem, &mut settling.bodies);
-        let least = f64::EPSILON * self.settings.tolerances.accuracy / (LONGEST_SPAN * LONGEST_SPAN);
+        let least = f64::EPSILON * self.settings.tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
         problem.clear();
         bodies.clear();
         bodies.extend(region.bodies.iter().map(|&body| {
@@ -293,6 +376,7 @@ impl RigidSystem {
         for &index in &settling.candidates {
             settling.held.extend(self.held_row(&region.records[index], time).map(|row| (index, row)));
         }
+        settling.list_touches();
     }
 
     /// A row that knows whether it leans at a time.
@@ -342,9 +426,14 @@ fn deepest(record: &Collision) -> f64 {
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
 pub(crate) fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    offset_under(region, record, &stage.accelerations)
+}
+
+/// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
+fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
     let sides = [record.parties.primary.body, record.parties.normal.body];
-    let spins = sides
-        .map(|body| region.place(body).map_or(Spin::default(), |place| spin(stage.accelerations[place])));
+    let spins =
+        sides.map(|body| region.place(body).map_or(Spin::default(), |place| spin(accelerations[place])));
     record.motion.kinematics.acceleration(&spins[0], &spins[1])
 }
 

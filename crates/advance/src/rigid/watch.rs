@@ -7,7 +7,7 @@ use super::crossing::{NODES, first_fall, first_fall_before, node};
 use super::dynamics::Dynamics;
 use super::group::{SegmentEnd, Stop};
 use super::law::Snapshot;
-use super::rows::{HeldRow, RowSource, moving_of};
+use super::rows::{RowSource, moving_of};
 use crate::ode::Ode;
 
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
@@ -47,24 +47,22 @@ const SINKINGS: Watch = Watch {
     end: SegmentEnd::Sink,
 };
 
+/// Values of watched functions at the nodes, row by row; none of what needs no watch.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Samples {
+    forces: Vec<[f64; NODES]>,
+    rooms: Vec<[f64; NODES]>,
+    heights: Vec<[f64; NODES]>,
+}
+
 impl Dynamics<'_> {
     /// The earliest event of the group itself on the segment, whose dense output and end forces are known.
     pub(crate) fn find_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest: Option<(f64, SegmentEnd)> = None;
-        if self.group.rows.iter().any(|row| !row.bilateral) {
-            self.find_least_forces();
-            let samples = self.sample_forces();
-            self.find_first(&mut earliest, &samples, &RELEASES);
-            self.stage.samples = samples;
-        }
-        let can_change = |row: &HeldRow| self.physics.mechanism.can_change(row);
-        if self.group.rows.iter().any(can_change) {
-            let samples = self.sample(&CHANGES, self.group.rows.len());
-            self.find_first(&mut earliest, &samples, &CHANGES);
-            self.stage.samples = samples;
-        }
-        let samples = self.sample(&SINKINGS, self.group.leaning.len());
-        self.find_first(&mut earliest, &samples, &SINKINGS);
+        let samples = self.sample_rows();
+        self.find_first(&mut earliest, &samples.forces, &RELEASES);
+        self.find_first(&mut earliest, &samples.rooms, &CHANGES);
+        self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
         let mut offer = |found: Option<f64>, end: SegmentEnd| {
             if let Some(offset) = found.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
@@ -108,14 +106,20 @@ impl Dynamics<'_> {
 
     /// Places the group's bodies where they are at an offset [s] of the segment.
     pub(crate) fn place_at(&mut self, offset: f64) {
-        let mut trial = std::mem::take(&mut self.stage.trial);
+        self.find_state_at(offset);
+        let trial = std::mem::take(&mut self.stage.trial);
+        self.stage.load(&self.group.bodies, &trial);
+        self.stage.trial = trial;
+    }
+
+    /// The state of the group at an offset [s] of the segment, left in the stage.
+    fn find_state_at(&mut self, offset: f64) {
+        let trial = &mut self.stage.trial;
         trial.clear();
         let paths = self.group.paths.iter().flatten();
         trial.extend(paths.clone().map(|path| path.value_at(offset)));
         trial.extend(paths.map(|path| path.derivative_at(offset)));
         trial.resize(self.group.dimension(), 0.0);
-        self.stage.load(&self.group.bodies, &trial);
-        self.stage.trial = trial;
     }
 
     /// By how much held contacts are too near in the middle of the segment, where dense output is least exact, in units of
@@ -141,7 +145,7 @@ impl Dynamics<'_> {
 
     /// Forces of the rows at an offset [s] of the segment, left in the stage.
     pub(crate) fn evaluate_at(&mut self, offset: f64) {
-        self.place_at(offset);
+        self.find_state_at(offset);
         let trial = std::mem::take(&mut self.stage.trial);
         let mut rates = std::mem::take(&mut self.stage.trial_rates);
         rates.resize(trial.len(), 0.0);
@@ -149,41 +153,54 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
-    /// The forces of all rows at the nodes, raised by what counts as none.
-    fn sample_forces(&mut self) -> Vec<[f64; NODES]> {
+    /// Samples all that is watched of the rows at the nodes.
+    fn sample_rows(&mut self) -> Samples {
         let mut samples = std::mem::take(&mut self.stage.samples);
-        samples.clear();
-        samples.resize(self.group.rows.len(), [0.0; NODES]);
+        let group = &*self.group;
+        let has_contacts = group.rows.iter().any(|row| !row.bilateral);
+        let can_change = group.rows.iter().any(|row| self.physics.mechanism.can_change(row));
+        let fill = |list: &mut Vec<[f64; NODES]>, rows: usize| {
+            list.clear();
+            list.resize(rows, [0.0; NODES]);
+        };
+        fill(&mut samples.forces, if has_contacts { group.rows.len() } else { 0 });
+        fill(&mut samples.rooms, if can_change { group.rows.len() } else { 0 });
+        fill(&mut samples.heights, group.leaning.len());
+        if has_contacts {
+            self.find_least_forces();
+        }
+        let any_place = can_change || !samples.heights.is_empty();
         for index in 0..NODES {
-            if index > 0 && index + 1 < NODES {
-                self.evaluate_at(node(index, self.group.span));
+            let is_inside = index > 0 && index + 1 < NODES;
+            let offset = node(index, self.group.span);
+            if has_contacts && is_inside {
+                self.evaluate_at(offset);
+            } else if any_place {
+                self.place_at(offset);
             }
-            let forces = match index {
-                0 => &self.group.forces,
-                _ if index + 1 == NODES => &self.group.end_forces,
-                _ => &self.stage.forces,
-            };
-            for (((sample, force), least), row) in
-                samples.iter_mut().zip(forces).zip(&self.stage.least).zip(&self.group.rows)
-            {
-                sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
+            self.sample_forces(&mut samples.forces, index);
+            for (row, sample) in samples.rooms.iter_mut().enumerate() {
+                sample[index] = self.room(row);
+            }
+            for (row, sample) in samples.heights.iter_mut().enumerate() {
+                sample[index] = self.height(row);
             }
         }
         samples
     }
 
-    /// The values of all rows of a watch at the nodes.
-    fn sample(&mut self, watch: &Watch, rows: usize) -> Vec<[f64; NODES]> {
-        let mut samples = std::mem::take(&mut self.stage.samples);
-        samples.clear();
-        samples.resize(rows, [0.0; NODES]);
-        for index in 0..if rows > 0 { NODES } else { 0 } {
-            (watch.place)(self, node(index, self.group.span));
-            for (row, sample) in samples.iter_mut().enumerate() {
-                sample[index] = (watch.read)(self, row);
-            }
+    /// The forces of all rows at a node, raised by what counts as none.
+    fn sample_forces(&self, samples: &mut [[f64; NODES]], index: usize) {
+        let forces = match index {
+            0 => &self.group.forces,
+            _ if index + 1 == NODES => &self.group.end_forces,
+            _ => &self.stage.forces,
+        };
+        for (((sample, force), least), row) in
+            samples.iter_mut().zip(forces).zip(&self.stage.least).zip(&self.group.rows)
+        {
+            sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
         }
-        samples
     }
 
     /// The earliest fall of any row of a watch, if it comes before what was found so far.

@@ -17,6 +17,8 @@ pub(super) struct Couplings {
     diagonal: Vec<f64>,
     /// The movable bodies of each row.
     bodies: Vec<[u32; 2]>,
+    /// Each movable body with each of its rows, sorted.
+    of_bodies: Vec<(u32, u32)>,
 }
 
 impl Couplings {
@@ -25,19 +27,33 @@ impl Couplings {
         self.bodies.clear();
         self.bodies
             .extend(rows.iter().map(|row| row.movable_bodies().map(|body| body.map_or(NONE, |id| id.0))));
+        self.list_rows_of_bodies();
         self.start.clear();
         self.start.push(0);
         self.entries.clear();
         self.diagonal.clear();
-        for (i, row) in rows.iter().enumerate() {
-            for (j, other) in rows.iter().enumerate() {
-                if share(self.bodies[i], self.bodies[j]) {
-                    self.entries.push((j as u32, row.coupling(other)));
-                }
+        for (row, &bodies) in rows.iter().zip(&self.bodies) {
+            let [first, second] = bodies.map(|body| rows_of(&self.of_bodies, body));
+            let (mut p, mut q) = (first.iter().peekable(), second.iter().peekable());
+            // Each list ascends; a row on both bodies is named in both.
+            while let Some(next) = least(p.peek().map(|&&(_, row)| row), q.peek().map(|&&(_, row)| row)) {
+                self.entries.push((next, row.coupling(&rows[next as usize])));
+                p.next_if(|&&(_, row)| row == next);
+                q.next_if(|&&(_, row)| row == next);
             }
             self.start.push(self.entries.len());
             self.diagonal.push(row.coupling(row));
         }
+    }
+
+    fn list_rows_of_bodies(&mut self) {
+        self.of_bodies.clear();
+        for (row, bodies) in self.bodies.iter().enumerate() {
+            let movable = bodies.iter().filter(|body| **body != NONE);
+            self.of_bodies.extend(movable.map(|&body| (body, row as u32)));
+        }
+        self.of_bodies.sort_unstable();
+        self.of_bodies.dedup();
     }
 
     /// The rows that an impulse along this one moves, with the change of their rates per impulse.
@@ -60,6 +76,21 @@ impl Couplings {
     /// True if the rows act on a common body that can move.
     pub(super) fn share_body(&self, row: usize, other: usize) -> bool {
         share(self.bodies[row], self.bodies[other])
+    }
+}
+
+/// The rows of a body, ascending.
+fn rows_of(of_bodies: &[(u32, u32)], body: u32) -> &[(u32, u32)] {
+    let from = of_bodies.partition_point(|&(other, _)| other < body);
+    let count = of_bodies[from..].partition_point(|&(other, _)| other == body);
+    &of_bodies[from..from + count]
+}
+
+/// The lesser of two numbers, either of which may be absent.
+fn least(p: Option<u32>, q: Option<u32>) -> Option<u32> {
+    match (p, q) {
+        (Some(p), Some(q)) => Some(p.min(q)),
+        (only, None) | (None, only) => only,
     }
 }
 
