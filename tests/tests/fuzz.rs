@@ -49,6 +49,8 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (90155, "two contacts fired in turn without time going by"),
     (90180, "accelerations of nothing contradicted each other"),
     (112809, "a corner that sank just before it leaned over was not seen"),
+    (130821, "a ring that sank a moment after a step began, and rose before the next look, went into a wall"),
+    (140435, "dense output went into what the ends of the step did not touch, a third of the way"),
     (120772, "doubled pins made others soft, beside a body a hundred million times heavier"),
     (120305, "what soft pins lacked was not made good beside a slot"),
     (130358, "a row beside soft pins had too small a pivot, and blew up"),

@@ -17,6 +17,30 @@ const GAIN: f64 = 8.0;
 /// A bracket is closed when it is this part of the segment.
 const CLOSED: f64 = 1e-14;
 
+/// Samples between the start of a segment and its first node, each this part of the next from the start: what starts at
+/// nearly zero dips at once or, mostly, not at all.
+pub(crate) const EARLY: usize = 5;
+const EARLIER: f64 = 0.25;
+
+/// Offset [s] of an early sample of a segment of the given span.
+pub(crate) fn early_node(index: usize, span: f64) -> f64 {
+    (index..EARLY).fold(node(1, span), |offset, _| offset * EARLIER)
+}
+
+/// The first offset up to the first node at which `f` has fallen below zero, given its values at the start, which is not
+/// negative, and at the early nodes.
+pub(crate) fn early_fall(
+    start: f64,
+    values: &[f64; EARLY],
+    span: f64,
+    f: impl FnMut(f64) -> f64,
+) -> Option<f64> {
+    let index = values.iter().position(|&value| value < 0.0).filter(|_| start >= 0.0)?;
+    let above =
+        index.checked_sub(1).map_or((0.0, start), |before| (early_node(before, span), values[before]));
+    Some(close(above, (early_node(index, span), values[index]), span, f))
+}
+
 /// Offset [s] of a node of a segment of the given span.
 pub(crate) fn node(index: usize, span: f64) -> f64 {
     if index + 1 == NODES { span } else { span * (index as f64 / (NODES - 1) as f64) }
@@ -151,6 +175,18 @@ mod tests {
         let fall = sampled(1.0, |t| (t - 0.6) * (t - 0.6) - 1e-3).expect("it dips");
         assert!((fall - (0.6 - 1e-3f64.sqrt())).abs() < 1e-12);
         assert_eq!(sampled(1.0, |t| (t - 0.6) * (t - 0.6) + 1e-3), None);
+    }
+
+    #[test]
+    fn a_dip_soon_after_the_start_is_found() {
+        // It rises as t^6, to some ten thousand times what it dips by.
+        let f = |t: f64| 1e-14 - 1e-10 * t * t + 1e-6 * t.powi(6);
+        let early = |span: f64| std::array::from_fn(|index| f(early_node(index, span)));
+        let fall = early_fall(f(0.0), &early(1.0), 1.0, f).expect("it dips");
+        assert!((fall - 1.00005e-2).abs() < 1e-6 && f(fall) < 0.0, "{fall}");
+        let rises = |t: f64| 1e-14 + 1e-10 * t;
+        let early = std::array::from_fn(|index| rises(early_node(index, 1.0)));
+        assert_eq!(early_fall(rises(0.0), &early, 1.0, rises), None);
     }
 
     #[test]

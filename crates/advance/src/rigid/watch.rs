@@ -3,7 +3,7 @@
 //!
 //! Each is a function along the dense output whose first fall below zero is an event.
 
-use super::crossing::{NODES, first_fall, first_fall_before, node};
+use super::crossing::{EARLY, NODES, early_fall, early_node, first_fall, first_fall_before, node};
 use super::dynamics::Dynamics;
 use super::group::{SegmentEnd, Stop};
 use super::law::Snapshot;
@@ -13,8 +13,11 @@ use crate::ode::Ode;
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
 pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
-/// Part of the accuracy by which a held contact may be too near in the middle of a step.
-const MIDDLE_SHARE: f64 = 0.5;
+/// Part of the accuracy by which a held contact may be too near within a step.
+const INNER_SHARE: f64 = 0.5;
+/// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
+/// more for contacts.
+const INNER: [f64; 3] = [0.5, 0.3, 0.7];
 
 /// Functions of the rows along a segment of which the first to fall below zero is an event.
 struct Watch {
@@ -53,6 +56,8 @@ pub(crate) struct Samples {
     forces: Vec<[f64; NODES]>,
     rooms: Vec<[f64; NODES]>,
     heights: Vec<[f64; NODES]>,
+    /// Heights soon after the start.
+    early: Vec<[f64; EARLY]>,
 }
 
 impl Dynamics<'_> {
@@ -60,6 +65,7 @@ impl Dynamics<'_> {
     pub(crate) fn find_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest: Option<(f64, SegmentEnd)> = None;
         let samples = self.sample_rows();
+        self.find_early_sinking(&mut earliest, &samples);
         self.find_first(&mut earliest, &samples.forces, &RELEASES);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
@@ -122,21 +128,24 @@ impl Dynamics<'_> {
         trial.resize(self.group.dimension(), 0.0);
     }
 
-    /// By how much held contacts are too near in the middle of the segment, where dense output is least exact, in units of
+    /// By how much held contacts are too near between the ends of the segment, where dense output is less exact, in units of
     /// what is allowed so that nothing overlaps. The largest error of a connector is noted.
-    pub(crate) fn middle_excess(&mut self, accuracy: f64) -> f64 {
+    pub(crate) fn inner_excess(&mut self, accuracy: f64) -> f64 {
         self.group.largest_error = 0.0;
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
             return excess;
         }
-        self.place_at(0.5 * self.group.span);
-        for row in &self.group.rows {
-            let error = self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap;
-            match row.source {
-                RowSource::Contact(_) => excess = excess.max(-error / (MIDDLE_SHARE * accuracy)),
-                RowSource::Connector(..) => {
-                    self.group.largest_error = self.group.largest_error.max(error.abs());
+        let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
+        for &part in if any_contact { &INNER[..] } else { &INNER[..1] } {
+            self.place_at(part * self.group.span);
+            for row in &self.group.rows {
+                let error = self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap;
+                match row.source {
+                    RowSource::Contact(_) => excess = excess.max(-error / (INNER_SHARE * accuracy)),
+                    RowSource::Connector(..) => {
+                        self.group.largest_error = self.group.largest_error.max(error.abs());
+                    }
                 }
             }
         }
@@ -166,6 +175,8 @@ impl Dynamics<'_> {
         fill(&mut samples.forces, if has_contacts { group.rows.len() } else { 0 });
         fill(&mut samples.rooms, if can_change { group.rows.len() } else { 0 });
         fill(&mut samples.heights, group.leaning.len());
+        samples.early.clear();
+        samples.early.resize(group.leaning.len(), [0.0; EARLY]);
         if has_contacts {
             self.find_least_forces();
         }
@@ -186,7 +197,30 @@ impl Dynamics<'_> {
                 sample[index] = self.height(row);
             }
         }
+        for index in 0..if samples.early.is_empty() { 0 } else { EARLY } {
+            self.place_at(early_node(index, self.group.span));
+            for (row, sample) in samples.early.iter_mut().enumerate() {
+                sample[index] = self.height(row);
+            }
+        }
         samples
+    }
+
+    /// The earliest contact that sinks before the first node.
+    fn find_early_sinking(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, samples: &Samples) {
+        for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
+            let fall = early_fall(heights[0], early, self.group.span, |offset| {
+                self.place_at(offset);
+                self.height(row)
+            });
+            let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) else {
+                continue;
+            };
+            self.place_at(offset);
+            if self.is_within(row) {
+                *earliest = Some((offset, SegmentEnd::Sink(row)));
+            }
+        }
     }
 
     /// The forces of all rows at a node, raised by what counts as none.
