@@ -8,6 +8,7 @@ mod changes;
 mod events;
 mod extremes;
 mod grazing;
+mod held;
 mod ledger;
 mod linkages;
 mod narrow;
