@@ -78,7 +78,7 @@ impl Jet {
         Self { point: point + slope * u, slope, bend: DVec2::ZERO, twist: DVec2::ZERO }
     }
 
-    /// The step to the parameter at which a point is nearest; `None` if the distance is not convex here.
+    /// The step to the parameter at which a point is nearest; `None` if the distance is not convex here, or no number.
     ///
     /// With e the way to the point and t1, t2, t3 slope, bend and twist, half of the squared distance has the derivative
     /// f0 + f1 s + f2 s^2 + f3 s^3 + .. with f0 = -e.t1, f1 = t1.t1 - 2 e.t2, f2 = 3 (t1.t2 - e.t3) and
@@ -93,7 +93,7 @@ impl Jet {
         let seen = point - here;
         let speed_sq = t1.length_squared();
         let convexity = speed_sq - 2.0 * seen.dot(t2);
-        if convexity <= 0.0 {
+        if convexity.is_nan() || convexity <= 0.0 {
             return None;
         }
         let ahead = seen.dot(t1);
