@@ -258,7 +258,7 @@ impl RigidSystem {
         self.note_seen(&work.region);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(&work.region, &work.settling);
-        if work.repeats > 0 {
+        if self.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
             self.lower_insistent(&work.region);
         }
         for &body in &work.region.bodies {
@@ -443,6 +443,9 @@ impl RigidSystem {
         entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
         entry.last_contact = Some(now);
         let (events, [primary, normal]) = (entry.repeats, bodies);
+        if events > CALM_REPEATS {
+            self.last_insistent = Some(now);
+        }
         if events > MOST_REPEATS {
             let between = Between { primary, normal };
             return Err(AdvanceError::Stuck { time: now.seconds(), between, events });

@@ -165,6 +165,8 @@ pub struct RigidSystem {
     pub(crate) last_impact: ImpactReport,
     pub(crate) changes: ContactChanges,
     pub(crate) touched: Vec<PairId>,
+    /// When contacts have fired again and again without time going by.
+    pub(crate) last_insistent: Option<Time>,
     pub(crate) links: Vec<Link>,
     pub(crate) neighbours: Vec<BodyId>,
     pub(crate) marks: Marks,
@@ -227,6 +229,7 @@ impl RigidSystem {
             last_impact: ImpactReport::default(),
             changes: ContactChanges::default(),
             touched: Vec::new(),
+            last_insistent: None,
             links: Vec::new(),
             neighbours: Vec::new(),
             marks: Marks::default(),
