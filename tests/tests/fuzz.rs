@@ -53,6 +53,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (140435, "dense output went into what the ends of the step did not touch, a third of the way"),
     (150040, "no number came to where a curve is nearest, and that panicked"),
     (150511, "a contact ran off its edge and fired again in turns, far from where it began"),
+    (150724, "what had been lifted from half of its target gap below was taken for the far side"),
     (120772, "doubled pins made others soft, beside a body a hundred million times heavier"),
     (120305, "what soft pins lacked was not made good beside a slot"),
     (130358, "a row beside soft pins had too small a pivot, and blew up"),

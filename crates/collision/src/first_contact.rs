@@ -268,6 +268,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let rule = self.rules.iter().find(|rule| rule.features == ids);
         let target = rule.map_or(Some(tolerances.target_gap), |rule| rule.target)?;
         let depth = tolerances.distance_tol().max(self.settings.depth);
+        // What lies behind does so at the same gap, whatever the rule.
+        let depth = depth + (target - tolerances.target_gap).max(0.0);
         let slack = [slack(a, self.a.shape.lever(ids[0]), b), slack(b, self.b.shape.lever(ids[1]), a)];
         let slack = slack.map(|share| share * tolerances.accuracy);
         let overrun = OVERRUN_SHARE * tolerances.accuracy;

@@ -7,7 +7,8 @@ use super::system::RigidSystem;
 use crate::queue::SourceId;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, Tolerances, disc_contact,
+    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, SearchSettings, Tolerances,
+    disc_contact,
 };
 use halfgap_geometry::GapSample;
 
@@ -121,14 +122,15 @@ impl RigidSystem {
     #[inline]
     fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
         let lane = &self.lanes[link.other.index()];
-        if lane.kind != LaneKind::Disc || self.pairs.get(link.pair).has_rules {
+        let tolerances = &self.settings.tolerances;
+        let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
+        if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
             return None;
         }
         // What is in flight has no end but its box.
         look_ahead(from, own.stay.min(lane.stay), |span| {
-            let tolerances = Tolerances { target_gap: own.halo.min(lane.halo), ..self.settings.tolerances };
             let other = (lane.parabola_from(from), lane.radius);
-            disc_contact((own.parabola, own.radius), other, span, &tolerances)
+            disc_contact((own.parabola, own.radius), other, span, tolerances)
         })
     }
 
@@ -201,7 +203,10 @@ impl RigidSystem {
         (rules, tolerances): (&[FeatureRule], &Tolerances),
         span: f64,
     ) -> Search {
-        let settings = &self.settings.search;
+        // A lowered target makes nothing lie on the far side of its body.
+        let depth = tolerances.target_gap + self.settings.tolerances.target_gap;
+        let search = self.settings.search;
+        let settings = &SearchSettings { depth: search.depth.max(depth), ..search };
         PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
     }
 
