@@ -152,7 +152,9 @@ impl Impact {
 
     /// By how much a row's rate is wrong [m/s]: its closing speed, or a bilateral row's rate without sign.
     fn violation(&self, row: usize) -> f64 {
-        if self.rows[row].bilateral { self.rates[row].abs() } else { -self.rates[row] }
+        // Most impacts have no connectors; then a scan of all rows reads their rates alone.
+        let is_bilateral = self.has_connectors && self.rows[row].bilateral;
+        if is_bilateral { self.rates[row].abs() } else { -self.rates[row] }
     }
 
     /// Whether that is more than `small`, and more than rounding.

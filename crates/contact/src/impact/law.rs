@@ -168,9 +168,10 @@ impl Impact {
     }
 
     /// Slack [m/s] of a comparison of a rate with a bound on it that the solver's residual may have given: rounding of the
-    /// bound, and of the terms of the rate, which `apply` adds up in another order than the solver.
+    /// bound, and of the terms of the rate, which `apply` adds up in another order than the solver. Below the least normal
+    /// number rounding is no longer a part of what is rounded, and a bound that is a part of such a rate is 0.
     fn rounding_of_rates(&self, bound: f64) -> f64 {
-        ROUNDING_OF_BOUND * bound + NOISE * self.largest_change
+        f64::MIN_POSITIVE + ROUNDING_OF_BOUND * bound + NOISE * self.largest_change
     }
 
     /// Stops what still closes, without elasticity.
@@ -222,6 +223,8 @@ mod tests {
             finish_at((1.0 + 1e-14) * bound, bound, 0.0),
             Err(ImpactError::Unfinished { row: 0, .. })
         ));
+        // The least number there is, in an impact so weak that all parts of its speed are 0.
+        assert_eq!(finish_at(f64::from_bits(1), 0.0, 0.0), Ok(()));
         assert!(finish_at(2.1 * NOISE, NOISE, 1.0).is_err());
     }
 }
