@@ -171,3 +171,27 @@ impl Impact {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Inertia;
+    use crate::row::CollisionRow;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn rows_that_open_slowly_are_driven_in_one_problem() -> Result<(), ImpactError> {
+        // Discs in a line: the first row closes at 1 m/s and drives the others, which open, each slower than that.
+        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
+        let row = |place: u32, rate| {
+            CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 0.0, 1e-3, false)
+        };
+        let mut impact = Impact::new();
+        impact.set_rows((0..8).map(|place| row(place, if place == 0 { -1.0 } else { 1e-3 })));
+        impact.resolve_inelastic()?;
+        assert_eq!((impact.solves(), impact.active_rows()), (1, 8));
+        assert!(impact.rates().iter().all(|rate| rate.abs() <= impact.bound()), "{:?}", impact.rates());
+        Ok(())
+    }
+}
