@@ -122,11 +122,12 @@ impl DualActiveSet {
     pub(crate) fn run_modestly(
         &mut self,
         problem: &Problem,
+        start: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let Settings { dependence, inconsistency, .. } = self.settings;
         let attempt = Attempt { dependence, contradiction: inconsistency };
-        self.attempt(problem, Start::Nothing, solution, attempt)
+        self.attempt(problem, start, solution, attempt)
     }
 
     /// As [`run`](Self::run), but returns `Ok(false)` once many pivots are in sight on a large problem.

@@ -49,6 +49,8 @@ pub struct Impact {
     couplings: Couplings,
     /// Rate [m/s] that is rounding of the impulses so far, or what rows that contradict each other by rounding leave.
     noise: f64,
+    /// The largest change [m/s] of a rate by one impulse so far.
+    largest_change: f64,
     /// The fastest rate [m/s] that was to be changed.
     fastest: f64,
     bound: f64,
@@ -90,6 +92,7 @@ impl Impact {
         self.impulses.resize(self.rows.len(), 0.0);
         self.couplings.set_rows(&self.rows);
         self.noise = 0.0;
+        self.largest_change = 0.0;
         self.fastest = 0.0;
         self.bound = 0.0;
         self.solves = 0;
@@ -137,18 +140,21 @@ impl Impact {
     /// Adds an impulse along one row and brings all rates up to date.
     fn apply(&mut self, row: usize, impulse: f64) {
         self.impulses[row] += impulse;
-        let mut largest = 0.0f64;
+        let mut largest = self.largest_change;
         for (other, coupling) in self.couplings.row(row) {
             let change = coupling * impulse;
             largest = largest.max(change.abs());
             self.rates[other] += change;
         }
+        self.largest_change = largest;
         self.noise = self.noise.max(NOISE * largest);
     }
 
     /// By how much a row's rate is wrong [m/s]: its closing speed, or a bilateral row's rate without sign.
     fn violation(&self, row: usize) -> f64 {
-        if self.rows[row].bilateral { self.rates[row].abs() } else { -self.rates[row] }
+        // Most impacts have no connectors; then a scan of all rows reads their rates alone.
+        let is_bilateral = self.has_connectors && self.rows[row].bilateral;
+        if is_bilateral { self.rates[row].abs() } else { -self.rates[row] }
     }
 
     /// Whether that is more than `small`, and more than rounding.

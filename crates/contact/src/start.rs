@@ -36,6 +36,8 @@ pub(crate) enum Start<'a> {
     Nothing,
     /// With the rows closed that were so in an earlier answer.
     Earlier(&'a WarmStart),
+    /// With these rows closed as a guess, one flag per row.
+    Guessed(&'a [bool]),
     /// With these rows closed, one flag per row.
     #[cfg(feature = "qp")]
     Closed(&'a [bool]),
@@ -74,10 +76,10 @@ impl DualActiveSet {
     pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
         let limit = self.settings.start_closed * system.scale;
-        self.is_warm = !matches!(start, Start::Nothing);
+        self.is_warm = !matches!(start, Start::Nothing | Start::Guessed(_));
         let lookup = match start {
             Start::Earlier(warm) => Some(warm.lookup(problem)),
-            Start::Nothing => None,
+            Start::Nothing | Start::Guessed(_) => None,
             #[cfg(feature = "qp")]
             Start::Closed(_) => None,
         };
@@ -87,6 +89,7 @@ impl DualActiveSet {
             let closed = match (start, earlier) {
                 #[cfg(feature = "qp")]
                 (Start::Closed(rows), _) => rows[row],
+                (Start::Guessed(rows), _) => rows[row],
                 (_, Some(earlier)) => earlier.closed,
                 (_, None) => system.b[row] <= limit,
             };

@@ -72,11 +72,6 @@ impl Couplings {
     pub(super) fn between(&self, row: usize, other: usize) -> f64 {
         self.row(row).find(|&(column, _)| column == other).map_or(0.0, |(_, value)| value)
     }
-
-    /// True if the rows act on a common body that can move.
-    pub(super) fn share_body(&self, row: usize, other: usize) -> bool {
-        share(self.bodies[row], self.bodies[other])
-    }
 }
 
 /// The rows of a body, ascending.
@@ -92,8 +87,4 @@ fn least(p: Option<u32>, q: Option<u32>) -> Option<u32> {
         (Some(p), Some(q)) => Some(p.min(q)),
         (only, None) | (None, only) => only,
     }
-}
-
-fn share(p: [u32; 2], q: [u32; 2]) -> bool {
-    p.iter().any(|&body| body != NONE && (body == q[0] || body == q[1]))
 }

@@ -1,10 +1,10 @@
 //! The impact laws, and what all of them share.
 
-use super::Impact;
 use super::many_rows::NEARLY;
 use super::patience::{Patience, QUIET, RICOCHET};
 use super::serial::Grouping;
 use super::shuffle::Shuffle;
+use super::{Impact, NOISE};
 use crate::check::Residuals;
 
 /// Which rows are solved together, and what happens after.
@@ -77,6 +77,11 @@ pub enum ImpactError {
         bound: f64,
     },
 }
+
+/// Part of a bound on rates that is rounding of the bound itself. What a solve leaves of a rate, times the row's scale and
+/// the problem's scale, is the rate again but for four products and quotients and a root, each wrong by half a unit in the
+/// last place.
+const ROUNDING_OF_BOUND: f64 = 4.0 * f64::EPSILON;
 
 /// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes what the one before
 /// left by rounding, or by nearly dependent rows.
@@ -162,6 +167,13 @@ impl Impact {
         }
     }
 
+    /// Slack [m/s] of a comparison of a rate with a bound on it that the solver's residual may have given: rounding of the
+    /// bound, and of the terms of the rate, which `apply` adds up in another order than the solver. Below the least normal
+    /// number rounding is no longer a part of what is rounded, and a bound that is a part of such a rate is 0.
+    fn rounding_of_rates(&self, bound: f64) -> f64 {
+        f64::MIN_POSITIVE + ROUNDING_OF_BOUND * bound + NOISE * self.largest_change
+    }
+
     /// Stops what still closes, without elasticity.
     fn finish(&mut self, small: f64) -> Result<(), ImpactError> {
         for _ in 0..FINAL_PASSES {
@@ -175,10 +187,44 @@ impl Impact {
         self.bound = self.rest(small).max(violation);
         let most = self.rest(NEARLY * self.fastest);
         match left {
-            Some(row) if violation > most => {
+            Some(row) if violation > most + self.rounding_of_rates(most) => {
                 Err(ImpactError::Unfinished { row, rate: self.rates[row], bound: most })
             }
             _ => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Inertia;
+    use crate::row::CollisionRow;
+    use halfgap_collision::BodyId;
+
+    /// Ends an impact of a row that nothing moves and that closes, where rates up to `noise` [m/s] are rounding.
+    fn finish_at(closing: f64, noise: f64, largest_change: f64) -> Result<(), ImpactError> {
+        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
+        let bodies = [BodyId(0), BodyId::WORLD];
+        let mut impact = Impact::new();
+        impact.set_rows([CollisionRow::new(bodies, jacobian, [fixed; 2], -closing, 0.0, 1e-3, false)]);
+        (impact.noise, impact.largest_change) = (noise, largest_change);
+        impact.finish(0.0)
+    }
+
+    #[test]
+    fn a_rate_that_is_the_bound_but_for_rounding_is_finished() {
+        let (rate, bound) = (1.7162831790140682e-16, 1.716283179014068e-16);
+        assert!(rate > bound);
+        assert_eq!(finish_at(rate, bound, 0.0), Ok(()));
+        assert_eq!(finish_at(1.5 * NOISE, NOISE, 1.0), Ok(()));
+        assert!(matches!(
+            finish_at((1.0 + 1e-14) * bound, bound, 0.0),
+            Err(ImpactError::Unfinished { row: 0, .. })
+        ));
+        // The least number there is, in an impact so weak that all parts of its speed are 0.
+        assert_eq!(finish_at(f64::from_bits(1), 0.0, 0.0), Ok(()));
+        assert!(finish_at(2.1 * NOISE, NOISE, 1.0).is_err());
     }
 }

@@ -9,6 +9,7 @@ use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 use crate::settings::{Contradiction, Settings};
 use crate::solution::Solution;
+use crate::start::Start;
 
 /// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the impact's
 /// fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak beside the speeds of its
@@ -35,6 +36,8 @@ pub(super) struct ManyRows {
     solution: Solution,
     /// Place of each row of the impact in the problem, or `OUTSIDE`.
     place: Vec<u32>,
+    /// Whether each row of the problem is likely to carry an impulse, if that is known.
+    likely: Vec<bool>,
     /// max |b/s|, the unit in which the solver measures contradictions.
     scale: f64,
 }
@@ -50,6 +53,7 @@ impl Default for ManyRows {
             problem,
             solution: Solution::new(),
             place: Vec::new(),
+            likely: Vec::new(),
             scale: 0.0,
         }
     }
@@ -95,15 +99,26 @@ impl ManyRows {
     fn solve_raised(&mut self) -> Option<()> {
         RAISES.iter().find_map(|&part| {
             self.raise(part);
-            self.solver.run_modestly(&self.problem, &mut self.solution).ok()
+            self.solver.run_modestly(&self.problem, Start::Nothing, &mut self.solution).ok()
         })
+    }
+
+    /// Solves as given.
+    fn solve(&mut self) -> Result<(), SolveError> {
+        let start = if self.likely.is_empty() { Start::Nothing } else { Start::Guessed(&self.likely) };
+        self.solver.run_modestly(&self.problem, start, &mut self.solution)
     }
 }
 
 impl Impact {
-    /// Solves the rows of an ascending set of any length, each to reach its target rate, and applies the impulses.
-    pub(super) fn solve_many(&mut self, set: &[usize]) -> Result<(), ImpactError> {
+    /// Solves the rows of an ascending set of any length, each to reach its target rate, and applies the impulses. Of `likely`,
+    /// a flag for each row of the impact, the rows to begin with are taken, or none is known.
+    pub(super) fn solve_many(&mut self, set: &[usize], likely: Option<&[bool]>) -> Result<(), ImpactError> {
         let mut many = self.scratch.many.take().unwrap_or_default();
+        many.likely.clear();
+        if let Some(likely) = likely {
+            many.likely.extend(set.iter().map(|&row| likely[row]));
+        }
         let outcome = self.solve_with(&mut many, set);
         self.scratch.many = Some(many);
         outcome
@@ -113,7 +128,7 @@ impl Impact {
         many.load_matrix(set, &self.couplings, self.rows.len());
         self.load_rates(many, set);
         self.solves += 1;
-        if let Err(error) = many.solver.run_modestly(&many.problem, &mut many.solution) {
+        if let Err(error) = many.solve() {
             if self.is_weak(set) {
                 return Ok(());
             }
@@ -175,7 +190,7 @@ impl Impact {
     }
 
     /// s = sqrt(A_ii) [1/sqrt(kg)] of a row, by which the solver measures it.
-    fn length(&self, row: usize) -> f64 {
+    pub(super) fn length(&self, row: usize) -> f64 {
         self.couplings.diagonal(row).sqrt()
     }
 }

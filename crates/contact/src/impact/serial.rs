@@ -47,13 +47,15 @@ impl Impact {
     /// The row to solve next: the fastest, ties by place, or a random one of those that are violated.
     fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
         let rest = self.rest(small);
-        let violated = || (0..self.rows.len()).filter(|&row| self.violation(row) > rest);
         match shuffle {
             None => {
-                let most = violated().map(|row| self.violation(row)).fold(0.0, f64::max);
-                violated().rfind(|&row| self.violation(row) >= (1.0 - TIE) * most)
+                let most = (0..self.rows.len()).map(|row| self.violation(row)).fold(rest, f64::max);
+                let least = (1.0 - TIE) * most;
+                let is_fastest = |&row: &usize| self.violation(row) >= least && self.violation(row) > rest;
+                if most > rest { (0..self.rows.len()).rfind(is_fastest) } else { None }
             }
             Some(shuffle) => {
+                let violated = || (0..self.rows.len()).filter(|&row| self.violation(row) > rest);
                 let count = violated().count();
                 if count == 0 { None } else { violated().nth(shuffle.below(count)) }
             }
@@ -78,11 +80,9 @@ impl Impact {
         set.clear();
         set.push(focus);
         if grouping == Grouping::Closing && !self.rows[focus].bilateral {
-            let joins = |&row: &usize| {
-                let closes = !self.rows[row].bilateral && self.is_violated(row, small);
-                row != focus && closes && self.couplings.share_body(row, focus)
-            };
-            set.extend((0..self.rows.len()).filter(joins));
+            let joins =
+                |&row: &usize| row != focus && self.is_violated(row, small) && !self.rows[row].bilateral;
+            set.extend(self.couplings.row(focus).map(|(row, _)| row).filter(joins));
         }
         self.add_connectors(&mut set);
         set.sort_unstable();

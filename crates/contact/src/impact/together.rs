@@ -41,24 +41,23 @@ impl Impact {
         outcome
     }
 
-    /// One problem without elasticity of the rows that close or rest; as long as others are driven to close, with these
-    /// too. Without elasticity it is the nearest admissible motion that is found, and no row need stay out.
+    /// One problem without elasticity of the rows that close, rest, or open slowly; as long as others are driven to close,
+    /// with these too. Without elasticity it is the nearest admissible motion that is found, and no row need stay out: the
+    /// fewer are left to be driven, the fewer problems there are. Each begins with the rows that carried impulses in the
+    /// one before.
     pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
         self.aim_at_rest();
         self.scratch.rates.clone_from(&self.rates);
         self.scratch.impulses.clone_from(&self.impulses);
         let mut set = std::mem::take(&mut self.scratch.set);
-        self.list_held(&mut set, small);
+        let mut likely = std::mem::take(&mut self.scratch.listed);
+        self.list_slow(&mut set, &mut likely, small);
         let outcome = loop {
-            if let Err(error) = self.solve_together(&set) {
+            if let Err(error) = self.solve_beginning_with(&set, &likely) {
                 break Err(error);
             }
             let count = set.len();
-            for row in 0..self.rows.len() {
-                if self.is_violated(row, small) && set[..count].binary_search(&row).is_err() {
-                    set.push(row);
-                }
-            }
+            self.add_driven(&mut set, &mut likely, small);
             if set.len() == count {
                 break Ok(());
             }
@@ -67,7 +66,37 @@ impl Impact {
             self.impulses.clone_from(&self.scratch.impulses);
         };
         self.scratch.set = set;
+        self.scratch.listed = likely;
         outcome
+    }
+
+    /// Lists the rows that close or rest, flags these, and lists those that open no faster than one of them closes, in the
+    /// measure of the solver, so that they have no say in the scale of the problem.
+    fn list_slow(&self, set: &mut Vec<usize>, likely: &mut Vec<bool>, small: f64) {
+        let rest = self.rest(small);
+        let movable = || (0..self.rows.len()).filter(|&row| self.can_move(row));
+        let fastest = movable().fold(0.0f64, |most, row| most.max(self.violation(row) / self.length(row)));
+        likely.clear();
+        likely.extend((0..self.rows.len()).map(|row| self.rows[row].bilateral || self.rates[row] <= rest));
+        set.clear();
+        set.extend(movable().filter(|&row| likely[row] || self.rates[row] <= fastest * self.length(row)));
+    }
+
+    /// Adds the rows that close now and are not in an ascending set, and flags them and those that have just got an impulse.
+    fn add_driven(&self, set: &mut Vec<usize>, likely: &mut [bool], small: f64) {
+        let count = set.len();
+        for (row, likely) in likely.iter_mut().enumerate() {
+            let is_driven = self.is_violated(row, small) && set[..count].binary_search(&row).is_err();
+            *likely = is_driven || self.impulses[row] != self.scratch.impulses[row];
+            if is_driven {
+                set.push(row);
+            }
+        }
+    }
+
+    /// As [`solve_together`](Self::solve_together), of many rows with the likely ones to begin with.
+    fn solve_beginning_with(&mut self, set: &[usize], likely: &[bool]) -> Result<(), ImpactError> {
+        if set.len() > 2 { self.solve_many(set, Some(likely)) } else { self.solve_together(set) }
     }
 
     /// Lists the rows that close or rest, and the bilateral ones.
@@ -124,7 +153,7 @@ impl Impact {
                 Ok(())
             }
             [first, second] => self.solve_pair(first, second),
-            _ => self.solve_many(set),
+            _ => self.solve_many(set, None),
         }
     }
 
@@ -134,11 +163,35 @@ impl Impact {
         let b = [first, second].map(|row| self.rates[row] - self.scratch.targets[row]);
         let bilateral = [first, second].map(|row| self.rows[row].bilateral);
         let Some(impulses) = solve_two(a, b, bilateral) else {
-            return self.solve_many(&[first, second]);
+            return self.solve_many(&[first, second], None);
         };
         self.solves += 1;
         self.apply(first, impulses[0]);
         self.apply(second, impulses[1]);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Inertia;
+    use crate::row::CollisionRow;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn rows_that_open_slowly_are_driven_in_one_problem() -> Result<(), ImpactError> {
+        // Discs in a line: the first row closes at 1 m/s and drives the others, which open, each slower than that.
+        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
+        let row = |place: u32, rate| {
+            CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 0.0, 1e-3, false)
+        };
+        let mut impact = Impact::new();
+        impact.set_rows((0..8).map(|place| row(place, if place == 0 { -1.0 } else { 1e-3 })));
+        impact.resolve_inelastic()?;
+        assert_eq!((impact.solves(), impact.active_rows()), (1, 8));
+        assert!(impact.rates().iter().all(|rate| rate.abs() <= impact.bound()), "{:?}", impact.rates());
         Ok(())
     }
 }
