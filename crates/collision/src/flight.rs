@@ -104,13 +104,19 @@ impl Flight {
         let velocity = self.velocity_at(offset);
         let speed = velocity.length();
         // Damping lets accelerations only fade.
-        let acceleration = (self.acceleration - velocity * self.linear_rate).length();
+        let acceleration = self.acceleration_at(offset).length();
+        if speed == 0.0 && acceleration == 0.0 {
+            return None;
+        }
+        if distance == 0.0 {
+            return Some(0.0);
+        }
         let by_acceleration =
             2.0 * distance / (speed + (speed * speed + 2.0 * acceleration * distance).sqrt());
         // Damped velocities run straight towards their final value.
-        let by_speed = distance / speed.max(self.acceleration.length() / self.linear_rate);
-        let wait = by_acceleration.max(by_speed);
-        wait.is_finite().then_some(wait)
+        let is_damped = self.linear_rate > 0.0;
+        let fastest = is_damped.then(|| speed.max(self.acceleration.length() / self.linear_rate));
+        Some(fastest.map_or(by_acceleration, |fastest| by_acceleration.max(distance / fastest)))
     }
 
     fn position_at(&self, t: f64) -> DVec2 {

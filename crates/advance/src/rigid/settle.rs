@@ -326,8 +326,8 @@ impl RigidSystem {
             let sides = [record.parties.primary.body, record.parties.normal.body];
             let places = sides.map(|body| region.place(body));
             // What moves nothing in the longest time is rounding.
-            let offset = Some(free_offset(region, record, stage)).filter(|offset| offset.abs() > least);
-            let offset = offset.unwrap_or_default();
+            let offset = free_offset(region, record, stage);
+            let offset = if offset.abs() > least { offset } else { 0.0 };
             let j = &record.motion.kinematics.jacobian;
             let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
             let row = match places {
