@@ -256,7 +256,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         contact_is_within(pair, [&pose_a, &pose_b])
     }
 
-    /// The pair as it is to be searched; `None` if it is not.
+    /// The pair as it is to be searched; `None` if it is not. Inlined, lest it go through memory.
+    #[inline(always)]
     fn pair<'p>(
         &self,
         kind: PairKind,
