@@ -1,0 +1,107 @@
+//! What the raised squares of soft rows leave lacking in their forces is made good here. Which rows are soft, and the
+//! factor, are the parent's.
+
+use super::{HeldRows, NONE};
+use crate::skyline::dot;
+
+/// Cap on the steps that make good what soft rows lack.
+const MOST_REFINEMENTS: usize = 40;
+/// Forces that do less than this part of what softness makes of them do nothing: rows disagree.
+const NULL: f64 = 1e-7;
+/// They end where so many in a row have gained nothing.
+const IDLE: u32 = 2;
+
+/// Buffers of a refinement, by row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Refining {
+    /// What forces leave of each row's equation.
+    residual: Vec<f64>,
+    /// What they lack, by the raised factor.
+    lacking: Vec<f64>,
+    direction: Vec<f64>,
+    /// A times the direction.
+    product: Vec<f64>,
+    /// The forces that leave least.
+    best: Vec<f64>,
+}
+
+impl HeldRows {
+    /// Makes good what soft rows lack, by conjugate gradients: the raised factor differs from A in few directions, and each
+    /// takes about a step. What rows that depend on each other disagree in cannot be made good: the best forces are kept.
+    pub(super) fn refine(&mut self, offset: &[f64], force: &mut [f64], refining: &mut Refining) {
+        let Refining { residual, lacking, direction, product, best } = refining;
+        for buffer in [&mut *residual, lacking, direction, product, best] {
+            buffer.clear();
+            buffer.resize(force.len(), 0.0);
+        }
+        self.measure_residual(offset, force, residual);
+        best.copy_from_slice(force);
+        let (mut least, mut before) = (largest(residual), f64::INFINITY);
+        let enough = f64::EPSILON * largest(offset);
+        let mut idle = 0;
+        for _ in 0..MOST_REFINEMENTS {
+            if least <= enough || idle == IDLE {
+                break;
+            }
+            self.solve_raised(residual, lacking);
+            let descent = -dot(residual, lacking);
+            let keep = descent / before;
+            direction.iter_mut().zip(&*lacking).for_each(|(p, z)| *p = z + keep * *p);
+            self.multiply(direction, product);
+            let square = dot(direction, product);
+            let does_little = square <= NULL * self.softness_of(direction);
+            if does_little {
+                // Along what rows disagree in, forces would grow without end: what is lacking beside that is made good.
+                direction.copy_from_slice(lacking);
+            }
+            let step = if does_little { 1.0 } else { descent / square };
+            before = if does_little { f64::INFINITY } else { descent };
+            force.iter_mut().zip(&*direction).for_each(|(f, p)| *f += step * p);
+            self.measure_residual(offset, force, residual);
+            let left = largest(residual);
+            idle = if left < least { 0 } else { idle + 1 };
+            if left < least {
+                least = left;
+                best.copy_from_slice(force);
+            }
+        }
+        force.copy_from_slice(best);
+    }
+
+    /// What the raised squares of soft rows make of some forces: f R f.
+    fn softness_of(&self, force: &[f64]) -> f64 {
+        let soft = self.raise.iter().enumerate().filter(|(_, raise)| **raise > 0.0);
+        let part = |(place, raise): (usize, &f64)| {
+            let force = force[self.order.rows[place] as usize];
+            force * force * raise * self.square(place)
+        };
+        soft.map(part).sum()
+    }
+
+    /// A f + b of each row.
+    fn measure_residual(&mut self, offset: &[f64], force: &[f64], residual: &mut [f64]) {
+        self.multiply(force, residual);
+        residual.iter_mut().zip(offset).for_each(|(residual, offset)| *residual += offset);
+    }
+
+    /// A f of each row.
+    fn multiply(&mut self, force: &[f64], product: &mut [f64]) {
+        self.motion.fill([0.0; 3]);
+        for place in 0..self.len() {
+            self.push(place, force[self.order.rows[place] as usize]);
+        }
+        for (place, sides) in self.bodies.iter().enumerate() {
+            let (row, index) = (&self.jacobian[place], self.order.rows[place] as usize);
+            product[index] = 0.0;
+            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
+                let motion = &self.motion[body as usize];
+                product[index] += (0..3).map(|k| row[3 * side + k] * motion[k]).sum::<f64>();
+            }
+        }
+    }
+}
+
+/// The largest size of a number.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
+}
