@@ -1,10 +1,10 @@
-//! The motion along a step as polynomials.
+//! The motion along a step of an explicit method, as polynomials.
 //!
 //! The form is that of `tableau`. Its cubic part takes the values and rates at both ends as they are given, so it follows
 //! an end state that was changed after the step; what the change `d` adds is `d (3 x^2 - 2 x^3)`.
 
+use super::explicit::{Explicit, Lane, WIDTH, weighted_sum};
 use super::polynomial::SegmentPolynomial;
-use super::stepper::{Lane, Stepper, WIDTH, weighted_sum};
 use super::{Ode, Point};
 use std::ops::Range;
 
@@ -18,26 +18,16 @@ struct DenseRows {
     rows: [Lane; 4],
 }
 
-impl Stepper {
-    /// Writes some components of the motion along the last step as polynomials, one of `out` for each.
-    ///
-    /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at both ends the
-    /// polynomials have exactly the values and rates given. The degree is 7 for DOP853, which asks for three more
-    /// derivatives, 4 for Dormand-Prince 5, and 3 for the others.
-    ///
-    /// # Errors
-    /// The first error of the system; then `out` is unchanged.
-    ///
-    /// # Panics
-    /// If `end` or the components do not fit the state of the last step.
-    pub fn dense<S: Ode + ?Sized>(
+impl Explicit {
+    /// See [`Stepper::dense`](super::Stepper::dense).
+    pub(super) fn dense<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
         end: Point<'_>,
         components: Range<usize>,
         out: &mut [SegmentPolynomial],
     ) -> Result<(), S::Error> {
-        let tableau = self.method().tableau();
+        let tableau = self.tableau;
         let end_place = tableau.end_stage();
         self.place_mut(end_place).copy_from_slice(end.rates);
         for (index, stage) in tableau.dense_stages.iter().enumerate() {
@@ -55,7 +45,7 @@ impl Stepper {
 
     fn dense_rows(&self, lane: usize) -> DenseRows {
         let mut rows = DenseRows { lane: Some(lane), ..DenseRows::default() };
-        for (row, terms) in rows.rows.iter_mut().zip(self.method().tableau().dense_rows) {
+        for (row, terms) in rows.rows.iter_mut().zip(self.tableau.dense_rows) {
             *row = weighted_sum(&self.rates, self.lanes, lane, terms);
         }
         rows
@@ -71,7 +61,7 @@ impl Stepper {
         for (nested, row) in nested[HERMITE..].iter_mut().zip(&rows.rows) {
             *nested = self.length * row[place];
         }
-        let count = HERMITE + self.method().tableau().dense_rows.len();
+        let count = HERMITE + self.tableau.dense_rows.len();
         SegmentPolynomial::from_nested(start, &nested[..count], self.length)
     }
 }

@@ -20,6 +20,9 @@ pub enum Method {
     ModifiedEuler,
     /// Euler's method, order 1: along the rates at the start.
     Euler,
+    /// The implicit method of Radau IIA with three stages, order 5 with an error estimate, dense output of order 3: for
+    /// systems parts of which decay much faster than anything moves.
+    RadauIia5,
 }
 
 impl Method {
@@ -34,7 +37,7 @@ impl Method {
     pub fn order(self) -> u32 {
         match self {
             Method::Dop853 => 8,
-            Method::DormandPrince5 => 5,
+            Method::DormandPrince5 | Method::RadauIia5 => 5,
             Method::Rk4 => 4,
             Method::ModifiedEuler => 2,
             Method::Euler => 1,
@@ -47,17 +50,36 @@ impl Method {
         match self {
             Method::Dop853 => Some(7),
             Method::DormandPrince5 => Some(4),
+            Method::RadauIia5 => Some(3),
             Method::Rk4 | Method::ModifiedEuler | Method::Euler => None,
         }
     }
 
-    pub(super) fn tableau(self) -> &'static Tableau {
+    /// How large the rates of a system times the step may be, roughly, before what should decay grows: `None` for a method
+    /// that damps it whatever the step. See [`Stepper::stiffness`](super::Stepper::stiffness).
+    ///
+    /// Source: the boundaries on the real axis of the stability domains, HNW II.4 and E. Hairer, G. Wanner, Solving
+    /// Ordinary Differential Equations II, IV.2.
+    #[must_use]
+    pub fn stability_limit(self) -> Option<f64> {
         match self {
+            Method::Dop853 => Some(6.1),
+            Method::DormandPrince5 => Some(3.25),
+            Method::Rk4 => Some(2.7),
+            Method::ModifiedEuler | Method::Euler => Some(2.0),
+            Method::RadauIia5 => None,
+        }
+    }
+
+    /// Coefficients of an explicit method.
+    pub(super) fn tableau(self) -> Option<&'static Tableau> {
+        Some(match self {
             Method::Dop853 => &DOP853,
             Method::DormandPrince5 => &DORMAND_PRINCE5,
             Method::Rk4 => &RK4,
             Method::ModifiedEuler => &MODIFIED_EULER,
             Method::Euler => &EULER,
-        }
+            Method::RadauIia5 => return None,
+        })
     }
 }

@@ -11,8 +11,9 @@
 //! # Code map
 //!
 //! `method` lists the methods, `tableau` says what one consists of and has the small ones, `dop853` and `dormand_prince5`
-//! the large ones; `stepper` goes a step and estimates its error, `dense` gives the motion along it, `polynomial` is its
-//! form; `start` proposes the first step and `control` the next.
+//! the large ones; `stepper` goes a step and estimates its error: of an `explicit` method, whose motion along the step is
+//! in `dense`, or by `radau`, which solves equations (`linear`); `polynomial` is the form of the motion; `start` proposes the
+//! first step and `control` the next.
 //!
 //! # Examples
 //!
@@ -43,8 +44,11 @@ mod control;
 mod dense;
 mod dop853;
 mod dormand_prince5;
+mod explicit;
+mod linear;
 mod method;
 mod polynomial;
+mod radau;
 mod start;
 mod stepper;
 mod tableau;

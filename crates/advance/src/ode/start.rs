@@ -1,8 +1,7 @@
 //! Proposes the first step.
 
-use super::stepper::{Stepper, mean_square};
-use super::tableau::Term;
-use super::{Ode, Point};
+use super::explicit::mean_square;
+use super::{Ode, Point, Stepper};
 
 /// Part of the state's size by which the guess may move it, and size of the error the proposed step aims at.
 const SMALL_CHANGE: f64 = 0.01;
@@ -16,9 +15,6 @@ const NO_CHANGE: f64 = 1e-15;
 const LARGEST_GROWTH: f64 = 100.0;
 /// Part of the guess that is proposed when nothing seems to change.
 const AT_REST: f64 = 1e-3;
-/// From the start along its rates.
-const ALONG_START: [Term; 1] = [(0, 1.0)];
-
 impl Stepper {
     /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two derivatives.
     ///
@@ -60,10 +56,12 @@ impl Stepper {
         scales: &[f64],
         step: f64,
     ) -> Result<f64, S::Error> {
-        self.open(from, step);
-        self.move_along(&ALONG_START);
-        self.ask(system, 1, 1.0)?;
-        let changes = self.place_mut(1);
+        self.trial.clear();
+        self.trial.extend(from.state.iter().zip(from.rates).map(|(state, rate)| state + step * rate));
+        self.trial_rates.clear();
+        self.trial_rates.resize(from.rates.len(), 0.0);
+        system.derivative(from.offset + step, &self.trial, &mut self.trial_rates)?;
+        let changes = &mut self.trial_rates;
         for (rate, start) in changes.iter_mut().zip(from.rates) {
             *rate -= start;
         }

@@ -1,17 +1,11 @@
-//! Goes one step and estimates its error.
+//! Goes one step of a method, and tells its error and the motion along it.
 
+use super::explicit::Explicit;
 use super::method::Method;
-use super::tableau::{Stage, Tableau, Term};
+use super::polynomial::SegmentPolynomial;
+use super::radau::Radau;
 use super::{Ode, Point};
-
-/// Components that are handled together. The last lane is padded with numbers that nobody reads.
-pub(super) type Lane = [f64; WIDTH];
-
-/// Components in a lane.
-pub(super) const WIDTH: usize = 4;
-
-/// HNW II.10: how much of the estimate of order 3 stands beside that of order 5 in the error of DOP853.
-const THIRD_ORDER_SHARE: f64 = 0.01;
+use std::ops::Range;
 
 /// Goes steps of a method; keeps the stages of the last one.
 ///
@@ -19,38 +13,27 @@ const THIRD_ORDER_SHARE: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub struct Stepper {
     method: Method,
-    /// Components of the state.
-    pub(super) size: usize,
-    /// Lanes of a state.
-    pub(super) lanes: usize,
-    /// Start [s] and length [s] of the last step.
-    pub(super) offset: f64,
-    pub(super) length: f64,
-    /// State at the start of the step.
-    pub(super) start: Vec<Lane>,
-    /// The state at which rates are asked for.
-    trial: Vec<Lane>,
-    /// Rates, a row of lanes per place of the tableau.
-    pub(super) rates: Vec<Lane>,
-    /// Error estimates of the last step, a row of lanes for each.
-    errors: Vec<Lane>,
+    kind: Kind,
+    /// A state and its rates, to propose a first step by.
+    pub(super) trial: Vec<f64>,
+    pub(super) trial_rates: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Explicit(Explicit),
+    Implicit(Box<Radau>),
 }
 
 impl Stepper {
     /// A stepper without any buffers yet.
     #[must_use]
     pub fn new(method: Method) -> Self {
-        Self {
-            method,
-            size: 0,
-            lanes: 0,
-            offset: 0.0,
-            length: 0.0,
-            start: Vec::new(),
-            trial: Vec::new(),
-            rates: Vec::new(),
-            errors: Vec::new(),
-        }
+        let kind = match method.tableau() {
+            Some(tableau) => Kind::Explicit(Explicit::new(tableau)),
+            None => Kind::Implicit(Box::default()),
+        };
+        Self { method, kind, trial: Vec::new(), trial_rates: Vec::new() }
     }
 
     /// The method.
@@ -59,7 +42,18 @@ impl Stepper {
         self.method
     }
 
+    /// Tells an implicit method which errors are just acceptable, as in [`error_norm`](Self::error_norm): it solves its
+    /// equations to a small part of them. Components beyond the scales are integrals, on which no rates depend. Without
+    /// scales of the size of the system it solves to a small part of the state. Explicit methods do not care.
+    pub fn set_scales(&mut self, scales: &[f64]) {
+        if let Kind::Implicit(radau) = &mut self.kind {
+            radau.set_scales(scales);
+        }
+    }
+
     /// Goes a step [s] and writes the state there to `end`; a negative step goes back.
+    ///
+    /// An implicit method may not find the state; then `end` is the start, and the error norm is infinite.
     ///
     /// # Errors
     /// The first error of the system; then nothing is known about the step.
@@ -73,136 +67,62 @@ impl Stepper {
         step: f64,
         end: &mut [f64],
     ) -> Result<(), S::Error> {
-        let tableau = self.method.tableau();
-        self.open(from, step);
-        for (index, stage) in tableau.stages.iter().enumerate() {
-            self.evaluate(system, index + 1, stage)?;
+        match &mut self.kind {
+            Kind::Explicit(explicit) => explicit.step(system, from, step, end),
+            Kind::Implicit(radau) => radau.step(system, from, step, end),
         }
-        self.move_along(tableau.weights);
-        end.copy_from_slice(&self.trial.as_flattened()[..self.size]);
-        if tableau.needs_end_rates {
-            self.ask(system, tableau.end_stage(), 1.0)?;
-        }
-        self.estimate_errors(tableau);
-        Ok(())
     }
 
     /// Size of the estimated error of the last step: the weighted root mean square over the first `scales.len()`
     /// components, where `scales` are the errors that are just acceptable; so 1 is just acceptable.
     ///
-    /// DOP853 has two estimates, which are combined as in HNW II.10. Methods with fixed steps answer 0. The answer is not
-    /// finite if the step went out of all bounds.
+    /// Methods with fixed steps answer 0. The answer is not finite if the step went out of all bounds.
     #[must_use]
     pub fn error_norm(&self, scales: &[f64]) -> f64 {
         if scales.is_empty() {
             return 0.0;
         }
-        match self.method.tableau().errors.len() {
-            0 => 0.0,
-            1 => mean_square(self.error(0), scales).sqrt(),
-            _ => {
-                let fifth = mean_square(self.error(0), scales);
-                let third = mean_square(self.error(1), scales);
-                if fifth == 0.0 { 0.0 } else { fifth / (fifth + THIRD_ORDER_SHARE * third).sqrt() }
-            }
+        match &self.kind {
+            Kind::Explicit(explicit) => explicit.error_norm(scales),
+            Kind::Implicit(radau) => radau.error_norm(scales),
         }
     }
 
-    /// Takes over the start of a step.
-    pub(super) fn open(&mut self, from: Point<'_>, step: f64) {
-        if self.size != from.state.len() {
-            self.resize(from.state.len());
-        }
-        self.offset = from.offset;
-        self.length = step;
-        self.start.as_flattened_mut()[..self.size].copy_from_slice(from.state);
-        self.place_mut(0).copy_from_slice(from.rates);
-    }
-
-    fn resize(&mut self, size: usize) {
-        let tableau = self.method.tableau();
-        self.size = size;
-        self.lanes = size.div_ceil(WIDTH);
-        let rows = [
-            (&mut self.start, 1),
-            (&mut self.trial, 1),
-            // Proposing the first step needs a second place.
-            (&mut self.rates, tableau.places().max(2)),
-            (&mut self.errors, tableau.errors.len()),
-        ];
-        for (buffer, rows) in rows {
-            buffer.clear();
-            buffer.resize(rows * self.lanes, Lane::default());
+    /// Estimates the size of the fastest rate of the system times the last step, where `end` is the state at its end with
+    /// its rates: an explicit method is held up by what is fast rather than by its errors when this comes to
+    /// [`Method::stability_limit`].
+    #[must_use]
+    pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> f64 {
+        match &mut self.kind {
+            Kind::Explicit(explicit) => explicit.stiffness(end, scales),
+            Kind::Implicit(radau) => radau.stiffness(),
         }
     }
 
-    /// The rates at a place of the tableau.
-    pub(super) fn place_mut(&mut self, place: usize) -> &mut [f64] {
-        &mut self.rates.as_flattened_mut()[WIDTH * place * self.lanes..][..self.size]
-    }
-
-    /// Asks for the rates of a stage.
-    pub(super) fn evaluate<S: Ode + ?Sized>(
+    /// Writes some components of the motion along the last step as polynomials, one of `out` for each.
+    ///
+    /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at both ends the
+    /// polynomials have exactly the values given, and those of explicit methods the rates, too. The degree is 7 for
+    /// DOP853, which asks for three more derivatives, 4 for Dormand-Prince 5, and 3 for the others.
+    ///
+    /// # Errors
+    /// The first error of the system; then `out` is unchanged.
+    ///
+    /// # Panics
+    /// If `end` or the components do not fit the state of the last step.
+    pub fn dense<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
-        place: usize,
-        stage: &Stage,
+        end: Point<'_>,
+        components: Range<usize>,
+        out: &mut [SegmentPolynomial],
     ) -> Result<(), S::Error> {
-        self.move_along(stage.terms);
-        self.ask(system, place, stage.node)
-    }
-
-    /// Sets the trial state to the start plus the step along weighted rates.
-    pub(super) fn move_along(&mut self, terms: &[Term]) {
-        for (lane, (trial, start)) in self.trial.iter_mut().zip(&self.start).enumerate() {
-            let sum = weighted_sum(&self.rates, self.lanes, lane, terms);
-            for ((trial, start), sum) in trial.iter_mut().zip(start).zip(sum) {
-                *trial = start + self.length * sum;
+        match &mut self.kind {
+            Kind::Explicit(explicit) => explicit.dense(system, end, components, out),
+            Kind::Implicit(radau) => {
+                radau.dense(end, components, out);
+                Ok(())
             }
         }
     }
-
-    /// Asks for the rates of the trial state at a node.
-    pub(super) fn ask<S: Ode + ?Sized>(
-        &mut self,
-        system: &mut S,
-        place: usize,
-        node: f64,
-    ) -> Result<(), S::Error> {
-        let rates = &mut self.rates.as_flattened_mut()[WIDTH * place * self.lanes..][..self.size];
-        let state = &self.trial.as_flattened()[..self.size];
-        system.derivative(self.offset + node * self.length, state, rates)
-    }
-
-    fn estimate_errors(&mut self, tableau: &Tableau) {
-        for (row, terms) in tableau.errors.iter().enumerate() {
-            for lane in 0..self.lanes {
-                let sum = weighted_sum(&self.rates, self.lanes, lane, terms);
-                self.errors[row * self.lanes + lane] = sum.map(|sum| self.length * sum);
-            }
-        }
-    }
-
-    fn error(&self, row: usize) -> &[f64] {
-        &self.errors.as_flattened()[WIDTH * row * self.lanes..][..self.size]
-    }
-}
-
-/// Sum of the rates of one lane over some stages, in the order of the stages.
-#[inline]
-pub(super) fn weighted_sum(rates: &[Lane], lanes: usize, lane: usize, terms: &[Term]) -> Lane {
-    let mut sum = Lane::default();
-    for &(stage, weight) in terms {
-        let rates = &rates[stage * lanes + lane];
-        for (sum, rate) in sum.iter_mut().zip(rates) {
-            *sum += weight * rate;
-        }
-    }
-    sum
-}
-
-/// Mean of the squares of numbers measured by their scales.
-pub(super) fn mean_square(numbers: &[f64], scales: &[f64]) -> f64 {
-    let squares = numbers.iter().zip(scales).map(|(number, scale)| (number / scale) * (number / scale));
-    squares.sum::<f64>() / scales.len() as f64
 }

@@ -18,7 +18,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 
 #[test]
 fn errors_are_proportional_to_the_tolerance() {
-    for method in [Method::Dop853, Method::DormandPrince5] {
+    for method in [Method::Dop853, Method::DormandPrince5, Method::RadauIia5] {
         let points: Vec<(f64, f64)> = (5..=12)
             .map(|digits| {
                 let solution = solve_to_tolerance(method, TIME, 10_f64.powi(-digits));
@@ -33,7 +33,8 @@ fn errors_are_proportional_to_the_tolerance() {
 
 #[test]
 fn the_estimate_falls_with_its_order() {
-    for (method, step) in [(Method::Dop853, 0.02), (Method::DormandPrince5, 0.02)] {
+    for (method, step) in [(Method::Dop853, 0.02), (Method::DormandPrince5, 0.02), (Method::RadauIia5, 0.02)]
+    {
         let norm = |step: f64| {
             let (mut stepper, state, mut end) = (Stepper::new(method), exact(1.0), [0.0; SIZE]);
             let rates = rates_at(1.0, &state);

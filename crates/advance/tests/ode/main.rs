@@ -5,3 +5,4 @@ mod convergence;
 mod dense;
 mod polynomial;
 mod problem;
+mod stiff;

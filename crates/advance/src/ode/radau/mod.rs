@@ -1,0 +1,324 @@
+//! A step of the implicit method of Radau IIA with three stages: order 5, and stable however fast parts of the system decay.
+//!
+//! The equations of the stages are solved by a simplified Newton method: the derivatives of the rates are found once a
+//! step, by differences. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996,
+//! IV.8 ("HW" in this room).
+
+mod coefficients;
+
+use super::linear::{Factors, dot};
+use super::polynomial::SegmentPolynomial;
+use super::{Ode, Point};
+use coefficients::{BACK, ERROR, FORTH, NODES, PAIR, REAL, STAGES};
+use std::ops::Range;
+
+/// Newton's method has converged when what is left to correct is this part of the acceptable error.
+const CONVERGED: f64 = 1e-2;
+/// Corrections below so many roundings of the state cannot be told from none.
+const ROUNDINGS: f64 = 16.0;
+/// Corrections in one step; more mean that a shorter step costs less.
+const MOST_CORRECTIONS: usize = 10;
+/// Corrections that fall by less than this factor do not converge.
+const SLOWEST: f64 = 0.9;
+/// Acceptable error of a component, in parts of its size, where none is told.
+const UNTOLD: f64 = 1e-10;
+/// Differences are taken over the acceptable error, but over no less than this part of a component, so that the rounding of
+/// the rates does not matter.
+const LEAST_DIFFERENCE: f64 = 1e6 * f64::EPSILON;
+/// Turns of the power method in one step.
+const TURNS: usize = 4;
+
+/// What the implicit method knows of its last step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Radau {
+    /// Components of the state.
+    size: usize,
+    /// Components that rates depend on, which come first.
+    active: usize,
+    length: f64,
+    told: Vec<f64>,
+    /// Acceptable errors of the active components.
+    scales: Vec<f64>,
+    start: Vec<f64>,
+    trial: Vec<f64>,
+    /// Rates at the stages.
+    rates: [Vec<f64>; 3],
+    /// How far the stages lie off the start.
+    stages: [Vec<f64>; 3],
+    /// What is solved for: T^-1 times the stages.
+    split: [Vec<f64>; 3],
+    /// Derivatives of the rates by the active components, row by row.
+    jacobian: Vec<f64>,
+    real: Factors,
+    pair: Factors,
+    right: Vec<f64>,
+    error: Vec<f64>,
+    /// Where the power method came to, for the next step.
+    fastest: Vec<f64>,
+    stiffness: f64,
+    /// The equations of the last step were solved.
+    solved: bool,
+}
+
+impl Radau {
+    pub(super) fn set_scales(&mut self, scales: &[f64]) {
+        self.told.clear();
+        self.told.extend_from_slice(scales);
+    }
+
+    /// See [`Stepper::step`](super::Stepper::step).
+    pub(super) fn step<S: Ode + ?Sized>(
+        &mut self,
+        system: &mut S,
+        from: Point<'_>,
+        step: f64,
+        end: &mut [f64],
+    ) -> Result<(), S::Error> {
+        self.open(from, step);
+        self.differentiate(system, from)?;
+        self.solved = self.factorize() && self.solve_stages(system, from)?;
+        end.copy_from_slice(from.state);
+        if self.solved {
+            end.iter_mut().zip(&self.stages[2]).for_each(|(end, way)| *end += way);
+            self.estimate_error(system, from)?;
+            self.find_fastest();
+        }
+        Ok(())
+    }
+
+    /// See [`Stepper::error_norm`](super::Stepper::error_norm).
+    pub(super) fn error_norm(&self, scales: &[f64]) -> f64 {
+        if self.solved { root_mean_square(&self.error, scales) } else { f64::INFINITY }
+    }
+
+    /// See [`Stepper::stiffness`](super::Stepper::stiffness).
+    pub(super) fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// See [`Stepper::dense`](super::Stepper::dense): the polynomial through the start, the stages and the end. It does not
+    /// have the rates at the ends, which say nothing about the motion where they decay fast.
+    pub(super) fn dense(&self, end: Point<'_>, components: Range<usize>, out: &mut [SegmentPolynomial]) {
+        let [first, second, _] = NODES;
+        for (component, out) in components.zip(out) {
+            let [at_first, at_second, way] = [0, 1, 2].map(|stage: usize| self.stages[stage][component]);
+            // In the form of `tableau`: x (c2 + (1 - x) (c3 + x c4)).
+            let [bend, other] = [(at_first, first), (at_second, second)]
+                .map(|(value, node)| (value / node - way) / (1.0 - node));
+            let twist = (other - bend) / (second - first);
+            let start = self.start[component];
+            // What the end was changed by is put in as 3 x^2 - 2 x^3 of it.
+            let change = end.state[component] - (start + way);
+            let nested = [way + change, bend - first * twist - change, twist + 2.0 * change];
+            *out = SegmentPolynomial::from_nested(start, &nested, self.length);
+        }
+    }
+
+    /// Takes over the start of a step.
+    fn open(&mut self, from: Point<'_>, step: f64) {
+        let size = from.state.len();
+        let is_told = !self.told.is_empty() && self.told.len() <= size;
+        let active = if is_told { self.told.len() } else { size };
+        if (self.size, self.active) != (size, active) {
+            let rows = self.rates.iter_mut().chain(&mut self.stages).chain(&mut self.split);
+            for buffer in rows.chain([&mut self.trial, &mut self.right, &mut self.error]) {
+                buffer.clear();
+                buffer.resize(size, 0.0);
+            }
+            self.right.resize(2 * active, 0.0);
+            self.fastest.clear();
+        }
+        (self.size, self.active, self.length) = (size, active, step);
+        self.start.clear();
+        self.start.extend_from_slice(from.state);
+        self.scales.clear();
+        if is_told {
+            self.scales.extend_from_slice(&self.told);
+        } else {
+            let sizes =
+                from.state.iter().zip(from.rates).map(|(state, rate)| state.abs() + (step * rate).abs());
+            self.scales.extend(sizes.map(|size| if size > 0.0 { UNTOLD * size } else { f64::INFINITY }));
+        }
+    }
+
+    /// Finds the derivatives of the rates by differences.
+    fn differentiate<S: Ode + ?Sized>(&mut self, system: &mut S, from: Point<'_>) -> Result<(), S::Error> {
+        let (size, active) = (self.size, self.active);
+        self.jacobian.clear();
+        self.jacobian.resize(active * active, 0.0);
+        self.trial[..size].copy_from_slice(from.state);
+        for column in 0..active {
+            let value = from.state[column];
+            let scale = if self.scales[column].is_finite() { self.scales[column] } else { 0.0 };
+            let change = scale.max(LEAST_DIFFERENCE * value.abs());
+            // Where nothing tells a size, one is as good as another.
+            let moved = value + if change > 0.0 { change } else { 1.0 };
+            self.trial[column] = moved;
+            system.derivative(from.offset, &self.trial, &mut self.rates[0])?;
+            self.trial[column] = value;
+            for row in 0..active {
+                self.jacobian[row * active + column] =
+                    (self.rates[0][row] - from.rates[row]) / (moved - value);
+            }
+        }
+        Ok(())
+    }
+
+    /// Factorises the matrices of the split equations, HW (8.4); false if one is singular.
+    fn factorize(&mut self) -> bool {
+        let (active, length) = (self.active, self.length);
+        let real = self.real.clear(active);
+        real.iter_mut().zip(&self.jacobian).for_each(|(entry, slope)| *entry = -slope);
+        (0..active).for_each(|row| real[row * active + row] += REAL / length);
+        let pair = self.pair.clear(2 * active);
+        for (row, slopes) in self.jacobian.chunks_exact(active).enumerate() {
+            for half in [0, active] {
+                let entries = &mut pair[(row + half) * 2 * active..][..2 * active];
+                entries[half..half + active]
+                    .iter_mut()
+                    .zip(slopes)
+                    .for_each(|(entry, slope)| *entry = -slope);
+                entries[half + row] += PAIR.0 / length;
+            }
+            pair[row * 2 * active + active + row] = -PAIR.1 / length;
+            pair[(row + active) * 2 * active + row] = PAIR.1 / length;
+        }
+        self.real.factorize() && self.pair.factorize()
+    }
+
+    /// Solves the equations of the stages; false if the corrections do not converge.
+    fn solve_stages<S: Ode + ?Sized>(&mut self, system: &mut S, from: Point<'_>) -> Result<bool, S::Error> {
+        self.stages.iter_mut().chain(&mut self.split).for_each(|row| row.fill(0.0));
+        let mut before: Option<f64> = None;
+        for _ in 0..MOST_CORRECTIONS {
+            for stage in 0..3 {
+                let ways = self.stages[stage].iter().zip(from.state);
+                self.trial.iter_mut().zip(ways).for_each(|(trial, (way, start))| *trial = start + way);
+                let offset = from.offset + NODES[stage] * self.length;
+                system.derivative(offset, &self.trial, &mut self.rates[stage])?;
+            }
+            let correction = self.correct();
+            self.integrate_others();
+            if !correction.is_finite() {
+                return Ok(false);
+            }
+            let Some(last) = before.replace(correction) else {
+                if correction == 0.0 {
+                    return Ok(true);
+                }
+                continue;
+            };
+            let factor = correction / last;
+            if correction == 0.0 || factor / (1.0 - factor).max(0.0) * correction <= CONVERGED {
+                return Ok(true);
+            }
+            if factor > SLOWEST {
+                return Ok(false);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Corrects the stages by Newton's method; returns the size of the correction in acceptable errors, less what is
+    /// rounding.
+    fn correct(&mut self) -> f64 {
+        let (active, length) = (self.active, self.length);
+        let rates = &self.rates;
+        let mixed =
+            |row: &[f64; 3], at: usize| (0..3).map(|stage| row[stage] * rates[stage][at]).sum::<f64>();
+        let mut sum = 0.0;
+        let mut note = |at: usize, correction: f64| {
+            let rounding = ROUNDINGS * f64::EPSILON * self.start[at].abs();
+            let beyond = (correction.abs() - rounding).max(0.0) / self.scales[at];
+            sum += beyond * beyond;
+        };
+        let [first, second, third] = &mut self.split;
+        let right = &mut self.right[..active];
+        for (at, right) in right.iter_mut().enumerate() {
+            *right = mixed(&FORTH[0], at) - REAL / length * first[at];
+        }
+        self.real.solve(right);
+        for (at, (value, correction)) in first.iter_mut().zip(right.iter()).enumerate() {
+            *value += correction;
+            note(at, *correction);
+        }
+        let right = &mut self.right[..2 * active];
+        for at in 0..active {
+            let (a, b) = (second[at], third[at]);
+            right[at] = mixed(&FORTH[1], at) - (PAIR.0 * a - PAIR.1 * b) / length;
+            right[active + at] = mixed(&FORTH[2], at) - (PAIR.1 * a + PAIR.0 * b) / length;
+        }
+        self.pair.solve(right);
+        for at in 0..active {
+            second[at] += right[at];
+            third[at] += right[active + at];
+            note(at, right[at]);
+            note(at, right[active + at]);
+        }
+        for (stage, weights) in self.stages.iter_mut().zip(&BACK) {
+            for (at, way) in stage[..active].iter_mut().enumerate() {
+                *way = (0..3).map(|part| weights[part] * self.split[part][at]).sum();
+            }
+        }
+        (sum / (3 * active).max(1) as f64).sqrt()
+    }
+
+    /// The stages of what is only integrated, from the rates at the last ones.
+    fn integrate_others(&mut self) {
+        for (stage, weights) in self.stages.iter_mut().zip(&STAGES) {
+            for (at, way) in stage.iter_mut().enumerate().skip(self.active) {
+                *way = self.length * (0..3).map(|other| weights[other] * self.rates[other][at]).sum::<f64>();
+            }
+        }
+    }
+
+    /// HW (8.19) and (8.20): where the first estimate is too large, it is filtered once more.
+    fn estimate_error<S: Ode + ?Sized>(&mut self, system: &mut S, from: Point<'_>) -> Result<(), S::Error> {
+        let active = self.active;
+        for at in 0..active {
+            let stages: f64 = (0..3).map(|stage| ERROR[stage] * self.stages[stage][at]).sum();
+            self.right[at] = stages / self.length;
+            self.error[at] = from.rates[at] + self.right[at];
+        }
+        self.real.solve(&mut self.error[..active]);
+        if root_mean_square(&self.error, &self.scales) < 1.0 {
+            return Ok(());
+        }
+        self.trial.copy_from_slice(from.state);
+        self.trial.iter_mut().zip(&self.error[..active]).for_each(|(trial, error)| *trial += error);
+        system.derivative(from.offset, &self.trial, &mut self.rates[0])?;
+        for at in 0..active {
+            self.error[at] = self.rates[0][at] + self.right[at];
+        }
+        self.real.solve(&mut self.error[..active]);
+        Ok(())
+    }
+
+    /// A few turns of the power method, which goes on from step to step, for the largest eigenvalue in size.
+    fn find_fastest(&mut self) {
+        let active = self.active;
+        if self.fastest.len() != active {
+            self.fastest.clear();
+            self.fastest.resize(active, 1.0);
+        }
+        let mut rate = 0.0;
+        for _ in 0..TURNS {
+            let norm = root_mean_square(&self.fastest, &self.scales);
+            if norm == 0.0 || !norm.is_finite() {
+                self.fastest.fill(1.0);
+                break;
+            }
+            for (row, slopes) in self.jacobian.chunks_exact(active).enumerate() {
+                self.right[row] = dot(slopes, &self.fastest) / norm;
+            }
+            self.fastest.copy_from_slice(&self.right[..active]);
+            rate = root_mean_square(&self.fastest, &self.scales);
+        }
+        self.stiffness = (rate * self.length).abs();
+    }
+}
+
+/// Root of the mean of the squares of the first numbers, measured by their scales.
+fn root_mean_square(numbers: &[f64], scales: &[f64]) -> f64 {
+    super::explicit::mean_square(&numbers[..scales.len()], scales).sqrt()
+}

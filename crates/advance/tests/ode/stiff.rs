@@ -1,0 +1,127 @@
+//! Systems parts of which decay much faster than anything moves.
+
+use halfgap_advance::ode::{Method, Ode, Point, SegmentPolynomial, Stepper};
+use std::convert::Infallible;
+
+/// Rate [1/s] at which the fast part decays.
+const FAST: f64 = 1e6;
+
+/// A body that is dragged along by a medium which moves as `cos t`: position, velocity, and the heat `FAST (v - cos t)^2`.
+///
+/// v' = -FAST (v - cos t) - sin t, whose slow solution is v = cos t, x = sin t.
+#[derive(Default)]
+struct Dragged {
+    derivatives: usize,
+}
+
+impl Ode for Dragged {
+    type Error = Infallible;
+
+    fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        self.derivatives += 1;
+        let lag = state[1] - offset.cos();
+        rates.copy_from_slice(&[state[1], -FAST * lag - offset.sin(), FAST * lag * lag]);
+        Ok(())
+    }
+}
+
+impl Dragged {
+    fn rates_at(&mut self, offset: f64, state: &[f64; 3]) -> [f64; 3] {
+        let mut rates = [0.0; 3];
+        let Ok(()) = self.derivative(offset, state, &mut rates);
+        rates
+    }
+}
+
+const TIME: f64 = 10.0;
+
+/// Goes on for some time with steps that follow a tolerance, from a velocity; the state, the steps, the largest error of
+/// the velocity between the ends of steps once what is fast is gone.
+fn solve(method: Method, velocity: f64, tolerance: f64, most: usize) -> ([f64; 3], usize, f64) {
+    let (mut stepper, mut dragged) = (Stepper::new(method), Dragged::default());
+    let scales = [tolerance; 2];
+    stepper.set_scales(&scales);
+    let (mut offset, mut state, mut step, mut steps) = (0.0, [0.0, velocity, 0.0], 1e-8, 0);
+    let mut inner: f64 = 0.0;
+    while offset < TIME && steps < most {
+        step = f64::min(step, TIME - offset);
+        let rates = dragged.rates_at(offset, &state);
+        let mut end = [0.0; 3];
+        let Ok(()) =
+            stepper.step(&mut dragged, Point { offset, state: &state, rates: &rates }, step, &mut end);
+        let norm = stepper.error_norm(&scales);
+        if norm <= 1.0 {
+            let rates = dragged.rates_at(offset + step, &end);
+            let mut velocity = [SegmentPolynomial::default()];
+            let end_point = Point { offset: offset + step, state: &end, rates: &rates };
+            let Ok(()) = stepper.dense(&mut dragged, end_point, 1..2, &mut velocity);
+            if offset > 1e-3 {
+                inner = inner.max((velocity[0].value_at(0.4 * step) - (offset + 0.4 * step).cos()).abs());
+            }
+            (offset, state, steps) = (offset + step, end, steps + 1);
+        }
+        step *= method.step_factor(norm);
+    }
+    (state, steps, inner)
+}
+
+#[test]
+fn steps_follow_the_slow_motion() {
+    for tolerance in [1e-4, 1e-6, 1e-8] {
+        let (state, steps, inner) = solve(Method::RadauIia5, 1.0, tolerance, 100_000);
+        assert!(steps < 2000, "{tolerance:e}: {steps}");
+        assert!((state[0] - TIME.sin()).abs() < 100.0 * tolerance, "{tolerance:e}: {state:?}");
+        assert!((state[1] - TIME.cos()).abs() < tolerance, "{tolerance:e}: {state:?}");
+        assert!(inner < 10.0 * tolerance, "{tolerance:e}: {inner:e}");
+    }
+    // An explicit method needs FAST TIME / 6 of them.
+    let (_, steps, _) = solve(Method::Dop853, 1.0, 1e-4, 10_000);
+    assert_eq!(steps, 10_000);
+}
+
+#[test]
+fn what_decays_is_followed_as_far_as_the_tolerance_asks() {
+    // From rest the velocity goes to 1 within some 1e-6 s; the heat of that is 1/2.
+    let (state, _, _) = solve(Method::RadauIia5, 0.0, 1e-8, 100_000);
+    assert!((state[2] - 0.5).abs() < 1e-7, "{state:?}");
+    assert!((state[1] - TIME.cos()).abs() < 1e-8, "{state:?}");
+}
+
+#[test]
+fn what_holds_steps_up_is_told() {
+    let mut dragged = Dragged::default();
+    for (method, step) in [(Method::Dop853, 3e-6), (Method::DormandPrince5, 2e-6), (Method::RadauIia5, 1e-3)]
+    {
+        let mut stepper = Stepper::new(method);
+        let state = [0.0, 1.0 + 1e-6, 0.0];
+        let rates = dragged.rates_at(0.0, &state);
+        let mut end = [0.0; 3];
+        let scales = [1e-8; 2];
+        stepper.set_scales(&scales);
+        let start = Point { offset: 0.0, state: &state, rates: &rates };
+        let Ok(()) = stepper.step(&mut dragged, start, step, &mut end);
+        let rates = dragged.rates_at(step, &end);
+        let told = stepper.stiffness(Point { offset: step, state: &end, rates: &rates }, &scales);
+        assert!((told / (FAST * step) - 1.0).abs() < 0.1, "{method:?}: {told}");
+    }
+}
+
+/// Rates that are no numbers.
+struct Nothing;
+
+impl Ode for Nothing {
+    type Error = Infallible;
+
+    fn derivative(&mut self, _offset: f64, _state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        rates.fill(f64::NAN);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_state_that_is_not_found_is_told_and_is_the_start() {
+    let (mut stepper, mut end) = (Stepper::new(Method::RadauIia5), [0.0]);
+    let start = Point { offset: 0.0, state: &[2.0], rates: &[1.0] };
+    let Ok(()) = stepper.step(&mut Nothing, start, 0.1, &mut end);
+    assert_eq!((end, stepper.error_norm(&[1.0])), ([2.0], f64::INFINITY));
+}
