@@ -16,6 +16,7 @@ mod reversal;
 mod ropes;
 mod scaling;
 mod simultaneous;
+mod stiff;
 mod unsolvable;
 
 /// Tells how far off something is, and fails if that is more than allowed.

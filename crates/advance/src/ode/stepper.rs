@@ -25,6 +25,12 @@ enum Kind {
     Implicit(Box<Radau>),
 }
 
+impl Default for Stepper {
+    fn default() -> Self {
+        Self::new(Method::default())
+    }
+}
+
 impl Stepper {
     /// A stepper without any buffers yet.
     #[must_use]

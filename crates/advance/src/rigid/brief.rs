@@ -1,11 +1,12 @@
 //! How the steps of a group are made: by the method that is asked for, or, in place of the default one, by the method of
 //! order 5, which has half as many stages. That serves where a higher order gains nothing: between events that come fast
-//! one after another, and over the kinks of a spline.
+//! one after another, and over the kinks of a spline. Implicit steps are in `stiff`.
 
 use super::group::Group;
 use super::rows::RowSource;
+use super::stiff::Stiffness;
 use super::system::RigidSystem;
-use crate::ode::Method;
+use crate::ode::{Method, Stepper};
 use crate::time::Time;
 
 /// A group whose bodies' last lasted less than a step by this factor is expected to be brief, too.
@@ -17,6 +18,43 @@ const BRIEFEST: f64 = 1.0 / 32.0;
 /// A group stays brief while its steps may grow by this factor.
 const BRIEF_GROWTH: f64 = 1.9;
 
+/// By which stepper the steps of a group are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stepping {
+    /// Of the method that is asked for.
+    Asked,
+    /// Of few stages.
+    Brief,
+    /// Implicit.
+    Stiff,
+}
+
+/// The steppers of a system.
+#[derive(Clone, Debug)]
+pub(crate) struct Steppers {
+    asked: Stepper,
+    brief: Stepper,
+    stiff: Stepper,
+}
+
+impl Steppers {
+    pub(crate) fn new(method: Method) -> Self {
+        Self {
+            asked: Stepper::new(method),
+            brief: Stepper::new(Method::DormandPrince5),
+            stiff: Stepper::new(Method::RadauIia5),
+        }
+    }
+
+    pub(crate) fn of(&mut self, stepping: Stepping) -> &mut Stepper {
+        match stepping {
+            Stepping::Asked => &mut self.asked,
+            Stepping::Brief => &mut self.brief,
+            Stepping::Stiff => &mut self.stiff,
+        }
+    }
+}
+
 /// What the next group of a body may learn from its last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Past {
@@ -24,24 +62,34 @@ pub(crate) struct Past {
     step: Option<f64>,
     /// How long [s] the group lasted.
     lasted: f64,
+    stiffness: Stiffness,
 }
 
 impl Past {
     /// Of a group that ends now.
     pub(crate) fn of(group: &Group, now: Time) -> Self {
         let step = if group.is_brief { group.full_step } else { group.next_step };
-        Self { step, lasted: now.since(group.made) }
+        Self { step, lasted: now.since(group.made), stiffness: group.stiffness }
     }
 }
 
 impl Group {
-    /// True if its steps are made by the method of fewer stages.
-    pub(crate) fn has_few_stages(&self) -> bool {
-        self.is_brief || self.has_kinks
+    /// By which stepper its steps are made.
+    pub(crate) fn stepping(&self) -> Stepping {
+        if self.is_brief {
+            Stepping::Brief
+        } else if self.stiffness.is_stiff {
+            Stepping::Stiff
+        } else if self.has_kinks {
+            Stepping::Brief
+        } else {
+            Stepping::Asked
+        }
     }
 
     /// Goes back to the method that is asked for, if brief steps are held up by their errors.
-    pub(crate) fn end_brief(&mut self, method: Method) {
+    pub(crate) fn end_brief(&mut self) {
+        let method = Method::DormandPrince5;
         let grows = self.accepted.is_some_and(|step| method.step_factor(step.error) >= BRIEF_GROWTH);
         if self.is_brief && !grows {
             self.is_brief = false;
@@ -63,8 +111,10 @@ impl RigidSystem {
             RowSource::Connector(id, _) => self.connector(id).path().is_some_and(|path| path.is_spline()),
             RowSource::Contact(_) => false,
         });
+        group.stiffness = pasts.clone().map(|past| past.stiffness).fold(Stiffness::default(), Stiffness::or);
         let soon = BRIEF * pasts.map(|past| past.lasted).fold(0.0, f64::max);
-        if let Some(step) = group.next_step.filter(|&step| !group.has_kinks && BRIEF * soon < step) {
+        let is_brief = |step: f64| !group.has_kinks && BRIEF * soon < step && group.stiffness.allows(soon);
+        if let Some(step) = group.next_step.filter(|&step| is_brief(step)) {
             group.is_brief = true;
             (group.next_step, group.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));
         }

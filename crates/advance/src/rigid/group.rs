@@ -1,6 +1,7 @@
 //! A group: bodies that share their steps because rows or force laws couple them.
 
 use super::rows::HeldRow;
+use super::stiff::Stiffness;
 use crate::ode::{Accepted, SegmentPolynomial};
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
@@ -86,6 +87,7 @@ pub(crate) struct Group {
     pub(crate) is_unwatched: bool,
     /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
     pub(crate) has_kinks: bool,
+    pub(crate) stiffness: Stiffness,
     /// The last step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
@@ -112,6 +114,7 @@ impl Group {
         self.rates.clear();
         (self.next_step, self.full_step) = (None, None);
         (self.is_brief, self.has_kinks, self.is_unwatched) = (false, false, false);
+        self.stiffness = Stiffness::default();
         self.accepted = None;
         self.event = None;
     }

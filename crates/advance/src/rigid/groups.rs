@@ -11,7 +11,7 @@ use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settle::Settling;
 use super::system::RigidSystem;
-use crate::ode::Stepper;
+
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::Inertia;
@@ -89,10 +89,9 @@ impl RigidSystem {
         group: &mut Group,
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
-        let (start, has_few) = (group.start, group.has_few_stages());
+        let (start, stepping) = (group.start, group.stepping());
         let mut stage = std::mem::take(&mut self.stage);
-        let of_system = if has_few { &mut self.brief_stepper } else { &mut self.stepper };
-        let mut stepper = std::mem::replace(of_system, Stepper::new(of_system.method()));
+        let mut stepper = std::mem::take(self.steppers.of(stepping));
         let mut scales = std::mem::take(&mut self.scales);
         let answer = {
             let physics = self.physics();
@@ -103,7 +102,7 @@ impl RigidSystem {
             )
         };
         (self.stage, self.scales) = (stage, scales);
-        *(if has_few { &mut self.brief_stepper } else { &mut self.stepper }) = stepper;
+        *self.steppers.of(stepping) = stepper;
         answer
     }
 
@@ -155,7 +154,7 @@ impl RigidSystem {
                 if dynamics.is_dense_exact() {
                     dynamics.end_by_dense(offset);
                 } else {
-                    dynamics.repeat_to(tools.stepper, offset);
+                    dynamics.repeat_to(tools, offset);
                 }
                 dynamics.end_on_rows(tools);
             });
@@ -412,7 +411,8 @@ impl RigidSystem {
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
         self.book_works(&group);
         group.start = group.end();
-        group.end_brief(self.brief_stepper.method());
+        group.end_brief();
+        group.choose_stiffness();
         let first_work = 2 * group.velocities();
         let group_mut = &mut *group;
         std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);
@@ -522,12 +522,14 @@ impl Dynamics<'_> {
     fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         if !self.group.is_unwatched {
             self.extend_on_rows(tools)?;
+            self.note_stiffness(tools);
             self.group.event = self.find_event();
             return Ok(());
         }
         self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
         self.end_on_rows(tools);
         self.evaluate_end();
+        self.note_stiffness(tools);
         self.follow_rails();
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
         (self.group.event, self.group.largest_error) = (None, self.stage.gap_error);

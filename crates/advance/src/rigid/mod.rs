@@ -37,6 +37,7 @@ mod report;
 mod rows;
 mod segment;
 mod settle;
+mod stiff;
 mod storms;
 mod system;
 mod ticks;

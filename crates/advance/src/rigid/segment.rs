@@ -1,7 +1,9 @@
 //! A group's segment: an accepted step, its projection, its dense output, and its repetition up to an event.
 
+use super::brief::Stepping;
 use super::dynamics::{Dynamics, body_state};
 use super::group::Group;
+use super::groups::Tools;
 use super::rows::{RowSource, moving_of};
 use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
@@ -84,6 +86,7 @@ impl Dynamics<'_> {
         scales: &mut Vec<f64>,
     ) -> Result<(), StepFailure> {
         self.set_scales(control, scales);
+        stepper.set_scales(scales);
         let longest = self.longest_sound_step().min(self.longest_watched_step());
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
@@ -119,9 +122,11 @@ impl Dynamics<'_> {
         outcome
     }
 
-    /// By how much a step may be longer than the one before. Contacts soon cut steps short anyway.
+    /// By how much a step may be longer than the one before. Contacts soon cut steps short anyway, and where something has
+    /// decayed steps are much longer at once.
     fn largest_growth(&self) -> f64 {
-        if self.group.rows.iter().all(|row| row.bilateral) { STEADY_GROWTH } else { f64::INFINITY }
+        let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
+        if is_smooth && self.group.stepping() != Stepping::Stiff { STEADY_GROWTH } else { f64::INFINITY }
     }
 
     /// The next step is at most by a factor longer than the one just made.
@@ -131,22 +136,26 @@ impl Dynamics<'_> {
     }
 
     /// Repeats the segment up to an offset [s] within it, into the end state.
-    pub(crate) fn repeat_to(&mut self, stepper: &mut Stepper, offset: f64) {
+    pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) {
+        self.set_scales(&tools.settings.steps, tools.scales);
+        tools.stepper.set_scales(tools.scales);
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);
         end.clear();
         end.extend_from_slice(&state);
         if offset > 0.0 {
-            let Ok(()) =
-                stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, offset, &mut end);
+            let from = Point { offset: 0.0, state: &state, rates: &rates };
+            let Ok(()) = tools.stepper.step(self, from, offset, &mut end);
         }
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
         self.group.span = offset;
     }
 
-    /// True if dense output errs by little of what a step may err by: it is of the order of the error estimate.
+    /// True if dense output errs by little of what a step may err by: that of explicit methods is of the order of the error
+    /// estimate.
     pub(crate) fn is_dense_exact(&self) -> bool {
-        self.group.accepted.is_some_and(|step| step.error <= DENSE_ERROR)
+        self.group.stepping() != Stepping::Stiff
+            && self.group.accepted.is_some_and(|step| step.error <= DENSE_ERROR)
     }
 
     /// Ends the segment at an offset [s] within it, by its dense output.

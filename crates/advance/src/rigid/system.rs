@@ -4,6 +4,7 @@
 //! Between events nothing is computed; an event touches only its bodies and what is near them.
 
 use super::boxes::Room;
+use super::brief::Steppers;
 use super::connectors::ConnectorState;
 use super::deferred::loners;
 use super::dynamics::{ExtraAcceleration, Stage};
@@ -22,7 +23,7 @@ use super::rows::Mechanism;
 use super::segment::StepControl;
 use super::storms::Recent;
 use super::ticks::Ticks;
-use crate::ode::{Method, Stepper};
+use crate::ode::Method;
 use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
@@ -158,9 +159,7 @@ pub struct RigidSystem {
     /// Bodies of the group that was extended last.
     pub(crate) extended: Vec<BodyId>,
     pub(crate) stage: Stage,
-    pub(crate) stepper: Stepper,
-    /// Of fewer stages, for steps that an event is about to cut short.
-    pub(crate) brief_stepper: Stepper,
+    pub(crate) steppers: Steppers,
     pub(crate) scales: Vec<f64>,
     pub(crate) last_impact: ImpactReport,
     pub(crate) changes: ContactChanges,
@@ -223,8 +222,7 @@ impl RigidSystem {
             work: None,
             extended: Vec::new(),
             stage: Stage::new(movings),
-            stepper: Stepper::new(settings.method),
-            brief_stepper: Stepper::new(Method::DormandPrince5),
+            steppers: Steppers::new(settings.method),
             scales: Vec::new(),
             last_impact: ImpactReport::default(),
             changes: ContactChanges::default(),

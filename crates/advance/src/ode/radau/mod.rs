@@ -191,11 +191,10 @@ impl Radau {
         self.stages.iter_mut().chain(&mut self.split).for_each(|row| row.fill(0.0));
         let mut before: Option<f64> = None;
         for _ in 0..MOST_CORRECTIONS {
-            for stage in 0..3 {
-                let ways = self.stages[stage].iter().zip(from.state);
+            for ((stage, rates), node) in self.stages.iter().zip(&mut self.rates).zip(NODES) {
+                let ways = stage.iter().zip(from.state);
                 self.trial.iter_mut().zip(ways).for_each(|(trial, (way, start))| *trial = start + way);
-                let offset = from.offset + NODES[stage] * self.length;
-                system.derivative(offset, &self.trial, &mut self.rates[stage])?;
+                system.derivative(from.offset + node * self.length, &self.trial, rates)?;
             }
             let correction = self.correct();
             self.integrate_others();

@@ -1,0 +1,135 @@
+//! Groups parts of which decay so fast that an explicit method is held up: their steps are implicit, as long as that costs
+//! less. Which steps are made otherwise is in `brief`.
+
+use super::dynamics::Dynamics;
+use super::group::Group;
+use super::groups::Tools;
+use crate::ode::{Method, Point};
+
+/// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
+const HELD_UP: f64 = 0.9;
+/// What is less than this part of it is far from held up.
+const FAR: f64 = 0.5;
+/// Explicit steps over which nobody looks again after one that was far from held up.
+const UNTOLD_STEPS: u32 = 15;
+/// So many more steps are held up than are not before implicit ones are tried; twice as many after each time in vain, and
+/// one where implicit ones have served before.
+const TELLING_STEPS: u32 = 8;
+/// Cap on such doublings.
+const MOST_DOUBLINGS: u32 = 6;
+/// Groups with more numbers in their state are not tried: the equations would be larger than they are worth.
+const MOST_NUMBERS: usize = 300;
+/// Explicit steps of the default method ask for so many rates, with their dense output.
+const EXPLICIT_COST: f64 = 15.0;
+/// An implicit step asks for so many rates beside one for each number of the state.
+const IMPLICIT_COST: f64 = 14.0;
+/// The equations cost so many rates for each square of the numbers of the state: measured, with contacts.
+const EQUATIONS_COST: f64 = 0.02;
+/// So many implicit steps that save nothing are in vain.
+const PATIENCE: f64 = 10.0;
+/// A step that may grow by no more than this is as long as its error allows.
+const FULL_GROWN: f64 = 1.2;
+
+/// What is known of the fastest rate of a group.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Stiffness {
+    /// Steps are implicit.
+    pub(crate) is_stiff: bool,
+    /// Implicit steps have served before.
+    is_known: bool,
+    /// The fastest rate [1/s], as last told.
+    rate: f64,
+    /// Steps that were held up, less those that were not.
+    held_up: u32,
+    /// Steps until somebody looks again.
+    wait: u32,
+    /// Explicit steps that implicit ones have saved so far, less what they cost.
+    saved: f64,
+    /// How often implicit steps cost more.
+    in_vain: u32,
+}
+
+impl Stiffness {
+    /// The more telling of two, of bodies that come to share their steps.
+    pub(crate) fn or(self, other: Self) -> Self {
+        let first_tells = (self.is_known, self.rate) >= (other.is_known, other.rate);
+        let told = if first_tells { self } else { other };
+        Self { in_vain: self.in_vain.max(other.in_vain), ..told }
+    }
+
+    /// True if what is fast lets an explicit method go so long a step [s].
+    pub(crate) fn allows(&self, step: f64) -> bool {
+        self.rate * step < 1.0
+    }
+}
+
+/// What an implicit step of so many numbers costs, in explicit ones.
+fn cost(numbers: usize) -> f64 {
+    let numbers = numbers as f64;
+    (numbers + IMPLICIT_COST + EQUATIONS_COST * numbers * numbers) / EXPLICIT_COST
+}
+
+impl Dynamics<'_> {
+    /// Notes how fast the fastest part of the group is, after a step whose end has its rates.
+    pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>) {
+        if tools.settings.method != Method::default() || self.group.is_brief {
+            return;
+        }
+        if self.group.stiffness.wait > 0 {
+            self.group.stiffness.wait -= 1;
+            return;
+        }
+        let Group { end_state, end_rates, span, .. } = &*self.group;
+        let end = Point { offset: *span, state: end_state, rates: end_rates };
+        let told = tools.stepper.stiffness(end, tools.scales);
+        let numbers = self.group.numbers();
+        let stiffness = &mut self.group.stiffness;
+        stiffness.rate = told / self.group.span;
+        match (tools.stepper.method().stability_limit(), Method::default().stability_limit()) {
+            (Some(limit), _) if told >= HELD_UP * limit => stiffness.held_up += 1,
+            (Some(limit), _) => {
+                stiffness.held_up = stiffness.held_up.saturating_sub(1);
+                stiffness.wait = if told < FAR * limit { UNTOLD_STEPS } else { 0 };
+            }
+            (None, limit) => {
+                let saved = stiffness.saved + told / limit.unwrap_or(told) - cost(numbers);
+                stiffness.saved = saved.min(PATIENCE * cost(numbers));
+            }
+        }
+    }
+}
+
+impl Group {
+    /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are
+    /// short enough for explicit ones: as something begins to decay, a higher order serves better.
+    pub(crate) fn choose_stiffness(&mut self) {
+        let cost = cost(self.numbers());
+        let known = &mut self.stiffness;
+        if !known.is_stiff {
+            let needed = if known.is_known { 1 } else { TELLING_STEPS << known.in_vain.min(MOST_DOUBLINGS) };
+            if known.held_up >= needed && 6 * self.bodies.len() <= MOST_NUMBERS {
+                *known = Stiffness { is_stiff: true, is_known: true, held_up: 0, saved: 0.0, ..*known };
+                self.accepted = None;
+            }
+            return;
+        }
+        let (Some(next), Some(limit)) = (self.next_step, Method::default().stability_limit()) else { return };
+        let stable = limit / known.rate;
+        let is_lost = known.saved < -PATIENCE * cost;
+        if next <= FULL_GROWN * self.span && (self.span < stable || is_lost) {
+            known.is_stiff = false;
+            if is_lost {
+                (known.is_known, known.in_vain) = (false, known.in_vain + 1);
+            } else if known.saved > 0.0 {
+                known.in_vain = 0;
+            }
+            self.next_step = Some(next.min(stable));
+            self.accepted = None;
+        }
+    }
+
+    /// Numbers of its state without works.
+    fn numbers(&self) -> usize {
+        2 * self.velocities()
+    }
+}

@@ -1,0 +1,76 @@
+//! Bodies so light that what slows them acts at once: their motion is slow, but an explicit method would have to follow what
+//! decays within a microsecond. Each case counts the steps.
+
+use super::within;
+use halfgap::force::{Dashpot, Spring};
+use halfgap::geometry::DVec2;
+use halfgap::{Anchor, BodyId, ConnectorKind, World};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+use std::sync::Arc;
+
+/// Steps beyond which a step follows what decays: explicit ones would be a million and more in each case.
+const FEW_STEPS: u64 = 20_000;
+
+fn few_steps(what: &str, world: &World) {
+    let steps = world.statistics().steps;
+    println!("REACHED | {what} | {FEW_STEPS} | {steps}");
+    assert!(steps < FEW_STEPS, "{what}: {steps}");
+}
+
+#[test]
+fn a_light_body_creeps_back_on_a_damped_spring() {
+    // m x'' + c x' + k x = 0 with m = 1 mg, c = 1 N s/m, k = 1 N/m: rates of about 1e6 and 1 a second.
+    let (mass, damping, stiffness, stretch) = (1e-6, 1.0, 1.0, 0.5);
+    let mut shop = Workshop::weightless(1e-9);
+    let bob = shop.body("bob", disc(0.1), mass, at_rest(1.0 + stretch, 0.0));
+    let ends = [(BodyId::WORLD, DVec2::ZERO), (bob, DVec2::ZERO)].map(|(body, point)| Anchor { body, point });
+    shop.builder.add_force(Arc::new(Spring::new("spring", ends, 1.0, stiffness)));
+    shop.builder.add_force(Arc::new(Dashpot::new("dashpot", ends, damping)));
+    let mut world = shop.build();
+    advance(&mut world, 10.0);
+    let root = f64::sqrt(damping * damping - 4.0 * mass * stiffness);
+    let [slow, fast] = [2.0 * stiffness / (damping + root), (damping + root) / (2.0 * mass)];
+    let expected = stretch * (fast * (-slow * 10.0).exp() - slow * (-fast * 10.0).exp()) / (fast - slow);
+    within("damped spring on 1 mg, 10 s: place [m]", world.state(bob).position.x - 1.0 - expected, 1e-8);
+    within("damped spring on 1 mg, 10 s: books [J]", world.ledger().integration_error(), 1e-8);
+    few_steps("damped spring on 1 mg, 10 s: steps", &world);
+}
+
+#[test]
+fn a_light_block_is_driven_through_syrup_along_a_floor() {
+    // v' = a - k v from rest, with k = 1e6 a second; the block keeps to the floor.
+    let (drive, rate, mass, time): (f64, f64, f64, f64) = (1e5, 1e6, 1e-6, 5.0);
+    let mut shop = Workshop::new(1e-9);
+    shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
+    let sled = shop.dull("sled", block(1.0, 0.5), mass, at_rest(0.0, 0.25));
+    shop.builder.add_gravity(sled, DVec2::new(drive, 0.0));
+    shop.builder.add_damping(sled, rate * mass, 0.0);
+    let mut world = shop.build();
+    let start = world.state(sled).position;
+    advance(&mut world, time);
+    let way = drive / rate * (time - (1.0 - (-rate * time).exp()) / rate);
+    let moved = world.state(sled).position - start;
+    within("block in syrup, 5 s: way [m]", moved.x - way, 1e-9);
+    within("block in syrup, 5 s: lifted [m]", moved.y, 1e-11);
+    few_steps("block in syrup, 5 s: steps", &world);
+}
+
+#[test]
+fn a_pendulum_in_syrup_creeps_down() {
+    // Without inertia k l^2 a' = -g l sin a, so tan(a/2) decays at g/(k l); inertia changes the rate by about g/(k^2 l) of
+    // itself, and the start from rest shifts the time by 1/k: 1e-11 both.
+    let (length, mass, rate, time, start): (f64, f64, f64, f64, f64) = (1.0, 1e-3, 1e6, 1e5, 2.0);
+    let mut shop = Workshop::new(1e-9);
+    let bob =
+        shop.body("bob", disc(0.1), mass, thrown(length * start.sin(), -length * start.cos(), DVec2::ZERO));
+    let [a, b] =
+        [(BodyId::WORLD, DVec2::ZERO), (bob, DVec2::ZERO)].map(|(body, point)| Anchor { body, point });
+    shop.connect(ConnectorKind::Rod { a, b, length }, 0.0);
+    shop.builder.add_damping(bob, rate * mass, 0.0);
+    let mut world = shop.build();
+    advance(&mut world, time);
+    let angle = 2.0 * ((0.5 * start).tan() * (-GRAVITY / (rate * length) * time).exp()).atan();
+    let place = world.state(bob).position;
+    within("pendulum in syrup, 1e5 s: angle [rad]", place.x.atan2(-place.y) - angle, 1e-7);
+    few_steps("pendulum in syrup, 1e5 s: steps", &world);
+}
