@@ -65,7 +65,10 @@ fn work(first: u64, count: u64) {
         let verdict = trial(&scene_of_seed(seed).to_string(), Budget::default());
         let what = match &verdict {
             Verdict::Broken(broken) => format!("\t{}", broken.what.replace('\n', " ")),
-            Verdict::Shallow(why) | Verdict::Stopped(why) | Verdict::Refused(why) => {
+            Verdict::Shallow(why)
+            | Verdict::Stopped(why)
+            | Verdict::Refused(why)
+            | Verdict::Unfinished(why) => {
                 format!("\t{}", why.replace('\n', " "))
             }
             Verdict::Finished => String::new(),

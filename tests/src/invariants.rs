@@ -7,7 +7,6 @@
 use halfgap::geometry::{DVec2, Pose, Relation};
 use halfgap::scene::{ConnectorData, Scene, SceneFormat};
 use halfgap::{BodyId, ConnectorId, World};
-use std::any::Any;
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -21,6 +20,9 @@ const ENERGY_ROUNDING: f64 = 1e-9;
 /// How far a connector may be off, in tolerances and in roundings of the coordinates.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
+
+/// Part of the duration that goes by in the second half of the budget at least, if the run does not crawl.
+const CRAWLS: f64 = 1e-5;
 
 /// Ways in which a body is shifted to see how deep it is.
 const DIRECTIONS: u32 = 16;
@@ -51,6 +53,8 @@ pub enum Verdict {
     Refused(String),
     /// It stopped early with an error.
     Stopped(String),
+    /// The budget was spent while it went on well.
+    Unfinished(String),
     /// Something did not hold.
     Broken(Broken),
 }
@@ -73,6 +77,7 @@ impl Verdict {
             Self::Shallow(_) => "finished, with overlaps within the target gap".to_owned(),
             Self::Refused(why) => format!("refused: {}", without_numbers(why)),
             Self::Stopped(why) => format!("stopped: {}", without_numbers(why)),
+            Self::Unfinished(_) => "went on beyond its budget".to_owned(),
             Self::Broken(broken) => format!("BROKEN {}", broken.kind),
         }
     }
@@ -106,21 +111,27 @@ pub fn silence_panics() {
 }
 
 /// What the run panics with when its budget is spent.
-struct Spent(String);
+struct Spent {
+    crawls: bool,
+    what: String,
+}
 
 /// Runs a scene, given as JSON.
 #[must_use]
 pub fn trial(json: &str, budget: Budget) -> Verdict {
     match catch_unwind(AssertUnwindSafe(|| run(json, budget))) {
         Ok(verdict) => verdict,
-        Err(payload) => Verdict::Broken(broken_by(payload.as_ref())),
+        Err(payload) => match payload.downcast::<Spent>() {
+            Ok(spent) if spent.crawls => {
+                Verdict::Broken(Broken { kind: "crawls".to_owned(), what: spent.what })
+            }
+            Ok(spent) => Verdict::Unfinished(spent.what),
+            Err(_) => Verdict::Broken(last_panic()),
+        },
     }
 }
 
-fn broken_by(payload: &(dyn Any + Send)) -> Broken {
-    if let Some(Spent(what)) = payload.downcast_ref() {
-        return Broken { kind: "slow".to_owned(), what: what.clone() };
-    }
+fn last_panic() -> Broken {
     let what = LAST_PANIC.with(|last| last.take());
     let place = what.split_whitespace().find(|word| word.contains(".rs:")).unwrap_or("somewhere");
     Broken { kind: format!("panic {}", place.trim_end_matches(':')), what }
@@ -131,18 +142,17 @@ fn run(json: &str, budget: Budget) -> Verdict {
         Ok(scene) => scene,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    let started = Instant::now();
+    let mut purse = Purse::new(budget, scene.run.start_time, scene.run.duration);
     let mut world = match World::from_scene(&scene) {
         Ok(world) => world,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
     let mut inspector = Inspector::new(&scene, &world);
-    let mut events = 0;
     for look in 0..=LOOKS {
         let time = scene.run.start_time + scene.run.duration * f64::from(look) / f64::from(LOOKS);
-        let outcome = world.advance_to(time, &mut |_| {
-            events += 1;
-            spend(events, started, budget);
+        let outcome = world.advance_to(time, &mut |event| {
+            purse.events += 1;
+            purse.spend(event.time());
         });
         if let Err(broken) = inspector.look(&world) {
             return Verdict::Broken(broken);
@@ -150,16 +160,41 @@ fn run(json: &str, budget: Budget) -> Verdict {
         if let Err(error) = outcome {
             return Verdict::Stopped(error.to_string());
         }
-        spend(events, started, budget);
+        purse.spend(world.time());
     }
     inspector.shallow.map_or(Verdict::Finished, Verdict::Shallow)
 }
 
-/// Panics with [`Spent`] once too much was.
-fn spend(events: u64, started: Instant, budget: Budget) {
-    let wall = started.elapsed();
-    if events > budget.events || wall > budget.wall {
-        std::panic::panic_any(Spent(format!("{events} events in {wall:.1?}")));
+/// What of the budget is spent, and for what.
+struct Purse {
+    budget: Budget,
+    started: Instant,
+    events: u64,
+    start: f64,
+    duration: f64,
+    /// Where the run was [s] when half of the budget was spent.
+    half_way: Option<f64>,
+}
+
+impl Purse {
+    fn new(budget: Budget, start: f64, duration: f64) -> Self {
+        Self { budget, started: Instant::now(), events: 0, start, duration, half_way: None }
+    }
+
+    /// Panics with [`Spent`] once too much was, where the run is at a time [s].
+    fn spend(&mut self, time: f64) {
+        let wall = self.started.elapsed();
+        let half_way = self.half_way;
+        if 2 * self.events > self.budget.events || 2 * wall > self.budget.wall {
+            self.half_way.get_or_insert(time);
+        }
+        if self.events > self.budget.events || wall > self.budget.wall {
+            let since_half = half_way.map_or(f64::INFINITY, |half_way| time - half_way);
+            let crawls = since_half < CRAWLS * self.duration;
+            let (events, part) = (self.events, (time - self.start) / self.duration);
+            let what = format!("{events} events in {wall:.1?}, {:.1} parts in 100 of the way", 100.0 * part);
+            std::panic::panic_any(Spent { crawls, what });
+        }
     }
 }
 
