@@ -88,6 +88,21 @@ fn what_decays_is_followed_as_far_as_the_tolerance_asks() {
 }
 
 #[test]
+fn what_has_yet_to_decay_is_not_stepped_over() {
+    let (mut dragged, mut stepper) = (Dragged::default(), Stepper::new(Method::RadauIia5));
+    let scales = [1e-4; 2];
+    stepper.set_scales(&scales);
+    let state = [0.0; 3];
+    let rates = dragged.rates_at(0.0, &state);
+    let mut end = [0.0; 3];
+    let Ok(()) =
+        stepper.step(&mut dragged, Point { offset: 0.0, state: &state, rates: &rates }, 0.1, &mut end);
+    // The end is right, but the motion along the step would not be.
+    assert!((end[1] - 0.1f64.cos()).abs() < 1e-4, "{end:?}");
+    assert!(stepper.error_norm(&scales) > 1.0);
+}
+
+#[test]
 fn what_holds_steps_up_is_told() {
     let mut dragged = Dragged::default();
     for (method, step) in [(Method::Dop853, 3e-6), (Method::DormandPrince5, 2e-6), (Method::RadauIia5, 1e-3)]
