@@ -5,7 +5,7 @@
 //! states.
 
 use halfgap::geometry::{DVec2, Pose, Relation};
-use halfgap::scene::{ConnectorData, Scene, SceneFormat};
+use halfgap::scene::{ConnectorData, ForceData, Scene, SceneFormat};
 use halfgap::{BodyId, ConnectorId, World};
 use std::cell::RefCell;
 use std::f64::consts::TAU;
@@ -207,7 +207,7 @@ struct Inspector {
     tolerance: f64,
     turned_over: f64,
     start_potential: f64,
-    /// Energy [J] that is nothing: that of all masses at a coordinate in the duration, times rounding.
+    /// Energy [J] that tells nothing.
     no_energy: f64,
     /// The first overlap that was less deep than the target gap.
     shallow: Option<String>,
@@ -321,12 +321,25 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     depths.find(|&depth| frees(depth)).unwrap_or(f64::INFINITY)
 }
 
+/// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of a weight lifted by what is within the
+/// tolerance of a body's size.
 fn no_energy(scene: &Scene, world: &World) -> f64 {
     let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
+    let reach = world.bodies().filter(|&body| !world.is_fixed(body)).map(|body| world.shape(body).reach());
     let coordinate =
         world.bodies().map(|body| world.state(body).position.abs().max_element() + world.shape(body).reach());
     let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
-    CONNECTOR_ROUNDINGS * masses.sum::<f64>() * speed * speed
+    let lifted = CONNECTOR_TOLERANCES * scene.run.tolerance * reach.fold(0.0, f64::max);
+    let weight: f64 = scene.forces.iter().map(gravity).sum();
+    masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted)
+}
+
+/// Uniform gravity [m/s^2] of a force, if it is that.
+fn gravity(force: &ForceData) -> f64 {
+    match force {
+        ForceData::Gravity(gravity) => DVec2::from(gravity.acceleration).length(),
+        _ => 0.0,
+    }
 }
 
 fn may_collide(scene: &Scene, world: &World, a: BodyId, b: BodyId) -> bool {
