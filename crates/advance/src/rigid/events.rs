@@ -10,7 +10,9 @@ use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone};
+use halfgap_collision::{
+    BodyId, BodyState, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone,
+};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -32,6 +34,8 @@ pub(crate) struct EventWork {
     pub(crate) seeds: Vec<BodyId>,
     /// Records of held contacts that are stopped because one of them opens in a low hop.
     pub(crate) stilled: Vec<usize>,
+    /// States of the region's bodies before contacts were stopped as bilateral ones.
+    before: Vec<BodyState>,
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
 }
@@ -295,15 +299,35 @@ impl RigidSystem {
     pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
         let mut report = ImpactReport::default();
         let now = self.now;
+        work.before.clear();
+        work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
+        if outcome.is_ok() {
+            self.remeasure(&mut work.region, now);
+        }
+        let is_stopped = outcome.is_ok() && self.has_stopped(&work.region);
         for record in &mut work.region.records {
             record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
         }
-        if outcome.is_ok() {
+        if is_stopped {
             self.book_impact(&report, true);
+        } else if outcome.is_ok() {
+            for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
+                self.flyer_mut(body).fly_from(now, state);
+            }
             self.remeasure(&mut work.region, now);
         }
-        outcome.is_ok()
+        is_stopped
+    }
+
+    /// True if the contacts of a region that are marked as bilateral rest, and no other closes.
+    fn has_stopped(&self, region: &Region) -> bool {
+        let rest = self.rest_speed();
+        let mut contacts = region.records.iter().filter(|record| record.parties.primary.site.is_some());
+        contacts.all(|record| {
+            let rate = record.motion.normal_velocity;
+            rate >= -rest && (rate <= rest || !record.parties.bilateral)
+        })
     }
 
     /// Distance [m] by which a contact without force may sink before it fires again.
