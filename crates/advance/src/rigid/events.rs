@@ -38,6 +38,8 @@ pub(crate) struct EventWork {
     before: Vec<BodyState>,
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
+    /// The contact that fired does not close: the search takes its rounding for motion.
+    is_idle: bool,
 }
 
 impl RigidSystem {
@@ -229,10 +231,14 @@ impl RigidSystem {
                 self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
             self.remeasure(&mut work.region, self.now);
         }
+        let rest = self.rest_speed();
+        work.is_idle = fired.is_some_and(|fired| self.gap_at(fired, self.now).1 > -rest);
         if self.at_tick {
             self.put_back(work);
         }
-        self.collide(work)
+        let outcome = self.collide(work);
+        work.is_idle = false;
+        outcome
     }
 
     /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
@@ -261,7 +267,7 @@ impl RigidSystem {
         self.measure_touches(&mut work.region);
         self.note_seen(&work.region);
         self.regroup(&work.region, &work.settling)?;
-        self.set_rules(&work.region, &work.settling);
+        self.set_rules(work);
         if self.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
             self.lower_insistent(&work.region);
         }
@@ -350,7 +356,7 @@ impl RigidSystem {
 
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
     /// that touch without force.
-    fn set_rules(&mut self, region: &Region, settling: &Settling) {
+    fn set_rules(&mut self, EventWork { region, settling, is_idle, .. }: &EventWork) {
         for &body in &region.bodies {
             self.pairs.clear_rules_of(body);
         }
@@ -362,7 +368,10 @@ impl RigidSystem {
                 touch.skipped()
             } else {
                 // What opens comes back to where any pair fires, however low the halos of its bodies.
-                let target = if rate <= rest { self.sunk(gap) } else { self.settings.tolerances.target_gap };
+                // What fired although it does not close would do so again at once.
+                let is_idle = *is_idle && region.fired == Some(*touch);
+                let stays = rate <= rest || is_idle;
+                let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
                 touch.lowered_to(target)
             };
             if !self.is_idle(touch, &rule) {
