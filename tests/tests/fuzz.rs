@@ -58,6 +58,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (120305, "what soft pins lacked was not made good beside a slot"),
     (130358, "a row beside soft pins had too small a pivot, and blew up"),
     (61154, "the search crawled along two corners that stayed near each other"),
+    (
+        160628,
+        "corners at one spot fired in turns: they were stilled against each other, and their rounding was taken for motion",
+    ),
 ];
 
 #[test]

@@ -10,7 +10,9 @@ use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone};
+use halfgap_collision::{
+    BodyId, BodyState, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone,
+};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -32,8 +34,12 @@ pub(crate) struct EventWork {
     pub(crate) seeds: Vec<BodyId>,
     /// Records of held contacts that are stopped because one of them opens in a low hop.
     pub(crate) stilled: Vec<usize>,
+    /// States of the region's bodies before contacts were stopped as bilateral ones.
+    before: Vec<BodyState>,
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
+    /// The contact that fired does not close: the search takes its rounding for motion.
+    is_idle: bool,
 }
 
 impl RigidSystem {
@@ -225,10 +231,14 @@ impl RigidSystem {
                 self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
             self.remeasure(&mut work.region, self.now);
         }
+        let rest = self.rest_speed();
+        work.is_idle = fired.is_some_and(|fired| self.gap_at(fired, self.now).1 > -rest);
         if self.at_tick {
             self.put_back(work);
         }
-        self.collide(work)
+        let outcome = self.collide(work);
+        work.is_idle = false;
+        outcome
     }
 
     /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
@@ -257,7 +267,7 @@ impl RigidSystem {
         self.measure_touches(&mut work.region);
         self.note_seen(&work.region);
         self.regroup(&work.region, &work.settling)?;
-        self.set_rules(&work.region, &work.settling);
+        self.set_rules(work);
         if self.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
             self.lower_insistent(&work.region);
         }
@@ -295,15 +305,35 @@ impl RigidSystem {
     pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
         let mut report = ImpactReport::default();
         let now = self.now;
+        work.before.clear();
+        work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
+        if outcome.is_ok() {
+            self.remeasure(&mut work.region, now);
+        }
+        let is_stopped = outcome.is_ok() && self.has_stopped(&work.region);
         for record in &mut work.region.records {
             record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
         }
-        if outcome.is_ok() {
+        if is_stopped {
             self.book_impact(&report, true);
+        } else if outcome.is_ok() {
+            for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
+                self.flyer_mut(body).fly_from(now, state);
+            }
             self.remeasure(&mut work.region, now);
         }
-        outcome.is_ok()
+        is_stopped
+    }
+
+    /// True if the contacts of a region that are marked as bilateral rest, and no other closes.
+    fn has_stopped(&self, region: &Region) -> bool {
+        let rest = self.rest_speed();
+        let mut contacts = region.records.iter().filter(|record| record.parties.primary.site.is_some());
+        contacts.all(|record| {
+            let rate = record.motion.normal_velocity;
+            rate >= -rest && (rate <= rest || !record.parties.bilateral)
+        })
     }
 
     /// Distance [m] by which a contact without force may sink before it fires again.
@@ -326,7 +356,7 @@ impl RigidSystem {
 
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
     /// that touch without force.
-    fn set_rules(&mut self, region: &Region, settling: &Settling) {
+    fn set_rules(&mut self, EventWork { region, settling, is_idle, .. }: &EventWork) {
         for &body in &region.bodies {
             self.pairs.clear_rules_of(body);
         }
@@ -338,7 +368,10 @@ impl RigidSystem {
                 touch.skipped()
             } else {
                 // What opens comes back to where any pair fires, however low the halos of its bodies.
-                let target = if rate <= rest { self.sunk(gap) } else { self.settings.tolerances.target_gap };
+                // What fired although it does not close would do so again at once.
+                let is_idle = *is_idle && region.fired == Some(*touch);
+                let stays = rate <= rest || is_idle;
+                let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
                 touch.lowered_to(target)
             };
             if !self.is_idle(touch, &rule) {

@@ -1,15 +1,23 @@
 //! Hops too low to be told from contact: a contact opens so slowly that what acts on its bodies brings it back before it
 //! has opened by much. Such a contact is held at once, instead of being caught again a moment later.
+//!
+//! A hop takes T = 2 v/|a|, and what it lands with is stopped: it stays within the target zone. If the row's coefficients and
+//! its acceleration a are constant meanwhile, a contact that is stopped when it opens comes to the same places and
+//! velocities at T. So a hop may be the higher the less its bodies move in T, up to the half-width of the target zone.
 
 use super::dynamics::Stage;
 use super::events::EventWork;
 use super::region::Region;
 use super::settle::free_offset;
 use super::system::RigidSystem;
-use halfgap_collision::Collision;
+use halfgap_collision::{BodyId, Collision};
 
 /// Part of the accuracy by which a contact may open and come back, and count as closed all the while.
 const HOP_SHARE: f64 = 1e-4;
+/// The same of a hop in which nothing moves much.
+const SHORT_HOP_SHARE: f64 = 0.5;
+/// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide.
+const HOP_TURN: f64 = 1e-4;
 
 impl RigidSystem {
     /// True if a contact opens so slowly that it may be no more than a low hop.
@@ -19,7 +27,30 @@ impl RigidSystem {
 
     /// True if what acts on the bodies of a contact that opens brings them back before it has opened by much.
     pub(crate) fn hops_low(&self, region: &Region, record: &Collision, stage: &Stage) -> bool {
-        is_low_hop(record, free_offset(region, record, stage))
+        self.is_low_hop(record, free_offset(region, record, stage))
+    }
+
+    /// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.
+    pub(crate) fn is_low_hop(&self, record: &Collision, acceleration: f64) -> bool {
+        let rate = record.motion.normal_velocity;
+        let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * record.tolerances.accuracy;
+        let is_short = || 2.0 * rate * self.turning(record) <= -acceleration * HOP_TURN;
+        acceleration < 0.0 && (is_within(HOP_SHARE) || (is_within(SHORT_HOP_SHARE) && is_short()))
+    }
+
+    /// How fast [1/s] the bodies of a contact turn, and slide by their reach.
+    fn turning(&self, record: &Collision) -> f64 {
+        let of_body = |body: BodyId| {
+            if body.is_world() {
+                return 0.0;
+            }
+            let flyer = self.flyer(body);
+            let sliding =
+                if flyer.body().is_fixed() { 0.0 } else { record.motion.lateral_velocity / flyer.reach() };
+            sliding.abs() + flyer.moving_at(self.now).angular_velocity.abs()
+        };
+        let parties = &record.parties;
+        record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)
     }
 
     /// True if any held contact opens.
@@ -41,10 +72,4 @@ impl RigidSystem {
         work.stilled.iter().for_each(|&index| work.region.records[index].parties.bilateral = false);
         is_stilled
     }
-}
-
-/// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.
-pub(crate) fn is_low_hop(record: &Collision, acceleration: f64) -> bool {
-    let rate = record.motion.normal_velocity;
-    acceleration < 0.0 && rate * rate <= -2.0 * acceleration * HOP_SHARE * record.tolerances.accuracy
 }

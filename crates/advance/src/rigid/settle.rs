@@ -6,7 +6,6 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
-use super::hops::is_low_hop;
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::segment::LONGEST_STEP;
@@ -249,7 +248,7 @@ impl RigidSystem {
         for (index, record) in region.records.iter().enumerate().filter(|(_, record)| may_hop(record)) {
             let is_new = settling.candidates[..before].binary_search(&index).is_err();
             let offset = offset_under(region, record, &settling.pushed);
-            if is_new && is_low_hop(record, offset) {
+            if is_new && self.is_low_hop(record, offset) {
                 settling.candidates.push(index);
             }
         }

@@ -4,6 +4,7 @@ mod bounces;
 mod box_of_bodies;
 mod determinism;
 mod energy;
+mod hops;
 mod limits;
 mod no_overlap;
 mod rest;

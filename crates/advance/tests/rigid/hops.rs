@@ -1,0 +1,69 @@
+//! Hops of what is kicked open and comes back at once: those that stay within the target zone, and in which nothing moves
+//! much, are held from the kick on.
+
+use crate::box_of_bodies::*;
+use glam::DVec2;
+use halfgap_advance::Time;
+use halfgap_advance::rigid::{RigidParts, RigidSettings, RigidSystem};
+use halfgap_collision::Tolerances;
+
+/// Radius [m] of the disc that rests on the floor, and of the one that kicks it.
+const RADII: [f64; 2] = [0.5, 0.3];
+/// Speed [m/s] of the kick.
+const KICK: f64 = 1.0;
+/// Time [s] long after the kick.
+const END: f64 = 2.0;
+
+/// A disc that rests on a floor, and another, as heavy and without weight, that flies at it so as to give it an upward
+/// speed [m/s], small against its own.
+fn kicked(gravity: f64, upward: f64) -> RigidSystem {
+    let height = RADII[0] + TOLERANCES.target_gap;
+    let mut resting = body(&disc(RADII[0]), moving(DVec2::new(0.0, height), DVec2::ZERO, 0.0));
+    resting.1.acceleration = DVec2::new(0.0, -gravity);
+    let lower = (RADII[0] + RADII[1]) * upward / KICK;
+    let place = DVec2::new(-1.8, height - lower);
+    let mut kicking = body(&disc(RADII[1]), moving(place, DVec2::new(KICK, 0.0), 0.0));
+    kicking.0.inverse_mass = resting.0.inverse_mass;
+    let tolerances = Tolerances { velocity_tol: 1e-3, ..TOLERANCES };
+    let bodies = vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), resting, kicking];
+    let settings = RigidSettings { tolerances, ..SETTINGS };
+    let mut system = RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, settings, Time::ZERO)
+        .expect("one contact at rest");
+    advance(&mut system, END).expect("it slides along");
+    system
+}
+
+/// Upward speed [m/s] of a hop to a part of the accuracy.
+fn speed_to(part: f64, gravity: f64) -> f64 {
+    (2.0 * gravity * part * TOLERANCES.accuracy).sqrt()
+}
+
+/// Checks that the disc slides along the floor at its target gap, and returns how many impacts that took.
+fn impacts(system: &RigidSystem) -> u64 {
+    let state = states(system, END)[1];
+    assert!((state.position.y - RADII[0] - TOLERANCES.target_gap).abs() < 1e-13, "{state:?}");
+    assert!((state.velocity - DVec2::new(KICK, 0.0)).length() < 1e-8, "{state:?}");
+    system.counts().impacts
+}
+
+#[test]
+fn a_short_hop_within_the_target_zone_is_held_from_the_kick_on() {
+    let upward = speed_to(0.3, 10.0);
+    let system = kicked(10.0, upward);
+    assert_eq!(impacts(&system), 1);
+    // What the hop would have lost where it lands is lost at once.
+    let lost = 0.5 * upward * upward / system.flyer(halfgap_collision::BodyId(1)).body().inverse_mass;
+    let captures = system.ledger_at(Time::from_seconds(END)).captures;
+    assert!((captures / -lost - 1.0).abs() < 1e-6, "{captures} J of {lost} J");
+}
+
+#[test]
+fn a_hop_that_leaves_the_target_zone_is_flown() {
+    assert_eq!(impacts(&kicked(10.0, speed_to(1.2, 10.0))), 2);
+}
+
+#[test]
+fn a_hop_in_which_its_body_slides_on_is_flown() {
+    // It takes a millisecond: there is time for forces to change.
+    assert_eq!(impacts(&kicked(1e-4, speed_to(0.3, 1e-4))), 2);
+}
