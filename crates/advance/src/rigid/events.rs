@@ -462,7 +462,7 @@ const MOST_REPEATS: u32 = 100;
 const SAME_TIME: f64 = 4.0;
 
 /// True if no time has gone by from one event to the next.
-fn is_same_time(earlier: Time, later: Time) -> bool {
+pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
     later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
 }
 

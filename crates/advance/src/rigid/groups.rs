@@ -400,6 +400,7 @@ impl RigidSystem {
         self.with_group(&mut group, |dynamics, tools| {
             dynamics.soften_dependent();
             dynamics.end_on_rows(tools);
+            dynamics.lower_leaning();
         });
         self.ledger.projections += std::mem::take(&mut group.projected);
         std::mem::swap(&mut group.state, &mut group.end_state);
