@@ -495,12 +495,11 @@ impl RigidSystem {
     }
 
     fn step_error(&self, group: &Group, failure: StepFailure) -> AdvanceError {
-        let StepFailure::Collapsed(step) = failure;
-        AdvanceError::StepCollapsed {
-            time: group.start.seconds(),
-            step,
-            bodies: group.bodies.clone(),
-            laws: group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect(),
+        let (time, bodies) = (group.start.seconds(), group.bodies.clone());
+        let laws = group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect();
+        match failure {
+            StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
+            StepFailure::Unresolved(length) => AdvanceError::Unresolved { time, length, bodies, laws },
         }
     }
 }
