@@ -57,6 +57,12 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (120772, "doubled pins made others soft, beside a body a hundred million times heavier"),
     (120305, "what soft pins lacked was not made good beside a slot"),
     (130358, "a row beside soft pins had too small a pivot, and blew up"),
+    (203923, "a contact beside a pin with a long arm was taken for jammed, and let go"),
+    (
+        200730,
+        "a rope fired again and again: far from the origin it lay nearer to its length than the search can tell",
+    ),
+    (209056, "the time of an impact was corrected past that of another, whose body went into a wall"),
     (61154, "the search crawled along two corners that stayed near each other"),
     (
         160628,

@@ -9,6 +9,7 @@
 //! force, unless it is soft: see [`HeldRows::soften`]. Without soft rows there is no refinement: the factor leaves a = A f + b at rounding of the terms A_ij f_j, and a step of refinement
 //! could not better that without sums of higher precision.
 
+mod dependence;
 mod refining;
 mod structure;
 
@@ -20,6 +21,9 @@ use structure::Shared;
 
 /// Part of a row's square below which what earlier rows leave of it is measured with care.
 const DOUBTFUL: f64 = 1e-5;
+
+/// Part of a row's square below which what earlier rows leave of it is not told from rounding of their forces.
+const RESOLVED: f64 = 1e-13;
 
 /// In place of a body: none, or one that cannot move.
 const NONE: u32 = u32::MAX;
@@ -83,6 +87,8 @@ pub struct HeldRows {
     work: Vec<f64>,
     /// A motion of the bodies, in units of M^(1/2).
     motion: Vec<[f64; 3]>,
+    /// Sum of the squares of what rows do to each body.
+    gross: Vec<f64>,
     /// Last place with a given body and side, and the one before each.
     head: Vec<u32>,
     previous: Vec<u32>,
@@ -119,6 +125,7 @@ impl HeldRows {
             jacobian: Vec::new(),
             work: Vec::new(),
             motion: Vec::new(),
+            gross: Vec::new(),
             head: Vec::new(),
             previous: Vec::new(),
         }
@@ -176,7 +183,8 @@ impl HeldRows {
             if raised == 0.0 && (nearly || left <= DOUBTFUL * diagonal) {
                 left = self.measure_rest(place);
             }
-            let independent = left > self.dependence * diagonal;
+            let independent = left > self.dependence * diagonal
+                || (raised == 0.0 && left > RESOLVED * diagonal && self.moves_by_itself(place));
             // A small pivot enlarges the rounding of all that follows.
             nearly |= independent && left <= DOUBTFUL * diagonal;
             self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
@@ -234,30 +242,6 @@ impl HeldRows {
             *entry = scaled;
         }
         square
-    }
-
-    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|², and what
-    /// squares are raised by times x_k². That has the rounding of the difference, squared, where the difference of squares
-    /// has that of the squares, times what earlier small pivots make of it.
-    fn measure_rest(&mut self, place: usize) -> f64 {
-        let first = self.first[place];
-        self.work[..first].fill(0.0);
-        self.work[first..place].copy_from_slice(&self.factor[self.begin[place]..][..place - first]);
-        self.motion.fill([0.0; 3]);
-        self.push(place, 1.0);
-        for k in (0..place).rev() {
-            let share = self.work[k];
-            if share != 0.0 {
-                self.push(k, -share);
-                let row = &self.factor[self.begin[k]..][..k - self.first[k]];
-                for (out, entry) in self.work[self.first[k]..k].iter_mut().zip(row) {
-                    *out -= share * entry;
-                }
-            }
-        }
-        let rest: f64 = self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum();
-        let raised = self.raise[..place].iter().enumerate().filter(|(_, raise)| **raise > 0.0);
-        rest + raised.map(|(k, raise)| self.work[k] * self.work[k] * raise * self.square(k)).sum::<f64>()
     }
 
     /// The square of a row of Ĵ.

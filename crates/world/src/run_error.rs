@@ -63,6 +63,23 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Forces vary over so short a length that rounding of coordinates makes energy of nothing.
+    #[error(
+        "at {time} s the forces of {} on {} vary over {length:e} m: rounding of the coordinates makes more of that than the \
+         tolerance allows",
+        quoted(laws),
+        quoted(bodies)
+    )]
+    Unresolved {
+        /// When [s].
+        time: f64,
+        /// Length [m] over which forces vary by as much as they are.
+        length: f64,
+        /// Names of the bodies that share the step.
+        bodies: Vec<String>,
+        /// Names of the force laws that act on them.
+        laws: Vec<String>,
+    },
     /// The advance stopped for a reason that has no name here.
     #[error(transparent)]
     Advance(AdvanceError),
@@ -88,6 +105,7 @@ impl RunError {
             Self::Impact { time, .. }
             | Self::Contacts { time, .. }
             | Self::StepCollapsed { time, .. }
+            | Self::Unresolved { time, .. }
             | Self::Stuck { time, .. } => Some(*time),
             Self::Advance(_) => None,
         }
@@ -105,6 +123,10 @@ impl RunError {
             AdvanceError::StepCollapsed { time, step, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::StepCollapsed { time, step, bodies, laws }
+            }
+            AdvanceError::Unresolved { time, length, bodies, laws } => {
+                let bodies = bodies.into_iter().map(name).collect();
+                Self::Unresolved { time, length, bodies, laws }
             }
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);

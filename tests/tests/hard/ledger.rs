@@ -3,9 +3,10 @@
 use super::within;
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::scene::Scene;
-use halfgap::{Anchor, BodyState, ConnectorKind, World};
+use halfgap::{Anchor, BodyState, ConnectorKind, RunError, World};
 use halfgap_tests::mechanism::{Workshop, advance, block, disc, thrown};
-use halfgap_tests::reference_scene;
+use halfgap_tests::{reference_scene, world_of};
+use std::f64::consts::PI;
 
 /// The energy that the books leave open, as a part of the largest kinetic energy met.
 fn open_part(scene: &mut Scene, tolerance: f64) -> f64 {
@@ -77,4 +78,45 @@ fn a_gear_in_a_ring_of_teeth_keeps_its_energy() {
     scene.set_duration(5.0, "duration").expect("a fine duration");
     let open = open_part(&mut scene, 1e-8);
     within("gear in a ring of teeth, 5 s: energy books, part of the energy turned over", open, 1e-7);
+}
+
+/// Two bodies of 1 kg, 2 m apart, that pull at each other and pass through each other, from a place in the background.
+fn attracted(place: DVec2, speed: f64) -> World {
+    let body = |name: &str, side: f64| {
+        let (x, y) = (place.x + side, place.y);
+        format!(
+            "[[body]]\nname = \"{name}\"\nmass = 1.0\nshape = {{ disc = {{ radius = 0.5 }} }}\n\
+             position = [{x:?}, {y:?}]\nvelocity = [0.0, {:?}]\n",
+            side * speed
+        )
+    };
+    world_of(&format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 10.0, collisions = false }}\n\
+         force = [{{ mutual_gravity = {{ strength = 1.0 }} }}]\n{}{}",
+        body("a", 1.0),
+        body("b", -1.0)
+    ))
+}
+
+#[test]
+fn what_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
+    // Nearest are they at speed^2 4 s^2/m = 1e-4 m, a five-thousandth of their size.
+    let mut world = attracted(DVec2::ZERO, 0.005);
+    advance(&mut world, 10.0);
+    within(
+        "energy after three passes at 1e-4 m, of bodies of 0.5 m [J]",
+        world.ledger().integration_error(),
+        2e-5,
+    );
+}
+
+#[test]
+fn what_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
+    let mut world = attracted(DVec2::new(10.0, 3.0), 0.0);
+    let error = world.advance_to(10.0, &mut |_| {}).expect_err("the force has no bound");
+    assert!(matches!(error, RunError::Unresolved { length, .. } if length < 1e-4), "{error}");
+    // They meet as a Kepler ellipse without width does after half of its period.
+    let met = PI / 2f64.sqrt();
+    within("time at which two points meet [s]", world.time() - met, 1e-7);
+    within("energy of a head-on fall when it is given up [J]", world.ledger().integration_error(), 1e-3);
 }

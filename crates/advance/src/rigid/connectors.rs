@@ -1,5 +1,6 @@
 //! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
 
+use super::events::is_same_time;
 use super::group::Stop;
 use super::path::Path;
 use super::predictions::LONGEST_SPAN;
@@ -26,6 +27,22 @@ pub(crate) struct ConnectorState {
     slack: f64,
     /// The rope is taut and held.
     held: bool,
+    /// When the rope went taut last, and how often before that without time going by.
+    last_taut: Option<Time>,
+    repeats: u32,
+}
+
+impl ConnectorState {
+    /// How often before a rope has gone taut at the present time: it lies nearer to its length than the search can tell.
+    fn repeats_at(&self, now: Time) -> u32 {
+        if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
+    }
+
+    fn note_taut(&mut self, now: Time) {
+        let is_repeat = self.last_taut.is_some_and(|last| is_same_time(last, now));
+        self.repeats = if is_repeat { self.repeats + 1 } else { 0 };
+        self.last_taut = Some(now);
+    }
 }
 
 impl RigidSystem {
@@ -138,6 +155,7 @@ impl RigidSystem {
                 let state = &mut self.connector_states[id.index()];
                 state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
                 state.slack = if at_rest && touches { sink + (-sample.gap).max(0.0) } else { 0.0 };
+                state.slack += f64::from(state.repeats_at(self.now)) * sink;
                 state.clear = self.now;
                 self.predict_rope(id, &rope);
             }
@@ -213,7 +231,10 @@ impl RigidSystem {
 
     /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
-        if self.connector_states[id.index()].taut.is_some() {
+        let now = self.now;
+        let state = &mut self.connector_states[id.index()];
+        if state.taut.is_some() {
+            state.note_taut(now);
             return true;
         }
         if let Some(rope) = rope_of(self.connector(id)) {

@@ -62,6 +62,8 @@ pub(crate) struct Stage {
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, where it is asked for.
     pub(crate) free_acceleration: f64,
     pub(crate) asks_free_acceleration: bool,
+    /// Length [m] over which forces of laws vary there.
+    pub(crate) force_length: f64,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
     /// Dense output of velocities and works.
@@ -140,6 +142,13 @@ impl Stage {
             DVec2::new(x, y).length() + angular.abs() * flyers[body.index()].reach()
         };
         self.free_acceleration = bodies.iter().zip(&self.accelerations).map(of_points).fold(0.0, f64::max);
+    }
+
+    /// Notes the least length over which the forces of some laws vary.
+    fn note_force_length(&mut self, physics: &Physics<'_>, laws: &[usize], time: f64) {
+        let now = Snapshot::new(time, &self.movings);
+        let lengths = laws.iter().filter_map(|&law| physics.laws[law].length(&now));
+        self.force_length = lengths.fold(f64::INFINITY, f64::min);
     }
 
     fn add_law(&mut self, law: &dyn ForceLaw, bodies: &[BodyId], time: f64, power: Option<&mut f64>) {
@@ -307,6 +316,7 @@ impl Ode for Dynamics<'_> {
         self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
         if self.stage.asks_free_acceleration {
             self.stage.note_free_acceleration(self.physics.mechanism.flyers, &self.group.bodies);
+            self.stage.note_force_length(&self.physics, &self.group.laws, time);
         }
         if !self.group.rows.is_empty() {
             self.solve_rows();

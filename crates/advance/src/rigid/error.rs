@@ -48,6 +48,20 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Forces vary over so short a length that rounding of positions makes energy of nothing.
+    #[error(
+        "at {time} s the forces on bodies {bodies:?} vary over {length:e} m, too little for their coordinates: {laws:?}"
+    )]
+    Unresolved {
+        /// When [s].
+        time: f64,
+        /// Length [m] over which forces vary by as much as they are.
+        length: f64,
+        /// The bodies that share the step.
+        bodies: Vec<BodyId>,
+        /// Names of the force laws that act on them.
+        laws: Vec<String>,
+    },
     /// The same two bodies collide again and again without any time going by.
     #[error(
         "stuck at {time} s: bodies {} and {} collided {events} times without any time going by",

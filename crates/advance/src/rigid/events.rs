@@ -4,7 +4,7 @@ use super::bounces::closes_fast;
 use super::error::{AdvanceError, Between};
 use super::group::SegmentEnd;
 use super::impacts::ImpactReport;
-use super::pairs::PairId;
+use super::pairs::{Pair, PairId, Prediction};
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
@@ -227,8 +227,12 @@ impl RigidSystem {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
             let gap = fired.map(|fired| self.gap_at(fired, self.now).0);
-            self.now =
-                self.cut_groups(&work.region, self.now, |system, time| system.time_error(fired, gap, time));
+            self.now = self.cut_groups(&work.region, self.now, |system, time| {
+                match system.passed(&work.region, time) {
+                    Some(contact) => Some(contact.since(time)),
+                    None => system.time_error(fired, gap, time),
+                }
+            });
             self.remeasure(&mut work.region, self.now);
         }
         let rest = self.rest_speed();
@@ -352,6 +356,26 @@ impl RigidSystem {
         let error = gap - wanted?;
         let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
         (counts && rate < -self.settings.tolerances.velocity_tol).then(|| -error / rate)
+    }
+
+    /// The earliest contact of the bodies of a region that was predicted for a time before this one, to which the present
+    /// event has been corrected, if it has been passed: what has sunk that deep is not found again.
+    fn passed(&self, region: &Region, time: Time) -> Option<Time> {
+        if time <= self.now {
+            return None;
+        }
+        let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
+        let links = region.bodies.iter().flat_map(|&body| self.pairs.of_body(body));
+        let contacts = links.filter_map(|link| {
+            let &Pair { bodies, prediction: Prediction::Contact(features), .. } = self.pairs.get(link.pair)
+            else {
+                return None;
+            };
+            let predicted = self.queue.time_of(self.pair_source(link.pair))?;
+            let has_sunk = || self.gap_at(Touch { bodies, features }, time).0 < least;
+            (predicted < time && has_sunk()).then_some(predicted)
+        });
+        contacts.min()
     }
 
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
@@ -495,7 +519,7 @@ const MOST_REPEATS: u32 = 100;
 const SAME_TIME: f64 = 4.0;
 
 /// True if no time has gone by from one event to the next.
-fn is_same_time(earlier: Time, later: Time) -> bool {
+pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
     later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
 }
 

@@ -92,6 +92,8 @@ pub(crate) struct Group {
     pub(crate) accepted: Option<Accepted>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
     pub(crate) free_acceleration: f64,
+    /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies are large.
+    pub(crate) force_length: f64,
     /// Energy [J] that projections changed in this segment.
     pub(crate) projected: f64,
     /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.

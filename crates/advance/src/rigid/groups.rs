@@ -399,6 +399,7 @@ impl RigidSystem {
         self.with_group(&mut group, |dynamics, tools| {
             dynamics.soften_dependent();
             dynamics.end_on_rows(tools);
+            dynamics.lower_leaning();
         });
         self.ledger.projections += std::mem::take(&mut group.projected);
         std::mem::swap(&mut group.state, &mut group.end_state);
@@ -494,12 +495,11 @@ impl RigidSystem {
     }
 
     fn step_error(&self, group: &Group, failure: StepFailure) -> AdvanceError {
-        let StepFailure::Collapsed(step) = failure;
-        AdvanceError::StepCollapsed {
-            time: group.start.seconds(),
-            step,
-            bodies: group.bodies.clone(),
-            laws: group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect(),
+        let (time, bodies) = (group.start.seconds(), group.bodies.clone());
+        let laws = group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect();
+        match failure {
+            StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
+            StepFailure::Unresolved(length) => AdvanceError::Unresolved { time, length, bodies, laws },
         }
     }
 }

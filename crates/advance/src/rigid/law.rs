@@ -90,6 +90,13 @@ pub trait ForceLaw: Debug + Send + Sync {
         None
     }
 
+    /// Length [m] over which the forces vary by as much as they are, where that may be less than bodies are large; `None`
+    /// if it may not.
+    fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
+        let _ = now;
+        None
+    }
+
     /// How many switching functions the law has.
     fn switches(&self) -> usize {
         0

@@ -49,11 +49,17 @@ const DENSE_ERROR: f64 = 0.1;
 /// Part of its reach by which a body with contacts may move in one step.
 const WATCHED_SHARE: f64 = 0.5;
 
+/// What rounding of positions may add to the energy in a step, in local errors of what is usual in the scene: more, and
+/// energy comes from nothing whatever the steps.
+const UNRESOLVED: f64 = 1e4;
+
 /// Why a group could not be stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StepFailure {
     /// The step size has collapsed to this [s].
     Collapsed(f64),
+    /// Forces vary over this length [m], which rounding of positions does not resolve.
+    Unresolved(f64),
 }
 
 impl Dynamics<'_> {
@@ -76,6 +82,7 @@ impl Dynamics<'_> {
         let Ok(()) = self.derivative(offset, state, rates);
         self.stage.asks_free_acceleration = false;
         self.group.free_acceleration = self.stage.free_acceleration;
+        self.group.force_length = self.stage.force_length;
     }
 
     /// Extends the group by one accepted step from its state and rates; its end is projected.
@@ -85,6 +92,9 @@ impl Dynamics<'_> {
         control: &StepControl,
         scales: &mut Vec<f64>,
     ) -> Result<(), StepFailure> {
+        if !self.is_resolved(control) {
+            return Err(StepFailure::Unresolved(self.group.force_length));
+        }
         self.set_scales(control, scales);
         stepper.set_scales(scales);
         let longest = self.longest_sound_step().min(self.longest_watched_step());
@@ -207,11 +217,28 @@ impl Dynamics<'_> {
         self.physics.mechanism.flyers[body.index()].reach()
     }
 
+    /// True unless rounding of positions, where forces vary over a short length, changes the energy by more than the
+    /// tolerance allows.
+    fn is_resolved(&self, control: &StepControl) -> bool {
+        if self.group.force_length >= control.length || control.speed == 0.0 {
+            return true;
+        }
+        let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
+        let coordinate = positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max);
+        let rounding = f64::EPSILON * coordinate * self.group.free_acceleration;
+        rounding <= UNRESOLVED * control.local_error * control.speed * control.speed
+    }
+
+    /// The length [m] to which errors of position are relative: that over which forces vary, if it is less than asked for.
+    fn length(&self, control: &StepControl) -> f64 {
+        control.length.min(self.group.force_length)
+    }
+
     /// A speed [m/s] of the group: of its fastest point now, or what forces would make of it over the length. What forces
     /// of rows cancel counts too, so that a group at rest is not held to its rounding.
     fn speed(&self, control: &StepControl) -> f64 {
         let count = self.group.bodies.len();
-        let mut speed = (self.group.free_acceleration * control.length).sqrt();
+        let mut speed = (self.group.free_acceleration * self.length(control)).sqrt();
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let at = 3 * (count + place);
             let state = &self.group.state;
@@ -225,21 +252,21 @@ impl Dynamics<'_> {
     /// A first step [s] where nothing is known: what takes the group its length, shorter for small errors.
     fn first_step(&self, control: &StepControl) -> f64 {
         let speed = self.speed(control);
-        let time = if speed > 0.0 { control.length / speed } else { 1.0 };
+        let time = if speed > 0.0 { self.length(control) / speed } else { 1.0 };
         time * control.local_error.powf(FIRST_STEP_POWER)
     }
 
     /// Errors that are just acceptable, of positions and velocities; works follow them.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
-        let speed = self.speed(control);
+        let (length, speed) = (self.length(control), self.speed(control));
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let clearance = any_contact.then_some(CLEAR_SHARE * self.physics.mechanism.tolerances.accuracy);
         // Where nothing moves there is nothing to be wrong about.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();
-        for size in [control.length, speed] {
+        for size in [length, speed] {
             let linear = or_infinite(control.local_error * size);
-            let linear = clearance.map_or(linear, |clearance| linear.min(clearance * size / control.length));
+            let linear = clearance.map_or(linear, |clearance| linear.min(clearance * size / length));
             for &body in &self.group.bodies {
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }

@@ -280,10 +280,12 @@ impl RigidSystem {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
     }
 
-    /// True if forces are so much larger than what acts on the bodies that rows seem to work against each other, as those on
-    /// both sides of a body that just fits.
+    /// True if forces of contacts are so much larger than what acts on the bodies that rows seem to work against each other,
+    /// as those on both sides of a body that just fits. Connectors with long arms have such forces by themselves.
     fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
-        let largest = settling.solution.force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
+        let forces = settling.candidates.iter().zip(&settling.solution.force);
+        let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
+        let largest = of_contacts.fold(0.0f64, |most, (_, force)| most.max(force.abs()));
         let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.flyer(body).load(a));
         largest > JAM * loads.sum::<f64>()
     }

@@ -5,7 +5,7 @@
 
 use super::crossing::{EARLY, NODES, early_fall, early_node, first_fall, first_fall_before, node};
 use super::dynamics::Dynamics;
-use super::group::{SegmentEnd, Stop};
+use super::group::{Group, SegmentEnd, Stop};
 use super::law::Snapshot;
 use super::rows::{RowSource, moving_of};
 use crate::ode::Ode;
@@ -288,6 +288,21 @@ impl Dynamics<'_> {
     fn height(&self, row: usize) -> f64 {
         let row = &self.group.leaning[row];
         self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap
+    }
+
+    /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
+    /// projection onto the held rows may have moved their bodies, and what starts below its least gap is not seen to sink.
+    pub(crate) fn lower_leaning(&mut self) {
+        let Group { bodies, end_state, leaning, .. } = &mut *self.group;
+        if leaning.is_empty() {
+            return;
+        }
+        self.stage.load(bodies, end_state);
+        let mechanism = &self.physics.mechanism;
+        for row in leaning {
+            let gap = mechanism.measure(row, &self.stage.movings).gap;
+            row.gap = row.gap.min(gap - mechanism.tolerances.sink());
+        }
     }
 
     /// True if a contact that is touched without force lies within its features.

@@ -71,6 +71,12 @@ impl ForceLaw for MutualGravity {
         self.visit_pairs(now, |_, offset, strength| sum -= strength / offset.length());
         Some(sum)
     }
+
+    fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
+        let mut least = f64::INFINITY;
+        self.visit_pairs(now, |_, offset, _| least = least.min(offset.length_squared()));
+        Some(least.sqrt())
+    }
 }
 
 #[cfg(test)]
@@ -101,6 +107,16 @@ mod tests {
         let only_two = MutualGravity::new("", 1.5, &[(BodyId(0), 2.0), (BodyId(1), 3.0)], &[]);
         let Pushed { force, torque, .. } = wrenches(&only_two, &states)[0];
         assert!((force - DVec2::new(0.6, 0.8) * (9.0 / 25.0)).length() < 1e-15 && torque == 0.0);
+    }
+
+    #[test]
+    fn the_pull_varies_over_the_least_distance() {
+        let mut states = states();
+        states[0].position = DVec2::new(1.0, 1.0);
+        states[1].position = DVec2::new(1.3, 1.4);
+        states[2].position = DVec2::new(10.0, 10.0);
+        let least = law().length(&Snapshot::new(0.0, &states.map(|state| (&state).into())));
+        assert!(least.is_some_and(|least| (least - 0.5).abs() < 1e-15), "{least:?}");
     }
 
     #[test]

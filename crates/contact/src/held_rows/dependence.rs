@@ -1,0 +1,101 @@
+//! Which rows depend on earlier ones, where the difference of squares does not tell.
+//!
+//! What is left of a row between a light and a heavy body is little, in the measure of the masses, once other rows hold the
+//! light one: no more than the part of the heavy one. It holds that one all the same. So what is left is looked at body by
+//! body, too, against what all rows of the combination do to it.
+
+use super::{HeldRows, NONE};
+
+impl HeldRows {
+    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|², and what
+    /// squares are raised by times x_k². That has the rounding of the difference, squared, where the difference of squares
+    /// has that of the squares, times what earlier small pivots make of it.
+    pub(super) fn measure_rest(&mut self, place: usize) -> f64 {
+        let first = self.first[place];
+        self.work[..first].fill(0.0);
+        self.work[first..place].copy_from_slice(&self.factor[self.begin[place]..][..place - first]);
+        self.motion.fill([0.0; 3]);
+        self.push(place, 1.0);
+        for k in (0..place).rev() {
+            let share = self.work[k];
+            if share != 0.0 {
+                self.push(k, -share);
+                let row = &self.factor[self.begin[k]..][..k - self.first[k]];
+                for (out, entry) in self.work[self.first[k]..k].iter_mut().zip(row) {
+                    *out -= share * entry;
+                }
+            }
+        }
+        let rest: f64 = self.motion.iter().map(|[x, y, turn]| x * x + y * y + turn * turn).sum();
+        let raised = self.raise[..place].iter().enumerate().filter(|(_, raise)| **raise > 0.0);
+        rest + raised.map(|(k, raise)| self.work[k] * self.work[k] * raise * self.square(k)).sum::<f64>()
+    }
+
+    /// True if what [`measure_rest`](Self::measure_rest) has left of a row moves any body by more than the part up to which
+    /// rows are dependent, of what the rows of the combination do to it.
+    pub(super) fn moves_by_itself(&mut self, place: usize) -> bool {
+        self.gross.clear();
+        self.gross.resize(self.motion.len(), 0.0);
+        self.add_gross(place, 1.0);
+        for k in 0..place {
+            self.add_gross(k, self.work[k]);
+        }
+        let square = |[x, y, turn]: &[f64; 3]| x * x + y * y + turn * turn;
+        let mut bodies = self.motion.iter().zip(&self.gross);
+        bodies.any(|(motion, gross)| square(motion) > self.dependence * gross)
+    }
+
+    /// Adds what a multiple of a row of Ĵ does to each body to the sums of squares.
+    fn add_gross(&mut self, place: usize, share: f64) {
+        let row = &self.jacobian[place];
+        for (side, &body) in self.bodies[place].iter().enumerate().filter(|(_, body)| **body != NONE) {
+            let part: f64 = row[3 * side..3 * side + 3].iter().map(|entry| entry * entry).sum();
+            self.gross[body as usize] += share * share * part;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Inertia;
+
+    /// Two rows that pin a body, or two at one place, at arms of both.
+    fn pin(arm: [f64; 2], other: [f64; 2]) -> [[f64; 6]; 2] {
+        [[1.0, 0.0, -arm[1], -1.0, 0.0, other[1]], [0.0, 1.0, arm[0], 0.0, -1.0, -other[0]]]
+    }
+
+    #[test]
+    fn a_heavy_body_on_a_light_one_that_is_pinned_is_held() {
+        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
+        let (to_world, between) = (pin([0.3, 0.1], [0.0; 2]), pin([-0.2, 0.4], [0.1, -0.5]));
+        let rows: Vec<_> = to_world.into_iter().chain(between).collect();
+        let sides = [[Some(0), None], [Some(0), None], [Some(0), Some(1)], [Some(0), Some(1)]];
+        for heavy in [1e3, 1e9, 1e11] {
+            let mut held = HeldRows::default();
+            held.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
+            assert_eq!(held.factorize(&rows), 0, "{heavy:e}");
+            let offset: Vec<f64> = rows.iter().map(|row| -9.81 * (row[1] + row[4])).collect();
+            let mut force = [0.0; 4];
+            held.solve(&offset, &mut force);
+            let mut change = [[0.0, -9.81, 0.0]; 2];
+            held.respond(&force, &mut change);
+            // The pins of a massless bar and of what hangs from it: the lower one goes along the bar at no rate.
+            let rate = |row: &[f64; 6]| (0..6).map(|k| row[k] * change[k / 3][k % 3]).sum::<f64>();
+            assert!(rows[2..].iter().all(|row| rate(row).abs() < 1e-3), "{heavy:e}: {change:?}");
+        }
+    }
+
+    #[test]
+    fn a_pin_given_twice_between_a_light_and_a_heavy_body_depends() {
+        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
+        let rows: Vec<_> =
+            [pin([0.3, 0.1], [0.7, -0.2]), pin([-0.2, 0.4], [0.2, 0.1]), pin([0.3, 0.1], [0.7, -0.2])]
+                .into_iter()
+                .flatten()
+                .collect();
+        let mut held = HeldRows::default();
+        held.set_structure(&[inertia(1.0), inertia(1e11)], &[[Some(0), Some(1)]; 6]);
+        assert_eq!(held.factorize(&rows), 3);
+    }
+}
