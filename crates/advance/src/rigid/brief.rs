@@ -104,6 +104,7 @@ impl RigidSystem {
     pub(crate) fn foresee(&self, group: &mut Group) {
         let pasts = group.bodies.iter().map(|body| self.groups.past_of[body.index()]);
         group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);
+        group.stiffness = pasts.clone().map(|past| past.stiffness).fold(Stiffness::default(), Stiffness::or);
         if self.settings.method != Method::default() {
             return;
         }
@@ -111,7 +112,6 @@ impl RigidSystem {
             RowSource::Connector(id, _) => self.connector(id).path().is_some_and(|path| path.is_spline()),
             RowSource::Contact(_) => false,
         });
-        group.stiffness = pasts.clone().map(|past| past.stiffness).fold(Stiffness::default(), Stiffness::or);
         let soon = BRIEF * pasts.map(|past| past.lasted).fold(0.0, f64::max);
         let is_brief = |step: f64| !group.has_kinks && BRIEF * soon < step && group.stiffness.allows(soon);
         if let Some(step) = group.next_step.filter(|&step| is_brief(step)) {

@@ -1,10 +1,10 @@
 //! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
 
-use super::events::is_same_time;
 use super::group::Stop;
 use super::path::Path;
 use super::predictions::LONGEST_SPAN;
 use super::region::Region;
+use super::repeats::is_same_time;
 use super::rows::{RowSource, knot_rooms};
 use super::settle::Settling;
 use super::system::RigidSystem;

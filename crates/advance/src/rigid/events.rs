@@ -1,23 +1,20 @@
 //! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
 
 use super::bounces::closes_fast;
-use super::error::{AdvanceError, Between};
+use super::error::AdvanceError;
 use super::group::SegmentEnd;
 use super::impacts::ImpactReport;
 use super::pairs::{Pair, PairId, Prediction};
 use super::region::{Region, Touch};
+use super::repeats::{CALM_REPEATS, is_same_time};
 use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{
-    BodyId, BodyState, Collision, ConnectorId, FeatureRule, GapKinematics, Tolerances, Zone,
-};
+use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, GapKinematics, Tolerances, Zone};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
-/// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
-const SEAM_SHARE: f64 = 1.0 / 32.0;
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
 const SEAM_ANGLE: f64 = 4e-9;
 /// Cap on the rounds in which the low hops of one event are stilled.
@@ -39,7 +36,7 @@ pub(crate) struct EventWork {
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
     /// The contact that fired does not close: the search takes its rounding for motion.
-    is_idle: bool,
+    pub(crate) is_idle: bool,
 }
 
 impl RigidSystem {
@@ -340,16 +337,6 @@ impl RigidSystem {
         })
     }
 
-    /// Distance [m] by which a contact without force may sink before it fires again.
-    pub(crate) fn sink(&self) -> f64 {
-        self.settings.tolerances.sink()
-    }
-
-    /// Gap [m] at which a contact without force fires that has a gap now.
-    pub(crate) fn sunk(&self, gap: f64) -> f64 {
-        (gap - self.sink()).min(self.settings.tolerances.target_gap)
-    }
-
     /// By how much [s] the time is off at which a pair has the gap [m] that it had by dense output, if that can be told.
     fn time_error(&self, fired: Option<Touch>, wanted: Option<f64>, time: Time) -> Option<f64> {
         let (gap, rate) = self.gap_at(fired?, time);
@@ -378,94 +365,6 @@ impl RigidSystem {
         contacts.min()
     }
 
-    /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
-    /// that touch without force.
-    fn set_rules(&mut self, EventWork { region, settling, is_idle, .. }: &EventWork) {
-        for &body in &region.bodies {
-            self.pairs.clear_rules_of(body);
-        }
-        let rest = self.rest_speed();
-        self.set_halos(region);
-        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
-            let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-            let rule: FeatureRule = if settling.holds_touch(*touch) || self.is_watched(*touch) {
-                touch.skipped()
-            } else {
-                // What opens comes back to where any pair fires, however low the halos of its bodies.
-                // What fired although it does not close would do so again at once.
-                let is_idle = *is_idle && region.fired == Some(*touch);
-                let stays = rate <= rest || is_idle;
-                let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
-                touch.lowered_to(target)
-            };
-            if !self.is_idle(touch, &rule) {
-                self.pairs.change_rules(pair, |rules| rules.push(rule));
-            }
-        }
-    }
-
-    /// Lowers the contacts that fired again and again without time going by, and their neighbours, by so much more each
-    /// time: they lie nearer to where they fire than the search can tell.
-    fn lower_insistent(&mut self, region: &Region) {
-        let mut insistent = std::mem::take(&mut self.touched);
-        insistent.clear();
-        let pairs =
-            region.touches.iter().filter_map(|touch| self.pairs.between(touch.bodies[0], touch.bodies[1]));
-        insistent.extend(pairs);
-        insistent.sort_unstable();
-        insistent.dedup();
-        for &pair in &insistent {
-            let lower = f64::from(self.repeats_beyond_calm(pair)) * self.sink();
-            if lower == 0.0 {
-                continue;
-            }
-            self.pairs.change_rules(pair, |rules| {
-                for rule in rules {
-                    rule.target = rule.target.map(|target| target - lower);
-                }
-            });
-            for body in self.pairs.get(pair).bodies {
-                self.lanes[body.index()].halo -= lower;
-            }
-        }
-        self.touched = insistent;
-    }
-
-    /// How often more than is calm a pair has fired at the present time.
-    fn repeats_beyond_calm(&self, pair: PairId) -> u32 {
-        let past = self.pairs.past(pair);
-        let is_now = past.last_contact.is_some_and(|last| is_same_time(last, self.now));
-        if is_now { past.repeats.saturating_sub(CALM_REPEATS) } else { 0 }
-    }
-
-    /// True if a rule says of two discs what holds of them without it.
-    fn is_idle(&self, touch: &Touch, rule: &FeatureRule) -> bool {
-        let target = self.settings.tolerances.target_gap;
-        let mut lanes = touch.bodies.iter().map(|body| &self.lanes[body.index()]);
-        rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
-    }
-
-    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
-    ///
-    /// So a body that slides along at less than its target does not run against the seam of the next floor.
-    fn set_halos(&mut self, region: &Region) {
-        let target = self.settings.tolerances.target_gap;
-        for &body in &region.bodies {
-            self.lanes[body.index()].halo = target;
-        }
-        let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
-        let least = target - self.settings.tolerances.accuracy;
-        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
-            if rate > self.rest_speed() {
-                continue;
-            }
-            for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
-                let halo = &mut self.lanes[body.index()].halo;
-                *halo = halo.min((gap - seam).max(least));
-            }
-        }
-    }
-
     /// Measures the touching features of a region at the present time.
     fn measure_touches(&self, region: &mut Region) {
         let Region { touches, motions, .. } = region;
@@ -489,119 +388,5 @@ impl RigidSystem {
         let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
         *booked += report.energy_change;
-    }
-
-    /// How often the contacts of a pair have been handled at the present time.
-    fn note_repeat(&mut self, pair: PairId) -> Result<u32, AdvanceError> {
-        let now = self.now;
-        let bodies = self.pairs.get(pair).bodies;
-        let entry = self.pairs.past_mut(pair);
-        let is_repeat = entry.last_contact.is_some_and(|last| is_same_time(last, now));
-        entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
-        entry.last_contact = Some(now);
-        let (events, [primary, normal]) = (entry.repeats, bodies);
-        if events > CALM_REPEATS {
-            self.last_insistent = Some(now);
-        }
-        if events > MOST_REPEATS {
-            let between = Between { primary, normal };
-            return Err(AdvanceError::Stuck { time: now.seconds(), between, events });
-        }
-        Ok(events)
-    }
-}
-
-/// A pair that collides more often than this without time going by is stopped without elasticity.
-const CALM_REPEATS: u32 = 20;
-/// A pair may collide so many times without time going by before the advance is stuck.
-const MOST_REPEATS: u32 = 100;
-/// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
-const SAME_TIME: f64 = 4.0;
-
-/// True if no time has gone by from one event to the next.
-pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
-    later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ode::Method;
-    use crate::rigid::{FlightLaw, RigidParts, RigidSettings, StepControl};
-    use glam::DVec2;
-    use halfgap_collision::{Body, BodyState, SearchSettings};
-    use halfgap_contact::{ImpactLaw, ImpactOrder};
-    use halfgap_geometry::Shape;
-
-    const SETTINGS: RigidSettings = RigidSettings {
-        tolerances: Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 },
-        law: ImpactLaw::Hybrid,
-        order: ImpactOrder::Fastest,
-        collisions: true,
-        search: SearchSettings::STANDARD,
-        method: Method::Dop853,
-        steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
-        projection: true,
-        extra: None,
-        impulse_step: None,
-        joint_small_impacts: false,
-        rest_speed: 1e-12,
-        resolution_time: 1e-10,
-    };
-
-    /// Two elastic discs at their target gap that close with 2 m/s, and their pair.
-    fn meeting() -> (RigidSystem, PairId, [FeatureId; 2]) {
-        let disc = |side: f64| {
-            let shape = Shape::disc(0.5).expect("a fine radius");
-            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
-            let position = DVec2::new(side * (0.5 + 0.5e-10), 0.0);
-            let state = BodyState { position, velocity: DVec2::new(-side, 0.0), ..BodyState::default() };
-            (body, FlightLaw::default(), state)
-        };
-        let parts = RigidParts { bodies: vec![disc(-1.0), disc(1.0)], ..RigidParts::default() };
-        let system = RigidSystem::new(parts, SETTINGS, Time::from_seconds(1.0)).expect("nothing rests");
-        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
-        let features = [FeatureId(0), FeatureId(0)];
-        (system, pair, features)
-    }
-
-    #[test]
-    fn a_pair_that_fires_for_the_first_time_bounces() {
-        let (mut system, pair, features) = meeting();
-        // The start has seen it at its target: a moment later it has been elsewhere.
-        system.pairs.seen_mut(pair).clear();
-        assert!(system.handle_contact(pair, features).expect("one row"));
-        assert_eq!(system.last_impact.rows[0].rate_after, 2.0);
-    }
-
-    #[test]
-    fn a_pair_that_fires_again_and_again_without_time_going_by_is_stopped() {
-        let (mut system, pair, features) = meeting();
-        for _ in 0..=CALM_REPEATS {
-            system.note_repeat(pair).expect("not stuck yet");
-        }
-        assert!(system.handle_contact(pair, features).expect("one row"));
-        assert_eq!(system.last_impact.rows[0].rate_after, 0.0);
-        assert_eq!(system.ledger.captures, -1.0);
-    }
-
-    #[test]
-    fn a_pair_that_does_not_stop_then_is_stuck() {
-        let (mut system, pair, _) = meeting();
-        for count in 0..=MOST_REPEATS {
-            assert_eq!(system.note_repeat(pair), Ok(count));
-        }
-        let between = Between { primary: BodyId(0), normal: BodyId(1) };
-        let stuck = AdvanceError::Stuck { time: 1.0, between, events: MOST_REPEATS + 1 };
-        assert_eq!(system.note_repeat(pair), Err(stuck));
-    }
-
-    #[test]
-    fn time_that_goes_by_ends_the_count() {
-        let (mut system, pair, _) = meeting();
-        for _ in 0..3 * MOST_REPEATS {
-            system.now = system.now.plus(1e-12);
-            assert_eq!(system.note_repeat(pair), Ok(0));
-        }
     }
 }

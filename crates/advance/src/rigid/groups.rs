@@ -4,6 +4,7 @@ use super::brief::Past;
 use super::connectors::is_stop;
 use super::dynamics::{Dynamics, body_state, set_body_state};
 use super::error::AdvanceError;
+use super::extending::Tools;
 use super::group::{Group, Work};
 use super::pairs::Prediction;
 use super::region::{Region, Touch};
@@ -413,7 +414,7 @@ impl RigidSystem {
         self.book_works(&group);
         group.start = group.end();
         group.end_brief();
-        group.choose_stiffness();
+        group.choose_stiffness(self.settings.method);
         let first_work = 2 * group.velocities();
         let group_mut = &mut *group;
         std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);
@@ -506,91 +507,3 @@ impl RigidSystem {
 
 /// Cap on the corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
-
-/// Cap on the shorter steps tried for one that keeps to its rows.
-const MOST_SHORTENINGS: usize = 2;
-
-/// What a group's stepping uses beside its dynamics.
-pub(crate) struct Tools<'a> {
-    pub(crate) stepper: &'a mut crate::ode::Stepper,
-    pub(crate) scales: &'a mut Vec<f64>,
-    pub(crate) settings: &'a super::system::RigidSettings,
-}
-
-impl Dynamics<'_> {
-    /// Extends the group by a step, with what ends it early.
-    fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
-        if !self.group.is_unwatched {
-            self.extend_on_rows(tools)?;
-            self.note_stiffness(tools);
-            self.group.event = self.find_event();
-            return Ok(());
-        }
-        self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
-        self.end_on_rows(tools);
-        self.evaluate_end();
-        self.note_stiffness(tools);
-        self.follow_rails();
-        self.limit_next_step(tools.stepper.method().step_factor(0.0));
-        (self.group.event, self.group.largest_error) = (None, self.stage.gap_error);
-        Ok(())
-    }
-
-    /// Makes the dense output of the last step.
-    pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
-        self.make_dense(tools.stepper);
-        self.inner_excess(tools.settings.tolerances.accuracy);
-    }
-
-    /// Extends the group by a step whose dense output keeps to the held rows, too: shorter ones are tried until it does.
-    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
-        let steps = tools.settings.steps;
-        let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
-        let (mut proposed, projected) = (None, self.group.projected);
-        for tries in 0.. {
-            self.group.projected = projected;
-            self.extend(tools.stepper, &steps, tools.scales)?;
-            self.end_on_rows(tools);
-            self.evaluate_end();
-            self.follow_rails();
-            self.make_dense(tools.stepper);
-            let excess = self.inner_excess(tools.settings.tolerances.accuracy);
-            let proposed = *proposed.get_or_insert(self.group.next_step);
-            if is_free {
-                break;
-            }
-            if tries == MOST_SHORTENINGS && excess > 1.0 {
-                // What shorter steps do not mend is rounding, or rows that contradict each other.
-                self.group.next_step = proposed;
-                break;
-            }
-            self.limit_next_step(tools.stepper.method().step_factor(excess));
-            if excess <= 1.0 {
-                break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Projects the end onto the held rows and books what energy that took.
-    fn end_on_rows(&mut self, tools: &Tools<'_>) {
-        let settings = tools.settings;
-        if self.group.rows.is_empty() || !(settings.projection || settings.joint_small_impacts) {
-            return;
-        }
-        let before = self.end_energy();
-        if settings.projection {
-            self.project_end(settings.steps.length);
-        } else {
-            self.fit_joint_velocities();
-        }
-        self.group.projected += self.end_energy() - before;
-    }
-
-    fn end_energy(&mut self) -> f64 {
-        let end = std::mem::take(&mut self.group.end_state);
-        let energy = self.energy(&end);
-        self.group.end_state = end;
-        energy
-    }
-}

@@ -2,8 +2,8 @@
 
 use super::brief::Stepping;
 use super::dynamics::{Dynamics, body_state};
+use super::extending::Tools;
 use super::group::Group;
-use super::groups::Tools;
 use super::rows::{RowSource, moving_of};
 use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;

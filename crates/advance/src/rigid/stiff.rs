@@ -2,8 +2,8 @@
 //! less. Which steps are made otherwise is in `brief`.
 
 use super::dynamics::Dynamics;
+use super::extending::Tools;
 use super::group::Group;
-use super::groups::Tools;
 use crate::ode::{Method, Point};
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
@@ -72,7 +72,7 @@ fn cost(numbers: usize) -> f64 {
 impl Dynamics<'_> {
     /// Notes how fast the fastest part of the group is, after a step whose end has its rates.
     pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>) {
-        if tools.settings.method != Method::default() || self.group.is_brief {
+        if !tools.settings.method.is_adaptive() || self.group.is_brief {
             return;
         }
         if self.group.stiffness.wait > 0 {
@@ -85,7 +85,7 @@ impl Dynamics<'_> {
         let numbers = self.group.numbers();
         let stiffness = &mut self.group.stiffness;
         stiffness.rate = told / self.group.span;
-        match (tools.stepper.method().stability_limit(), Method::default().stability_limit()) {
+        match (tools.stepper.method().stability_limit(), tools.settings.method.stability_limit()) {
             (Some(limit), _) if told >= HELD_UP * limit => stiffness.held_up += 1,
             (Some(limit), _) => {
                 stiffness.held_up = stiffness.held_up.saturating_sub(1);
@@ -102,7 +102,7 @@ impl Dynamics<'_> {
 impl Group {
     /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are
     /// short enough for explicit ones: as something begins to decay, a higher order serves better.
-    pub(crate) fn choose_stiffness(&mut self) {
+    pub(crate) fn choose_stiffness(&mut self, asked: Method) {
         let cost = cost(self.numbers());
         let known = &mut self.stiffness;
         if !known.is_stiff {
@@ -113,7 +113,7 @@ impl Group {
             }
             return;
         }
-        let (Some(next), Some(limit)) = (self.next_step, Method::default().stability_limit()) else { return };
+        let (Some(next), Some(limit)) = (self.next_step, asked.stability_limit()) else { return };
         let stable = limit / known.rate;
         let is_lost = known.saved < -PATIENCE * cost;
         if next <= FULL_GROWN * self.span && (self.span < stable || is_lost) {

@@ -1,0 +1,102 @@
+//! What the search is told about features that touch: which to leave alone, and how far others may sink before they fire.
+
+use super::events::EventWork;
+use super::region::{Region, Touch};
+use super::system::RigidSystem;
+use halfgap_collision::FeatureRule;
+
+/// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
+const SEAM_SHARE: f64 = 1.0 / 32.0;
+
+impl RigidSystem {
+    /// Distance [m] by which a contact without force may sink before it fires again.
+    pub(crate) fn sink(&self) -> f64 {
+        self.settings.tolerances.sink()
+    }
+
+    /// Gap [m] at which a contact without force fires that has a gap now.
+    pub(crate) fn sunk(&self, gap: f64) -> f64 {
+        (gap - self.sink()).min(self.settings.tolerances.target_gap)
+    }
+
+    /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
+    /// that touch without force.
+    pub(crate) fn set_rules(&mut self, EventWork { region, settling, is_idle, .. }: &EventWork) {
+        for &body in &region.bodies {
+            self.pairs.clear_rules_of(body);
+        }
+        let rest = self.rest_speed();
+        self.set_halos(region);
+        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+            let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
+            let rule: FeatureRule = if settling.holds_touch(*touch) || self.is_watched(*touch) {
+                touch.skipped()
+            } else {
+                // What opens comes back to where any pair fires, however low the halos of its bodies.
+                // What fired although it does not close would do so again at once.
+                let is_idle = *is_idle && region.fired == Some(*touch);
+                let stays = rate <= rest || is_idle;
+                let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
+                touch.lowered_to(target)
+            };
+            if !self.is_idle(touch, &rule) {
+                self.pairs.change_rules(pair, |rules| rules.push(rule));
+            }
+        }
+    }
+
+    /// Lowers the contacts that fired again and again without time going by, and their neighbours, by so much more each
+    /// time: they lie nearer to where they fire than the search can tell.
+    pub(crate) fn lower_insistent(&mut self, region: &Region) {
+        let mut insistent = std::mem::take(&mut self.touched);
+        insistent.clear();
+        let pairs =
+            region.touches.iter().filter_map(|touch| self.pairs.between(touch.bodies[0], touch.bodies[1]));
+        insistent.extend(pairs);
+        insistent.sort_unstable();
+        insistent.dedup();
+        for &pair in &insistent {
+            let lower = f64::from(self.repeats_beyond_calm(pair)) * self.sink();
+            if lower == 0.0 {
+                continue;
+            }
+            self.pairs.change_rules(pair, |rules| {
+                for rule in rules {
+                    rule.target = rule.target.map(|target| target - lower);
+                }
+            });
+            for body in self.pairs.get(pair).bodies {
+                self.lanes[body.index()].halo -= lower;
+            }
+        }
+        self.touched = insistent;
+    }
+
+    /// True if a rule says of two discs what holds of them without it.
+    fn is_idle(&self, touch: &Touch, rule: &FeatureRule) -> bool {
+        let target = self.settings.tolerances.target_gap;
+        let mut lanes = touch.bodies.iter().map(|body| &self.lanes[body.index()]);
+        rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
+    }
+
+    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
+    ///
+    /// So a body that slides along at less than its target does not run against the seam of the next floor.
+    fn set_halos(&mut self, region: &Region) {
+        let target = self.settings.tolerances.target_gap;
+        for &body in &region.bodies {
+            self.lanes[body.index()].halo = target;
+        }
+        let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
+        let least = target - self.settings.tolerances.accuracy;
+        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+            if rate > self.rest_speed() {
+                continue;
+            }
+            for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
+                let halo = &mut self.lanes[body.index()].halo;
+                *halo = halo.min((gap - seam).max(least));
+            }
+        }
+    }
+}
