@@ -16,7 +16,8 @@ use std::time::{Duration, Instant};
 const LOOKS: u32 = 50;
 /// Stops from one look to the next, at which only the clock is read: what goes on without any event is told from what hangs.
 const STOPS: u32 = 40;
-/// How far the energy books may be from closing, in tolerances and parts of the energy turned over.
+/// How far the energy books may be from closing, in tolerances (and one more for each step) and parts of the energy turned
+/// over.
 const ENERGY_TOLERANCES: f64 = 1e4;
 const ENERGY_ROUNDING: f64 = 1e-9;
 /// How far a connector may be off, in tolerances and in roundings of the coordinates.
@@ -281,7 +282,8 @@ impl Inspector {
             + ledger.laws.iter().map(|law| law.work.abs()).sum::<f64>();
         self.turned_over = self.turned_over.max(turned);
         let potential = ledger.now.potential.abs().max(self.start_potential.abs());
-        let allowed = (ENERGY_TOLERANCES * self.tolerance + ENERGY_ROUNDING) * self.turned_over
+        let tolerances = ENERGY_TOLERANCES + world.statistics().steps as f64;
+        let allowed = (tolerances * self.tolerance + ENERGY_ROUNDING) * self.turned_over
             + CONNECTOR_ROUNDINGS * potential
             + self.no_energy;
         let gained = ledger.now.total() - ledger.start - work;

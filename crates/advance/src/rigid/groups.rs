@@ -462,7 +462,13 @@ impl RigidSystem {
         }
         let leader = group.leader();
         self.skip_dense(leader);
-        let outcome = self.with_group(&mut group, |dynamics, tools| dynamics.extend_watched(tools));
+        let next_step = group.next_step;
+        let mut outcome = self.with_group(&mut group, |dynamics, tools| dynamics.extend_watched(tools));
+        if outcome.is_err() && group.stiffness.is_stiff {
+            group.next_step = next_step;
+            group.leave_stiffness(self.settings.method);
+            outcome = self.with_group(&mut group, |dynamics, tools| dynamics.extend_watched(tools));
+        }
         self.counts.segments += 1;
         if let Err(failure) = outcome {
             let error = self.step_error(&group, failure);

@@ -113,19 +113,32 @@ impl Group {
             }
             return;
         }
-        let (Some(next), Some(limit)) = (self.next_step, asked.stability_limit()) else { return };
-        let stable = limit / known.rate;
+        let Some(next) = self.next_step else { return };
         let is_lost = known.saved < -PATIENCE * cost;
-        if next <= FULL_GROWN * self.span && (self.span < stable || is_lost) {
-            known.is_stiff = false;
-            if is_lost {
-                (known.is_known, known.in_vain) = (false, known.in_vain + 1);
-            } else if known.saved > 0.0 {
-                known.in_vain = 0;
-            }
-            self.next_step = Some(next.min(stable));
-            self.accepted = None;
+        if next > FULL_GROWN * self.span {
+            return;
         }
+        if is_lost {
+            self.leave_stiffness(asked);
+        } else if asked.stability_limit().is_some_and(|limit| known.rate * self.span < limit) {
+            known.is_stiff = false;
+            known.in_vain = if known.saved > 0.0 { 0 } else { known.in_vain };
+            self.make_stable(asked);
+        }
+    }
+
+    /// Goes back to explicit steps because implicit ones do not serve.
+    pub(crate) fn leave_stiffness(&mut self, asked: Method) {
+        let known = &mut self.stiffness;
+        *known = Stiffness { is_stiff: false, is_known: false, in_vain: known.in_vain + 1, ..*known };
+        self.make_stable(asked);
+    }
+
+    /// Makes the next step short enough for an explicit method.
+    fn make_stable(&mut self, asked: Method) {
+        let stable = asked.stability_limit().map_or(f64::INFINITY, |limit| limit / self.stiffness.rate);
+        self.next_step = self.next_step.map(|next| next.min(stable));
+        self.accepted = None;
     }
 
     /// Numbers of its state without works.
