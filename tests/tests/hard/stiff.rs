@@ -8,7 +8,7 @@ use halfgap::{Anchor, BodyId, ConnectorKind, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 use std::sync::Arc;
 
-/// Steps beyond which a step follows what decays: explicit ones would be a million and more in each case.
+/// Steps beyond which a step follows what decays: explicit ones would be nearly a million or more in each case.
 const FEW_STEPS: u64 = 20_000;
 
 fn few_steps(what: &str, world: &World) {

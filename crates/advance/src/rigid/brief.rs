@@ -18,6 +18,9 @@ const BRIEFEST: f64 = 1.0 / 32.0;
 /// A group stays brief while its steps may grow by this factor.
 const BRIEF_GROWTH: f64 = 1.9;
 
+/// The method of few stages.
+const BRIEF_METHOD: Method = Method::DormandPrince5;
+
 /// By which stepper the steps of a group are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stepping {
@@ -41,7 +44,7 @@ impl Steppers {
     pub(crate) fn new(method: Method) -> Self {
         Self {
             asked: Stepper::new(method),
-            brief: Stepper::new(Method::DormandPrince5),
+            brief: Stepper::new(BRIEF_METHOD),
             stiff: Stepper::new(Method::RadauIia5),
         }
     }
@@ -89,8 +92,7 @@ impl Group {
 
     /// Goes back to the method that is asked for, if brief steps are held up by their errors.
     pub(crate) fn end_brief(&mut self) {
-        let method = Method::DormandPrince5;
-        let grows = self.accepted.is_some_and(|step| method.step_factor(step.error) >= BRIEF_GROWTH);
+        let grows = self.accepted.is_some_and(|step| BRIEF_METHOD.step_factor(step.error) >= BRIEF_GROWTH);
         if self.is_brief && !grows {
             self.is_brief = false;
             self.next_step = self.full_step;

@@ -36,7 +36,7 @@ pub(crate) struct EventWork {
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
     /// The contact that fired does not close: the search takes its rounding for motion.
-    pub(crate) is_idle: bool,
+    pub(crate) fired_open: bool,
 }
 
 impl RigidSystem {
@@ -233,12 +233,12 @@ impl RigidSystem {
             self.remeasure(&mut work.region, self.now);
         }
         let rest = self.rest_speed();
-        work.is_idle = fired.is_some_and(|fired| self.gap_at(fired, self.now).1 > -rest);
+        work.fired_open = fired.is_some_and(|fired| self.gap_at(fired, self.now).1 > -rest);
         if self.at_tick {
             self.put_back(work);
         }
         let outcome = self.collide(work);
-        work.is_idle = false;
+        work.fired_open = false;
         outcome
     }
 

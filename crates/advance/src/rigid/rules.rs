@@ -21,7 +21,7 @@ impl RigidSystem {
 
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
     /// that touch without force.
-    pub(crate) fn set_rules(&mut self, EventWork { region, settling, is_idle, .. }: &EventWork) {
+    pub(crate) fn set_rules(&mut self, EventWork { region, settling, fired_open, .. }: &EventWork) {
         for &body in &region.bodies {
             self.pairs.clear_rules_of(body);
         }
@@ -34,8 +34,8 @@ impl RigidSystem {
             } else {
                 // What opens comes back to where any pair fires, however low the halos of its bodies.
                 // What fired although it does not close would do so again at once.
-                let is_idle = *is_idle && region.fired == Some(*touch);
-                let stays = rate <= rest || is_idle;
+                let fired_open = *fired_open && region.fired == Some(*touch);
+                let stays = rate <= rest || fired_open;
                 let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
                 touch.lowered_to(target)
             };

@@ -23,7 +23,7 @@ const MOST_NUMBERS: usize = 300;
 const EXPLICIT_COST: f64 = 15.0;
 /// An implicit step asks for so many rates beside one for each number of the state.
 const IMPLICIT_COST: f64 = 14.0;
-/// The equations cost so many rates for each square of the numbers of the state: measured, with contacts.
+/// The equations cost so many rates for each square of the numbers of the state: an estimate, by the operations of both.
 const EQUATIONS_COST: f64 = 0.02;
 /// So many implicit steps that save nothing are in vain.
 const PATIENCE: f64 = 10.0;
