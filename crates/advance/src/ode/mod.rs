@@ -52,6 +52,7 @@ mod radau;
 mod start;
 mod stepper;
 mod tableau;
+mod through;
 
 pub use control::Accepted;
 pub use method::Method;

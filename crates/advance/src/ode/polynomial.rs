@@ -1,7 +1,7 @@
 //! A component of the motion along a step, as a polynomial.
 
 /// Largest degree: an integrated velocity of degree 7.
-const DEGREE: usize = 8;
+pub(super) const DEGREE: usize = 8;
 
 /// A function of time over a step, a polynomial of degree 8 at most.
 ///
@@ -93,7 +93,7 @@ impl SegmentPolynomial {
     }
 
     /// The start value plus a motion, which is zero at the start.
-    fn from_start(start: f64, motion: [f64; DEGREE + 1], step: f64) -> Self {
+    pub(super) fn from_start(start: f64, motion: [f64; DEGREE + 1], step: f64) -> Self {
         let mut coefficients = motion;
         coefficients[0] += start;
         Self { coefficients, step, rate: 2.0 / step }

@@ -57,6 +57,9 @@ pub(crate) struct Stage {
     pub(crate) gross: Vec<f64>,
     /// Force [N] of each row below which it has none.
     pub(crate) least: Vec<f64>,
+    /// The least and the largest force [N] of each row at the stages of the last step.
+    pub(crate) force_ranges: Vec<[f64; 2]>,
+    pub(crate) asks_force_ranges: bool,
     /// Largest error [m] of a held gap, where forces of rows were last found.
     pub(crate) gap_error: f64,
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, where it is asked for.
@@ -151,6 +154,18 @@ impl Stage {
         self.force_length = lengths.fold(f64::INFINITY, f64::min);
     }
 
+    /// Begins anew to note the range of the forces of so many rows.
+    pub(crate) fn clear_force_ranges(&mut self, rows: usize) {
+        self.force_ranges.clear();
+        self.force_ranges.resize(rows, [f64::INFINITY, f64::NEG_INFINITY]);
+    }
+
+    fn widen_force_ranges(&mut self) {
+        for ([least, largest], &force) in self.force_ranges.iter_mut().zip(&self.forces) {
+            (*least, *largest) = (least.min(force), largest.max(force));
+        }
+    }
+
     fn add_law(&mut self, law: &dyn ForceLaw, bodies: &[BodyId], time: f64, power: Option<&mut f64>) {
         let now = Snapshot::new(time, &self.movings);
         let Some(power) = power else {
@@ -202,8 +217,13 @@ pub(crate) struct Dynamics<'a> {
 
 impl Dynamics<'_> {
     /// Measures the rows with the bodies in place and factorises; calls `visit` with the gap of each less the one at which
-    /// it formed, and its rate. Returns how many rows depend on others.
+    /// it formed, and its rate. Returns how many rows depend on others. Of a group that is stepped as a tree, only rows beside
+    /// its pins count.
     pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) -> usize {
+        if self.group.tree.is_used() {
+            self.factorize_by_tree(visit);
+            return 0;
+        }
         self.stage.jacobians.clear();
         let mut twin = None;
         for row in &self.group.rows {
@@ -216,6 +236,14 @@ impl Dynamics<'_> {
 
     /// Solves A x = -`offsets`, leaves x in `forces`, and M^-1 J^T x in `changes`.
     pub(crate) fn respond(&mut self) {
+        if self.group.tree.is_used() {
+            self.respond_by_tree();
+        } else {
+            self.respond_by_rows();
+        }
+    }
+
+    fn respond_by_rows(&mut self) {
         let Stage { offsets, forces, changes, solves, .. } = &mut *self.stage;
         forces.resize(offsets.len(), 0.0);
         self.group.held.solve(offsets, forces);
@@ -242,7 +270,10 @@ impl Dynamics<'_> {
             self.stage.jacobians.push(moment.kinematics.jacobian);
         }
         self.group.held.factorize(&self.stage.jacobians);
-        self.respond();
+        self.respond_by_rows();
+        if self.stage.asks_force_ranges {
+            self.stage.widen_force_ranges();
+        }
         let changes = self.stage.changes.iter();
         for (acceleration, change) in self.stage.accelerations.iter_mut().zip(changes) {
             for k in 0..3 {
@@ -283,7 +314,7 @@ impl Dynamics<'_> {
     }
 
     #[inline]
-    fn spin_at(&self, place: Option<u32>) -> Spin {
+    pub(crate) fn spin_at(&self, place: Option<u32>) -> Spin {
         place.map_or(Spin::default(), |place| {
             let [x, y, angular] = self.stage.accelerations[place as usize];
             Spin { linear: DVec2::new(x, y), angular }
@@ -306,6 +337,14 @@ impl Ode for Dynamics<'_> {
     type Error = Infallible;
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        self.find_rates(offset, state, rates, Self::solve_rows);
+        Ok(())
+    }
+}
+
+impl Dynamics<'_> {
+    /// Rates of the group's state; `constrain` adds what the rows do to accelerations in the stage.
+    fn find_rates(&mut self, offset: f64, state: &[f64], rates: &mut [f64], constrain: fn(&mut Self)) {
         let bodies = self.group.bodies.len();
         self.stage.evaluations += 1;
         self.stage.load(&self.group.bodies, state);
@@ -319,11 +358,30 @@ impl Ode for Dynamics<'_> {
             self.stage.note_force_length(&self.physics, &self.group.laws, time);
         }
         if !self.group.rows.is_empty() {
-            self.solve_rows();
+            constrain(self);
         }
         for (place, acceleration) in self.stage.accelerations.iter().enumerate() {
             velocity_rates[3 * place..3 * place + 3].copy_from_slice(acceleration);
         }
-        Ok(())
+    }
+
+    /// Rates of the group's state, with its largest acceleration without the forces of rows, and the forces of rows unless
+    /// it is stepped as a tree.
+    pub(crate) fn evaluate_with_free(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
+        self.stage.asks_free_acceleration = true;
+        let constrain = if self.group.tree.is_used() { Self::hang } else { Self::solve_rows };
+        self.find_rates(offset, state, rates, constrain);
+        self.stage.asks_free_acceleration = false;
+        self.group.free_acceleration = self.stage.free_acceleration;
+        self.group.force_length = self.stage.force_length;
+    }
+
+    /// Largest error [m] of a held gap, with the bodies in place.
+    pub(crate) fn largest_gap_error(&self) -> f64 {
+        let mut twin = None;
+        let gaps = self.group.rows.iter().map(|row| {
+            self.physics.mechanism.measure_next(row, &self.stage.movings, &mut twin).gap - row.gap
+        });
+        gaps.fold(0.0, |most, error| most.max(error.abs()))
     }
 }

@@ -73,7 +73,8 @@ impl Dynamics<'_> {
     /// Projects the end onto the held rows and books what energy that took.
     pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) {
         let settings = tools.settings;
-        if self.group.rows.is_empty() || !(settings.projection || settings.joint_small_impacts) {
+        let needs_none = self.group.rows.is_empty() || self.group.tree.holds_all();
+        if needs_none || !(settings.projection || settings.joint_small_impacts) {
             return;
         }
         let before = self.end_energy();

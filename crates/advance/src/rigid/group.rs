@@ -2,6 +2,7 @@
 
 use super::rows::HeldRow;
 use super::stiff::Stiffness;
+use super::tree::JointTree;
 use crate::ode::{Accepted, SegmentPolynomial};
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
@@ -57,6 +58,8 @@ pub(crate) struct Group {
     pub(crate) laws: Vec<usize>,
     pub(crate) works: Vec<Work>,
     pub(crate) held: HeldRows,
+    /// In whose coordinates it is stepped, if it hangs together by pins alone.
+    pub(crate) tree: JointTree,
     /// When its segment started.
     pub(crate) start: Time,
     /// Length of the segment [s].
@@ -112,6 +115,7 @@ impl Group {
         self.stops.clear();
         self.laws.clear();
         self.works.clear();
+        self.tree.clear();
         self.state.clear();
         self.rates.clear();
         (self.next_step, self.full_step) = (None, None);

@@ -44,6 +44,7 @@ mod stiff;
 mod storms;
 mod system;
 mod ticks;
+mod tree;
 mod watch;
 
 pub use dynamics::ExtraAcceleration;

@@ -5,7 +5,7 @@ use super::dynamics::{Dynamics, body_state};
 use super::extending::Tools;
 use super::group::Group;
 use super::rows::{RowSource, moving_of};
-use crate::ode::{Accepted, Ode, Point, SegmentPolynomial, Stepper};
+use crate::ode::{Accepted, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
 use halfgap_collision::BodyId;
 
@@ -76,15 +76,6 @@ impl Dynamics<'_> {
         self.group.rates = rates;
     }
 
-    /// Evaluates the rates, with the group's largest acceleration without the forces of rows.
-    fn evaluate_with_free(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
-        self.stage.asks_free_acceleration = true;
-        let Ok(()) = self.derivative(offset, state, rates);
-        self.stage.asks_free_acceleration = false;
-        self.group.free_acceleration = self.stage.free_acceleration;
-        self.group.force_length = self.stage.force_length;
-    }
-
     /// Extends the group by one accepted step from its state and rates; its end is projected.
     pub(crate) fn extend(
         &mut self,
@@ -97,21 +88,17 @@ impl Dynamics<'_> {
         }
         self.set_scales(control, scales);
         stepper.set_scales(scales);
-        let longest = self.longest_sound_step().min(self.longest_watched_step());
+        let turning = self.longest_turning_step();
+        let longest = self.longest_sound_step().min(self.longest_watched_step()).min(turning);
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
-        let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
-        let mut end = std::mem::take(&mut self.group.end_state);
-        end.clear();
-        end.resize(state.len(), 0.0);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
         let mut rejected = false;
         let outcome = loop {
             if step.is_nan() || step <= shortest {
                 break Err(StepFailure::Collapsed(step));
             }
-            let Ok(()) =
-                stepper.step(self, Point { offset: 0.0, state: &state, rates: &rates }, step, &mut end);
+            self.step(stepper, step);
             let error = stepper.error_norm(scales);
             if !error.is_finite() {
                 (step, rejected) = (step * RETREAT, true);
@@ -127,7 +114,6 @@ impl Dynamics<'_> {
             }
             (step, rejected) = (step * method.step_factor(error), true);
         };
-        (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
         self.group.span = step;
         outcome
     }
@@ -149,15 +135,11 @@ impl Dynamics<'_> {
     pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) {
         self.set_scales(&tools.settings.steps, tools.scales);
         tools.stepper.set_scales(tools.scales);
-        let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
-        let mut end = std::mem::take(&mut self.group.end_state);
-        end.clear();
-        end.extend_from_slice(&state);
         if offset > 0.0 {
-            let from = Point { offset: 0.0, state: &state, rates: &rates };
-            let Ok(()) = tools.stepper.step(self, from, offset, &mut end);
+            self.step(tools.stepper, offset);
+        } else {
+            self.group.end_state.clone_from(&self.group.state);
         }
-        (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
         self.group.span = offset;
     }
 
@@ -176,6 +158,11 @@ impl Dynamics<'_> {
         self.group.end_state.clear();
         self.group.end_state.extend_from_slice(&self.stage.trial[..velocities]);
         self.group.end_state.extend(works);
+        if self.group.tree.is_used() {
+            let mut end = std::mem::take(&mut self.group.end_state);
+            self.fit_to_tree(&mut end);
+            self.group.end_state = end;
+        }
         self.group.span = offset;
     }
 
@@ -264,9 +251,14 @@ impl Dynamics<'_> {
         // Where nothing moves there is nothing to be wrong about.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();
-        for size in [length, speed] {
+        let linear = [length, speed].map(|size| {
             let linear = or_infinite(control.local_error * size);
-            let linear = clearance.map_or(linear, |clearance| linear.min(clearance * size / length));
+            clearance.map_or(linear, |clearance| linear.min(clearance * size / length))
+        });
+        if self.group.tree.is_used() {
+            return self.scale_tree(linear, scales);
+        }
+        for linear in linear {
             for &body in &self.group.bodies {
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }
@@ -310,7 +302,7 @@ impl Dynamics<'_> {
             let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
             self.stage.offsets = offsets;
             self.respond();
-            add_changes(&mut end[..velocities], &self.stage.changes);
+            self.change(&mut end, 0);
             // Newton's method squares the relative error.
             let is_enough = if is_soft {
                 error <= f64::EPSILON * length || (round > 0 && error > WORTHWHILE * before)
@@ -325,9 +317,19 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&rates);
         self.respond();
-        add_changes(&mut end[velocities..2 * velocities], &self.stage.changes);
+        self.change(&mut end, velocities);
         self.stage.rates = rates;
         self.group.end_state = end;
+    }
+
+    /// Adds the changes in the stage to the numbers of a state that begin at a place: positions or velocities.
+    fn change(&mut self, state: &mut Vec<f64>, at: usize) {
+        for (value, change) in state[at..].iter_mut().zip(self.stage.changes.iter().flatten()) {
+            *value += change;
+        }
+        if self.group.tree.is_used() {
+            self.fit_to_tree(state);
+        }
     }
 
     /// Brings the rates of bilateral rows to zero at the end and leaves those of the others as they are.
@@ -343,7 +345,7 @@ impl Dynamics<'_> {
         self.stage.offsets = offsets;
         self.respond();
         let velocities = self.group.velocities();
-        add_changes(&mut end[velocities..2 * velocities], &self.stage.changes);
+        self.change(&mut end, velocities);
         self.group.end_state = end;
     }
 
@@ -392,13 +394,18 @@ impl Dynamics<'_> {
 
     /// Dense output of the last step, into the group's paths.
     pub(crate) fn make_dense(&mut self, stepper: &mut Stepper) {
+        if self.group.tree.is_used() {
+            return self.make_dense_of_tree(stepper);
+        }
         let (state, end) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.end_state));
         let end_rates = std::mem::take(&mut self.group.end_rates);
         let mut velocities = std::mem::take(&mut self.stage.velocity_paths);
         let first = self.group.velocities();
         velocities.resize(state.len() - first, SegmentPolynomial::default());
         let end_point = Point { offset: self.group.span, state: &end, rates: &end_rates };
+        self.stage.asks_force_ranges = true;
         let Ok(()) = stepper.dense(self, end_point, first..state.len(), &mut velocities);
+        self.stage.asks_force_ranges = false;
         let path = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &velocities[at]);
         self.group.paths.clear();
         let places = 0..self.group.bodies.len();
@@ -407,11 +414,5 @@ impl Dynamics<'_> {
         self.group.work_paths.extend_from_slice(&velocities[first..]);
         self.stage.velocity_paths = velocities;
         (self.group.state, self.group.end_state, self.group.end_rates) = (state, end, end_rates);
-    }
-}
-
-fn add_changes(values: &mut [f64], changes: &[[f64; 3]]) {
-    for (value, change) in values.iter_mut().zip(changes.iter().flatten()) {
-        *value += change;
     }
 }

@@ -4,7 +4,7 @@
 use super::dynamics::Dynamics;
 use super::extending::Tools;
 use super::group::Group;
-use crate::ode::{Method, Point};
+use crate::ode::Method;
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
 const HELD_UP: f64 = 0.9;
@@ -79,9 +79,7 @@ impl Dynamics<'_> {
             self.group.stiffness.wait -= 1;
             return;
         }
-        let Group { end_state, end_rates, span, .. } = &*self.group;
-        let end = Point { offset: *span, state: end_state, rates: end_rates };
-        let told = tools.stepper.stiffness(end, tools.scales);
+        let told = self.told_stiffness(tools.stepper, tools.scales);
         let numbers = self.group.numbers();
         let stiffness = &mut self.group.stiffness;
         stiffness.rate = told / self.group.span;
@@ -103,11 +101,12 @@ impl Group {
     /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are
     /// short enough for explicit ones: as something begins to decay, a higher order serves better.
     pub(crate) fn choose_stiffness(&mut self, asked: Method) {
-        let cost = cost(self.numbers());
+        let numbers = self.numbers();
+        let cost = cost(numbers);
         let known = &mut self.stiffness;
         if !known.is_stiff {
             let needed = if known.is_known { 1 } else { TELLING_STEPS << known.in_vain.min(MOST_DOUBLINGS) };
-            if known.held_up >= needed && 6 * self.bodies.len() <= MOST_NUMBERS {
+            if known.held_up >= needed && numbers <= MOST_NUMBERS {
                 *known = Stiffness { is_stiff: true, is_known: true, held_up: 0, saved: 0.0, ..*known };
                 self.accepted = None;
             }
@@ -143,6 +142,6 @@ impl Group {
 
     /// Numbers of its state without works.
     fn numbers(&self) -> usize {
-        2 * self.velocities()
+        if self.tree.is_used() { 2 * self.tree.count() } else { 2 * self.velocities() }
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! Each is a function along the dense output whose first fall below zero is an event.
 
+use super::brief::Stepping;
 use super::crossing::{EARLY, NODES, early_fall, early_node, first_fall, first_fall_before, node};
 use super::dynamics::Dynamics;
 use super::group::{Group, SegmentEnd, Stop};
@@ -162,11 +163,25 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
+    /// True if no contact comes near to losing its force within the step, as its stages tell: its least force there and at
+    /// both ends is more than all of them vary by. Implicit steps have too few stages to tell.
+    fn is_firm(&self) -> bool {
+        let Group { rows, forces, end_forces, .. } = &*self.group;
+        let ranges = self.stage.force_ranges.iter().zip(forces.iter().zip(end_forces));
+        let is_firm = |([least, largest], (start, end)): (&[f64; 2], (&f64, &f64))| {
+            let (least, largest) = (least.min(*start).min(*end), largest.max(*start).max(*end));
+            least > largest - least
+        };
+        self.group.stepping() != Stepping::Stiff
+            && ranges.len() == rows.len()
+            && rows.iter().zip(ranges).all(|(row, range)| row.bilateral || is_firm(range))
+    }
+
     /// Samples all that is watched of the rows at the nodes.
     fn sample_rows(&mut self) -> Samples {
         let mut samples = std::mem::take(&mut self.stage.samples);
+        let has_contacts = self.group.rows.iter().any(|row| !row.bilateral) && !self.is_firm();
         let group = &*self.group;
-        let has_contacts = group.rows.iter().any(|row| !row.bilateral);
         let can_change = group.rows.iter().any(|row| self.physics.mechanism.can_change(row));
         let fill = |list: &mut Vec<[f64; NODES]>, rows: usize| {
             list.clear();

@@ -1,0 +1,236 @@
+//! Rows that are held beside the pins of a tree: those that close loops, slots, rods, rails.
+//!
+//! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and J the rows,
+//! the forces follow from G f = -(J v' + gamma), G = J C. There are few of them, so G is dense.
+
+use super::{Hinge, JointTree};
+use crate::rigid::dynamics::Dynamics;
+use crate::rigid::group::Group;
+use glam::DVec2;
+
+/// A tree of which a row keeps a lesser part than this of its square in the measure of the masses, once pins and the other
+/// rows before it are held, is not stepped as one: its rows depend on each other.
+const SINGULAR: f64 = 1e-6;
+
+/// What is added to the part that a row keeps when it keeps nothing. Loops go through points where their rows depend on each
+/// other for a moment, and what holds them there is lost in rounding, though it is finite. The error this makes lasts as long
+/// as the loop is within the square root of this (as an angle) of such a point, and falls fast farther away.
+const SOFTNESS: f64 = 1e-8;
+
+/// The rows beside the pins of a tree, with their buffers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rest {
+    /// Which rows of the group.
+    pub(super) rows: Vec<usize>,
+    /// Accelerations of the bodies of the group under each row's unit force, row by row.
+    columns: Vec<[f64; 3]>,
+    /// Lower triangle of the factors L D L^T of G, line by line.
+    factor: Vec<f64>,
+    /// The least part of a row's square that was kept so far.
+    pub(super) least_kept: f64,
+}
+
+impl JointTree {
+    /// Factorises G for rows in their order, with the sweep inwards done.
+    fn factorize(&mut self, jacobians: &[[f64; 6]], sides: impl Fn(usize) -> [Option<u32>; 2]) {
+        let bodies = self.links.len();
+        let mut columns = std::mem::take(&mut self.rest.columns);
+        columns.clear();
+        columns.resize(jacobians.len() * bodies, [0.0; 3]);
+        self.rest.factor.clear();
+        for (row, jacobian) in jacobians.iter().enumerate() {
+            let column = &mut columns[row * bodies..][..bodies];
+            self.pull(jacobian, sides(row), column);
+        }
+        for row in 0..jacobians.len() {
+            for other in 0..=row {
+                let entry = rate(&jacobians[row], sides(row), &columns[other * bodies..][..bodies]);
+                self.rest.factor.push(entry);
+            }
+            let whole = self.square_of(&jacobians[row], sides(row));
+            self.rest.eliminate(row, whole);
+        }
+        self.rest.columns = columns;
+    }
+
+    /// J M^-1 J^T of a row by itself, without pins.
+    fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
+        let of_side = |(side, place): (usize, Option<u32>)| {
+            let Some(link) =
+                place.and_then(|place| self.link_of[place as usize]).map(|index| &self.links[index])
+            else {
+                return 0.0;
+            };
+            let force = DVec2::new(jacobian[3 * side], jacobian[3 * side + 1]);
+            let torque = jacobian[3 * side + 2];
+            force.length_squared() / link.mass + torque * torque / link.moment
+        };
+        sides.into_iter().enumerate().map(of_side).sum()
+    }
+
+    /// Accelerations of the tree, body by body of the group, under a force of 1 N along a row.
+    fn pull(&mut self, jacobian: &[f64; 6], sides: [Option<u32>; 2], column: &mut [[f64; 3]]) {
+        for bundle in &mut self.bundles {
+            (bundle.force, bundle.torque) = (DVec2::ZERO, 0.0);
+        }
+        for (side, place) in sides.into_iter().enumerate() {
+            let Some(index) = place.and_then(|place| self.link_of[place as usize]) else { continue };
+            let force = DVec2::new(jacobian[3 * side], jacobian[3 * side + 1]);
+            let center = -self.stances[index].own;
+            let bundle = &mut self.bundles[index];
+            bundle.force -= force;
+            bundle.torque -= center.perp().dot(force) + jacobian[3 * side + 2];
+        }
+        for index in (0..self.links.len()).rev() {
+            let Hinge::Link { parent, .. } = self.links[index].hinge else { continue };
+            let force = self.bundles[index].resistance();
+            let on = &mut self.bundles[parent];
+            on.force += force;
+            on.torque += self.stances[index].of_parent.perp().dot(force);
+        }
+        for index in 0..self.links.len() {
+            let link = &self.links[index];
+            let acceleration = match link.hinge {
+                Hinge::World(_) => DVec2::ZERO,
+                Hinge::Free => self.bundles[index].free_acceleration(),
+                Hinge::Link { parent, .. } => {
+                    let on = &self.bundles[parent];
+                    on.acceleration + self.stances[index].of_parent.perp() * on.angular
+                }
+            };
+            let of_center = self.bundles[index].turn(acceleration, self.stances[index].own);
+            column[link.place] = [of_center.x, of_center.y, self.bundles[index].angular];
+        }
+    }
+}
+
+impl Rest {
+    /// Makes the last line of G one of its factors, for a row with a square that is so large by itself.
+    fn eliminate(&mut self, row: usize, whole: f64) {
+        let begin = row * (row + 1) / 2;
+        let (done, line) = self.factor.split_at_mut(begin);
+        for column in 0..row {
+            let other = &done[column * (column + 1) / 2..][..column];
+            let known: f64 = other.iter().zip(&*line).map(|(a, b)| a * b).sum();
+            line[column] -= known;
+        }
+        for column in 0..row {
+            let pivot = done[column * (column + 1) / 2 + column];
+            let entry = line[column] / pivot;
+            line[row] -= entry * line[column];
+            line[column] = entry;
+        }
+        // A row that moves nothing depends on any other.
+        let whole = if whole > 0.0 { whole } else { 1.0 };
+        let kept = line[row].max(0.0) / whole;
+        self.least_kept = self.least_kept.min(kept);
+        line[row] = whole * (kept + SOFTNESS * (SOFTNESS / (kept + SOFTNESS)).powi(2));
+    }
+
+    /// Solves G x = -`offsets`.
+    fn solve(&self, offsets: &[f64], x: &mut Vec<f64>) {
+        let line = |row: usize| &self.factor[row * (row + 1) / 2..][..=row];
+        x.clear();
+        for (row, offset) in offsets.iter().enumerate() {
+            let known: f64 = line(row).iter().zip(&*x).map(|(entry, x)| entry * x).sum();
+            x.push(-offset - known);
+        }
+        for row in 0..x.len() {
+            x[row] /= line(row)[row];
+        }
+        for row in (0..x.len()).rev() {
+            for column in 0..row {
+                x[column] -= line(row)[column] * x[row];
+            }
+        }
+    }
+}
+
+/// What accelerations of bodies make of a row's rate in a second.
+fn rate(jacobian: &[f64; 6], sides: [Option<u32>; 2], accelerations: &[[f64; 3]]) -> f64 {
+    let of_side = |(side, place): (usize, Option<u32>)| {
+        let acceleration = place.map_or([0.0; 3], |place| accelerations[place as usize]);
+        (0..3).map(|k| jacobian[3 * side + k] * acceleration[k]).sum::<f64>()
+    };
+    sides.into_iter().enumerate().map(of_side).sum()
+}
+
+impl Dynamics<'_> {
+    /// Gives the tree up if the rows beside its pins have turned out to depend on each other; true if so.
+    pub(crate) fn leave_singular_tree(&mut self) -> bool {
+        let rest = &self.group.tree.rest;
+        let is_singular = !rest.rows.is_empty() && rest.least_kept <= SINGULAR;
+        if is_singular {
+            self.group.tree.clear();
+        }
+        is_singular
+    }
+
+    /// Adds what the rows beside the pins do to the accelerations in the stage, which are those of the tree.
+    pub(super) fn hold_rest(&mut self) {
+        if self.group.tree.rest.rows.is_empty() {
+            return;
+        }
+        self.stage.jacobians.clear();
+        self.stage.offsets.clear();
+        let mut twin = None;
+        for &row in &self.group.tree.rest.rows {
+            let held = &self.group.rows[row];
+            let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
+            let spins = self.group.sides[row].map(|place| self.spin_at(place));
+            self.stage.offsets.push(moment.kinematics.acceleration(&spins[0], &spins[1]));
+            self.stage.jacobians.push(moment.kinematics.jacobian);
+        }
+        self.factorize_rest();
+        self.respond_by_tree();
+        for (acceleration, change) in self.stage.accelerations.iter_mut().zip(&self.stage.changes) {
+            for k in 0..3 {
+                acceleration[k] += change[k];
+            }
+        }
+    }
+
+    fn factorize_rest(&mut self) {
+        let Group { tree, sides, .. } = &mut *self.group;
+        let rows = std::mem::take(&mut tree.rest.rows);
+        tree.factorize(&self.stage.jacobians, |row| sides[rows[row]]);
+        tree.rest.rows = rows;
+    }
+
+    /// Measures the rows beside the pins, with the bodies in place, and factorises; calls `visit` with the gap of each less
+    /// the one at which it formed, and its rate.
+    pub(crate) fn factorize_by_tree(&mut self, mut visit: impl FnMut(f64, f64)) {
+        self.stage.jacobians.clear();
+        let mut twin = None;
+        for &row in &self.group.tree.rest.rows {
+            let held = &self.group.rows[row];
+            let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
+            self.stage.jacobians.push(moment.kinematics.jacobian);
+            visit(moment.gap - held.gap, moment.kinematics.rate);
+        }
+        let Group { tree, bodies, .. } = &mut *self.group;
+        tree.find_stances(bodies, &self.stage.movings);
+        self.stage.accelerations.clear();
+        self.stage.accelerations.resize(bodies.len(), [0.0; 3]);
+        tree.sweep_in(&self.stage.accelerations);
+        self.factorize_rest();
+    }
+
+    /// Solves G x = -`offsets`, leaves x in `forces`, and C x in `changes`.
+    pub(crate) fn respond_by_tree(&mut self) {
+        let tree = &self.group.tree;
+        let bodies = tree.links.len();
+        tree.rest.solve(&self.stage.offsets, &mut self.stage.forces);
+        let changes = &mut self.stage.changes;
+        changes.clear();
+        changes.resize(bodies, [0.0; 3]);
+        for (column, force) in tree.rest.columns.chunks(bodies).zip(&self.stage.forces) {
+            for (change, response) in changes.iter_mut().zip(column) {
+                for k in 0..3 {
+                    change[k] += force * response[k];
+                }
+            }
+        }
+        self.stage.solves += 1;
+    }
+}
