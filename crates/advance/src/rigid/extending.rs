@@ -44,9 +44,8 @@ impl Dynamics<'_> {
     fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
-        let (mut proposed, projected) = (None, self.group.projected);
+        let mut proposed = None;
         for tries in 0.. {
-            self.group.projected = projected;
             self.extend(tools.stepper, &steps, tools.scales)?;
             self.end_on_rows(tools);
             self.evaluate_end();
@@ -70,9 +69,10 @@ impl Dynamics<'_> {
         Ok(())
     }
 
-    /// Projects the end onto the held rows and books what energy that took.
+    /// Projects the end onto the held rows and notes what energy that took.
     pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) {
         let settings = tools.settings;
+        self.group.projected = 0.0;
         if self.group.rows.is_empty() || !(settings.projection || settings.joint_small_impacts) {
             return;
         }
@@ -82,7 +82,7 @@ impl Dynamics<'_> {
         } else {
             self.fit_joint_velocities();
         }
-        self.group.projected += self.end_energy() - before;
+        self.group.projected = self.end_energy() - before;
     }
 
     fn end_energy(&mut self) -> f64 {

@@ -94,7 +94,7 @@ pub(crate) struct Group {
     pub(crate) free_acceleration: f64,
     /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies are large.
     pub(crate) force_length: f64,
-    /// Energy [J] that projections changed in this segment.
+    /// Energy [J] that the projection of the end changed.
     pub(crate) projected: f64,
     /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.
     pub(crate) largest_error: f64,
