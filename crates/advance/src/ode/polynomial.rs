@@ -217,3 +217,31 @@ const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// The powers as numbers.
 const POWERS: [f64; DEGREE + 1] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_of_a_place_is_no_velocity() {
+        // Far away the end of a short step is off by a last digit, which over the step would be a few cm/s.
+        let (start, speed, step) = (933_919.586_384_995_8, -5.0, 2.7e-9);
+        let velocity = SegmentPolynomial::from_start(speed, [0.0; DEGREE + 1], step);
+        for rounding in [-1.0, 0.0, 1.0] {
+            let end = start + speed * step + rounding * f64::EPSILON * start;
+            let path = SegmentPolynomial::integrated(start, end, &velocity);
+            let errors = [0.0, 0.5, 1.0].map(|part| path.derivative_at(part * step) - speed);
+            assert!(errors.iter().all(|error| error.abs() < 1e-14), "{errors:?}");
+            assert_eq!(path.value_at(0.0), start);
+            assert!((path.value_at(step) - end).abs() <= ROUNDING * start);
+        }
+    }
+
+    #[test]
+    fn what_is_missing_by_more_is_put_in() {
+        let (start, speed, step) = (933_919.0, -5.0, 0.25);
+        let velocity = SegmentPolynomial::from_start(speed, [0.0; DEGREE + 1], step);
+        let path = SegmentPolynomial::integrated(start, start - 1.0, &velocity);
+        assert_eq!(path.value_at(step), start - 1.0);
+    }
+}

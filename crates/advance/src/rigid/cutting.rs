@@ -2,8 +2,8 @@
 //!
 //! The search for contacts sees dense output. Where that may err by much of what a step may, the step is made anew up to the
 //! event, so that the restart has full order; the contact that fired is then a little off, and the time is corrected until
-//! it is where the search saw it. If that does not bring all that touches to where it was seen, the event stays on the
-//! dense output, along which nothing penetrates.
+//! it is where the search saw it. Where that does not bring all that touches to where it was seen, as of what closes slowly,
+//! the event stays on the dense output, along which nothing penetrates.
 
 use super::dynamics::body_state;
 use super::pairs::{Pair, Prediction};
@@ -16,8 +16,8 @@ use halfgap_collision::BodyId;
 const TIME_SHARE: f64 = 1e-2;
 /// Cap on the corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
-/// Part of the accuracy by which a step made anew may bring what touches nearer than the search saw it.
-const SINK_SHARE: f64 = 0.5;
+/// Part of the accuracy by which a step made anew may have what touches nearer or farther than the search saw it.
+const SEEN_SHARE: f64 = 0.5;
 
 /// Where the bodies of a group that is cut are taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl RigidSystem {
         self.measure_touches(region);
         let gap = fired.map(|fired| self.gap_at(fired, seen).0);
         let time = self.cut_exactly(region, fired, gap);
-        if self.has_sunk(region, time) {
+        if self.is_off(region, time) {
             for &leader in &region.groups {
                 self.cut_group(leader, seen, Source::Dense);
             }
@@ -100,14 +100,13 @@ impl RigidSystem {
         contacts.min()
     }
 
-    /// True if what touches in a region is nearer at a time than the search saw it: of an event whose time was corrected, what
-    /// fired.
-    fn has_sunk(&self, region: &Region, time: Time) -> bool {
-        let may_sink = SINK_SHARE * self.settings.tolerances.accuracy;
+    /// True if what touches in a region is not where the search saw it: of an event whose time was corrected, what fired.
+    fn is_off(&self, region: &Region, time: Time) -> bool {
+        let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
         let mut seen = region.touches.iter().zip(&region.motions);
         seen.any(|(&touch, &(gap, _))| {
             let counts = time == self.now || region.fired == Some(touch);
-            counts && self.gap_at(touch, time).0 < gap - may_sink
+            counts && (self.gap_at(touch, time).0 - gap).abs() > allowed
         })
     }
 
