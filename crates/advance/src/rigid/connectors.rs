@@ -98,16 +98,6 @@ impl RigidSystem {
         record.response = response;
     }
 
-    /// Largest distance [m] of a point of a body from its centre of mass, anchors of its connectors included.
-    pub(crate) fn lever(&self, body: BodyId) -> f64 {
-        let of_body = self.connectors_of[body.index()].iter().flat_map(|&id| {
-            let (a, b) = self.connector(id).anchors();
-            [Some(a), b].into_iter().flatten()
-        });
-        let arms = of_body.filter(|anchor| anchor.body == body).map(|anchor| anchor.point.length());
-        arms.fold(self.flyer(body).reach(), f64::max)
-    }
-
     /// What makes the row of a record.
     pub(crate) fn source_of(&self, record: &Collision) -> Option<RowSource> {
         if let Detector::Connector { id, row } = record.parties.detector {

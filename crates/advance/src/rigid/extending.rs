@@ -37,7 +37,7 @@ impl Dynamics<'_> {
     /// Makes the dense output of the last step.
     pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
         self.make_dense(tools.stepper);
-        self.inner_excess(tools.settings.tolerances.accuracy);
+        self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
     }
 
     /// Extends the group by a step whose dense output keeps to the held rows, too: shorter ones are tried until it does.
@@ -51,7 +51,7 @@ impl Dynamics<'_> {
             self.evaluate_end();
             self.follow_rails();
             self.make_dense(tools.stepper);
-            let excess = self.inner_excess(tools.settings.tolerances.accuracy);
+            let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
             let proposed = *proposed.get_or_insert(self.group.next_step);
             if is_free {
                 break;

@@ -46,8 +46,6 @@ pub(crate) struct Stop {
 pub(crate) struct Group {
     /// Its bodies, ascending.
     pub(crate) bodies: Vec<BodyId>,
-    /// Largest distance [m] of a point of each from its centre of mass, anchors of connectors included.
-    pub(crate) levers: Vec<f64>,
     /// The rows that are held: independent ones, and every row of its connectors.
     pub(crate) rows: Vec<HeldRow>,
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
@@ -108,7 +106,6 @@ impl Group {
     /// Forgets everything but the room of its buffers.
     pub(crate) fn clear(&mut self) {
         self.bodies.clear();
-        self.levers.clear();
         self.rows.clear();
         self.sides.clear();
         self.leaning.clear();

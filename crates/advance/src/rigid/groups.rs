@@ -220,7 +220,6 @@ impl RigidSystem {
             }
         }
         group.bodies.sort_unstable();
-        group.levers.extend(group.bodies.iter().map(|&body| self.lever(body)));
         let in_group = |row: &HeldRow| row.bodies.iter().any(|body| group.bodies.binary_search(body).is_ok());
         // Bilateral rows first: a contact that depends on them gives way.
         let rows = settling.held.iter().map(|&(_, row)| row).filter(in_group);

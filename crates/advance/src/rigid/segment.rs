@@ -267,9 +267,8 @@ impl Dynamics<'_> {
         for size in [length, speed] {
             let linear = or_infinite(control.local_error * size);
             let linear = clearance.map_or(linear, |clearance| linear.min(clearance * size / length));
-            // What turns is wrong by most at the end of its longest arm, which may be one of a joint.
-            for lever in &self.group.levers {
-                scales.extend([linear, linear, linear / lever]);
+            for &body in &self.group.bodies {
+                scales.extend([linear, linear, linear / self.reach(body)]);
             }
         }
     }

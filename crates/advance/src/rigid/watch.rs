@@ -8,6 +8,7 @@ use super::dynamics::Dynamics;
 use super::group::{Group, SegmentEnd, Stop};
 use super::law::Snapshot;
 use super::rows::{RowSource, moving_of};
+use super::segment::StepControl;
 use crate::ode::Ode;
 
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
@@ -15,6 +16,9 @@ pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
 /// Part of the accuracy by which a held contact may be too near within a step.
 const INNER_SHARE: f64 = 0.5;
+/// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
+/// much more where connectors tell angles by little.
+const INNER_ERRORS: f64 = 50.0;
 /// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
 /// more for contacts.
 const INNER: [f64; 3] = [0.5, 0.3, 0.7];
@@ -129,9 +133,11 @@ impl Dynamics<'_> {
     }
 
     /// By how much held contacts are too near between the ends of the segment, where dense output is less exact, in units of
-    /// what is allowed so that nothing overlaps. The largest error of a connector is noted.
-    pub(crate) fn inner_excess(&mut self, accuracy: f64) -> f64 {
+    /// what is allowed so that nothing overlaps, or connectors off, in units of what steps may err by. The largest error of
+    /// a connector is noted.
+    pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
         self.group.largest_error = 0.0;
+        let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
             return excess;
@@ -142,14 +148,14 @@ impl Dynamics<'_> {
             for row in &self.group.rows {
                 let error = self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap;
                 match row.source {
-                    RowSource::Contact(_) => excess = excess.max(-error / (INNER_SHARE * accuracy)),
+                    RowSource::Contact(_) => excess = excess.max(-error / least),
                     RowSource::Connector(..) => {
                         self.group.largest_error = self.group.largest_error.max(error.abs());
                     }
                 }
             }
         }
-        excess
+        excess.max(self.group.largest_error / most.max(least))
     }
 
     /// Forces of the rows at an offset [s] of the segment, left in the stage.
