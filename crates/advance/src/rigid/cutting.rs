@@ -6,6 +6,7 @@
 //! the event stays on the dense output, along which nothing penetrates.
 
 use super::dynamics::body_state;
+use super::group::SegmentEnd;
 use super::pairs::{Pair, Prediction};
 use super::region::{Region, Touch};
 use super::system::RigidSystem;
@@ -118,9 +119,11 @@ impl RigidSystem {
             // What was read there is not reached.
             group.largest_error = 0.0;
         }
+        // Along a step over the kink of a force dense output errs by more than the step's estimate knows.
+        let is_smooth = !matches!(group.event, Some((_, SegmentEnd::Switch)));
         if offset != group.span || source == Source::Dense {
             self.with_group(&mut group, |dynamics, tools| {
-                if source == Source::Dense || dynamics.is_dense_exact() {
+                if source == Source::Dense || (is_smooth && dynamics.is_dense_exact()) {
                     dynamics.end_by_dense(offset);
                 } else {
                     dynamics.repeat_to(tools, offset);
