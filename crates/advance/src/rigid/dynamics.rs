@@ -8,7 +8,7 @@ use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 use super::rows::Mechanism;
 use super::watch::Samples;
-use crate::ode::{Ode, SegmentPolynomial};
+use crate::ode::Ode;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Moving, Spin};
@@ -68,8 +68,6 @@ pub(crate) struct Stage {
     pub(crate) force_length: f64,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
-    /// Dense output of velocities and works.
-    pub(crate) velocity_paths: Vec<SegmentPolynomial>,
     /// A state along the segment, and its rates.
     pub(crate) trial: Vec<f64>,
     pub(crate) trial_rates: Vec<f64>,

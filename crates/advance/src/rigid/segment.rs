@@ -171,11 +171,12 @@ impl Dynamics<'_> {
     /// Ends the segment at an offset [s] within it, by its dense output.
     pub(crate) fn end_by_dense(&mut self, offset: f64) {
         self.place_at(offset);
-        let works = self.group.work_paths.iter().map(|path| path.value_at(offset));
-        let velocities = 2 * self.group.velocities();
-        self.group.end_state.clear();
-        self.group.end_state.extend_from_slice(&self.stage.trial[..velocities]);
-        self.group.end_state.extend(works);
+        let first_work = 2 * self.group.velocities();
+        let mut end = std::mem::take(&mut self.group.end_state);
+        end.clear();
+        end.extend_from_slice(&self.stage.trial[..first_work]);
+        end.extend(self.group.work_paths().iter().map(|path| path.value_at(offset)));
+        self.group.end_state = end;
         self.group.span = offset;
     }
 
@@ -394,18 +395,16 @@ impl Dynamics<'_> {
     pub(crate) fn make_dense(&mut self, stepper: &mut Stepper) {
         let (state, end) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.end_state));
         let end_rates = std::mem::take(&mut self.group.end_rates);
-        let mut velocities = std::mem::take(&mut self.stage.velocity_paths);
+        let mut rates = std::mem::take(&mut self.group.rate_paths);
         let first = self.group.velocities();
-        velocities.resize(state.len() - first, SegmentPolynomial::default());
+        rates.resize(state.len() - first, SegmentPolynomial::default());
         let end_point = Point { offset: self.group.span, state: &end, rates: &end_rates };
-        let Ok(()) = stepper.dense(self, end_point, first..state.len(), &mut velocities);
-        let path = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &velocities[at]);
+        let Ok(()) = stepper.dense(self, end_point, first..state.len(), &mut rates);
+        let path = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &rates[at]);
         self.group.paths.clear();
         let places = 0..self.group.bodies.len();
         self.group.paths.extend(places.map(|place| [0, 1, 2].map(|k| path(3 * place + k))));
-        self.group.work_paths.clear();
-        self.group.work_paths.extend_from_slice(&velocities[first..]);
-        self.stage.velocity_paths = velocities;
+        self.group.rate_paths = rates;
         (self.group.state, self.group.end_state, self.group.end_rates) = (state, end, end_rates);
     }
 }

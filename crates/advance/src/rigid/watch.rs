@@ -127,8 +127,9 @@ impl Dynamics<'_> {
         let trial = &mut self.stage.trial;
         trial.clear();
         let paths = self.group.paths.iter().flatten();
-        trial.extend(paths.clone().map(|path| path.value_at(offset)));
-        trial.extend(paths.map(|path| path.derivative_at(offset)));
+        trial.extend(paths.map(|path| path.value_at(offset)));
+        let velocities = &self.group.rate_paths[..self.group.velocities()];
+        trial.extend(velocities.iter().map(|path| path.value_at(offset)));
         trial.resize(self.group.dimension(), 0.0);
     }
 
