@@ -68,6 +68,22 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         160628,
         "corners at one spot fired in turns: they were stilled against each other, and their rounding was taken for motion",
     ),
+    (
+        425859,
+        "a rope that was held was moved to its length, and what hung on it by a long arm went through a disc",
+    ),
+    (
+        435547,
+        "a step made anew up to a slow contact had it much nearer than dense output, and it went into the floor",
+    ),
+    (420102, "what a projection took was booked again with every step"),
+    (427091, "the same beside contacts"),
+    (424424, "a light body stood still as rounding while the heavy one that it was pinned to went on"),
+    (424911, "a slot was off between the ends of long steps"),
+    (701560, "the same of a pin"),
+    (432311, "rounding of places far away was a velocity along a step of nanoseconds"),
+    (310743, "books of impacts did not know by what rounding moved the ends of long arms"),
+    (429158, "a run that went on without an event for more than 20 s"),
 ];
 
 #[test]

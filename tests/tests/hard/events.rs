@@ -178,7 +178,7 @@ fn a_law_changes_branch_at_its_moment() {
         within(
             &format!("ball on a cord, round {rounds}: place [m]"),
             world.state(ball).position.length(),
-            1e-9,
+            3e-10,
         );
     }
     let ledger = world.ledger();

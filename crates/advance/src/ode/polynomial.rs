@@ -7,7 +7,7 @@ pub(super) const DEGREE: usize = 8;
 ///
 /// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and absolute sums
 /// of the coefficients are good bounds. Only the constant is as large as the value; the others are as small as the motion.
-/// So the values at both ends are those given, up to an ulp and the rounding of the motion alone.
+/// So the value at the start is that given, and that at the end, up to a few ulps and the rounding of the motion alone.
 /// Offsets [s] count from the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SegmentPolynomial {
@@ -53,6 +53,7 @@ impl SegmentPolynomial {
     ///
     /// The integral of the velocity misses the end by about the error of the step. What is missing is put in smoothly,
     /// as `3 x^2 - 2 x^3` of it after the part `x` of the step; so the derivatives at the ends are still the velocity's.
+    /// What is only rounding of the values at the ends is left missing: over a short step it would be a velocity.
     #[must_use]
     pub fn integrated(start: f64, end: f64, velocity: &SegmentPolynomial) -> Self {
         let half_step = 0.5 * velocity.step;
@@ -70,6 +71,8 @@ impl SegmentPolynomial {
             }
         }
         let missing = (end - start) - end_motion;
+        let is_rounding = missing.abs() <= ROUNDING * start.abs().max(end.abs());
+        let missing = if is_rounding { 0.0 } else { missing };
         motion[0] += 0.5 * missing;
         motion[1] += 0.75 * missing;
         motion[3] -= 0.25 * missing;
@@ -97,6 +100,16 @@ impl SegmentPolynomial {
         let mut coefficients = motion;
         coefficients[0] += start;
         Self { coefficients, step, rate: 2.0 / step }
+    }
+
+    /// The first derivative with respect to time [1/s].
+    #[must_use]
+    pub fn derivative(&self) -> Self {
+        let mut coefficients = [0.0; DEGREE + 1];
+        for (power, coefficient) in coefficients[..DEGREE].iter_mut().enumerate() {
+            *coefficient = self.rate * POWERS[power + 1] * self.coefficients[power + 1];
+        }
+        Self { coefficients, ..*self }
     }
 
     /// Monomial coefficients in `s = 2 offset / step - 1`, the constant first.
@@ -209,5 +222,36 @@ impl SegmentPolynomial {
     }
 }
 
+/// Part of a value at an end that is its rounding: of the sum that it is, and of a projection after it.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
 /// The powers as numbers.
 const POWERS: [f64; DEGREE + 1] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_of_a_place_is_no_velocity() {
+        // Far away the end of a short step is off by a last digit, which over the step would be a few cm/s.
+        let (start, speed, step) = (933_919.586_384_995_8, -5.0, 2.7e-9);
+        let velocity = SegmentPolynomial::from_start(speed, [0.0; DEGREE + 1], step);
+        for rounding in [-1.0, 0.0, 1.0] {
+            let end = start + speed * step + rounding * f64::EPSILON * start;
+            let path = SegmentPolynomial::integrated(start, end, &velocity);
+            let errors = [0.0, 0.5, 1.0].map(|part| path.derivative_at(part * step) - speed);
+            assert!(errors.iter().all(|error| error.abs() < 1e-14), "{errors:?}");
+            assert_eq!(path.value_at(0.0), start);
+            assert!((path.value_at(step) - end).abs() <= ROUNDING * start);
+        }
+    }
+
+    #[test]
+    fn what_is_missing_by_more_is_put_in() {
+        let (start, speed, step) = (933_919.0, -5.0, 0.25);
+        let velocity = SegmentPolynomial::from_start(speed, [0.0; DEGREE + 1], step);
+        let path = SegmentPolynomial::integrated(start, start - 1.0, &velocity);
+        assert_eq!(path.value_at(step), start - 1.0);
+    }
+}

@@ -80,6 +80,7 @@ mod tests {
             let t = part * step;
             assert!((path.value_at(t) - value(t)).abs() < 1e-14, "at {part}");
             assert!((path.derivative_at(t) - rate(t)).abs() < 1e-13, "rate at {part}");
+            assert!((path.derivative().value_at(t) - rate(t)).abs() < 1e-13, "derivative at {part}");
         }
     }
 

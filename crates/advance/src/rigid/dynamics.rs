@@ -8,7 +8,7 @@ use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 use super::rows::Mechanism;
 use super::watch::Samples;
-use crate::ode::{Ode, SegmentPolynomial};
+use crate::ode::Ode;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Moving, Spin};
@@ -55,6 +55,8 @@ pub(crate) struct Stage {
     pub(crate) changes: Vec<[f64; 3]>,
     /// Sum of the sizes of all rows' forces on each body [N].
     pub(crate) gross: Vec<f64>,
+    /// True for bodies whose accelerations are rounding.
+    levels: Vec<bool>,
     /// Force [N] of each row below which it has none.
     pub(crate) least: Vec<f64>,
     /// The least and the largest force [N] of each row at the stages of the last step.
@@ -69,8 +71,6 @@ pub(crate) struct Stage {
     pub(crate) force_length: f64,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
-    /// Dense output of velocities and works.
-    pub(crate) velocity_paths: Vec<SegmentPolynomial>,
     /// A state along the segment, and its rates.
     pub(crate) trial: Vec<f64>,
     pub(crate) trial_rates: Vec<f64>,
@@ -288,7 +288,7 @@ impl Dynamics<'_> {
     /// Takes accelerations that are only rounding of the forces of contacts from the bodies that have them: what stands
     /// does not creep because its sides are level up to rounding only.
     fn level(&mut self) {
-        let Stage { forces, jacobians, accelerations, gross, .. } = &mut *self.stage;
+        let Stage { forces, jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
         gross.clear();
         gross.resize(self.group.bodies.len(), 0.0);
         for ((sides, force), jacobian) in self.group.sides.iter().zip(forces.iter()).zip(jacobians.iter()) {
@@ -299,16 +299,45 @@ impl Dynamics<'_> {
                 }
             }
         }
-        for ((acceleration, &body), gross) in
-            accelerations.iter_mut().zip(&self.group.bodies).zip(gross.iter())
-        {
-            let flyer = &self.physics.mechanism.flyers[body.index()];
-            let (inertia, reach) = (flyer.body(), flyer.reach());
-            let least = LEVEL * gross;
-            let linear = DVec2::new(acceleration[0], acceleration[1]).length();
-            let turning = acceleration[2].abs() / reach;
-            if linear <= least * inertia.inverse_mass && turning <= least * inertia.inverse_moment {
-                *acceleration = [0.0; 3];
+        levels.clear();
+        levels.extend(accelerations.iter().zip(&self.group.bodies).zip(gross.iter_mut()).map(
+            |((acceleration, &body), gross)| {
+                let flyer = &self.physics.mechanism.flyers[body.index()];
+                let (inertia, reach) = (flyer.body(), flyer.reach());
+                let linear = DVec2::new(acceleration[0], acceleration[1]).length();
+                let turning = acceleration[2].abs() / reach;
+                let least = LEVEL * *gross;
+                // From here on the acceleration that is rounding.
+                *gross = least * inertia.inverse_mass;
+                linear <= *gross && turning <= least * inertia.inverse_moment
+            },
+        ));
+        self.keep_pushed();
+        let Stage { accelerations, levels, .. } = &mut *self.stage;
+        for (acceleration, _) in accelerations.iter_mut().zip(levels).filter(|(_, is_level)| **is_level) {
+            *acceleration = [0.0; 3];
+        }
+    }
+
+    /// Takes those bodies out of the level ones that rows push along with others that are not: what is rounding of the forces
+    /// on a light body may be how a heavy one moves that it is tied to.
+    fn keep_pushed(&mut self) {
+        let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
+        let mut any = levels.contains(&true) && levels.contains(&false);
+        while std::mem::take(&mut any) {
+            for (sides, jacobian) in self.group.sides.iter().zip(jacobians.iter()) {
+                let &[Some(a), Some(b)] = sides else { continue };
+                let (a, b) = (a as usize, b as usize);
+                let (side, level, other) = if levels[a] { (0, a, b) } else { (1, b, a) };
+                if levels[a] == levels[b] {
+                    continue;
+                }
+                let row = &jacobian[3 * side..3 * side + 3];
+                let pushed: f64 = row.iter().zip(&accelerations[level]).map(|(j, a)| j * a).sum();
+                if pushed.abs() > gross[other] {
+                    levels[level] = false;
+                    any = true;
+                }
             }
         }
     }

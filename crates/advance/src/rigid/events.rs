@@ -4,7 +4,7 @@ use super::bounces::closes_fast;
 use super::error::AdvanceError;
 use super::group::SegmentEnd;
 use super::impacts::ImpactReport;
-use super::pairs::{Pair, PairId, Prediction};
+use super::pairs::PairId;
 use super::region::{Region, Touch};
 use super::repeats::{CALM_REPEATS, is_same_time};
 use super::rows::{HeldRow, RowSource, has_left};
@@ -19,8 +19,6 @@ use halfgap_geometry::{FeatureId, GapSample};
 const SEAM_ANGLE: f64 = 4e-9;
 /// Cap on the rounds in which the low hops of one event are stilled.
 const HOP_ROUNDS: u32 = 4;
-/// An event's time is corrected while the gap is off by more than this part of the accuracy.
-const TIME_SHARE: f64 = 1e-2;
 
 /// Buffers of the handling of events, kept from one to the next.
 #[derive(Clone, Debug, Default)]
@@ -190,7 +188,7 @@ impl RigidSystem {
     /// What is held changes; true if there was an impact, of something else that closes within its target zone.
     fn handle_change(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         self.collect_region(&mut work.region, &work.seeds, self.now);
-        self.cut_groups(&work.region, self.now, |_, _| None);
+        self.cut_groups(&mut work.region);
         self.remeasure(&mut work.region, self.now);
         self.hand_over(work);
         let rest = self.rest_speed();
@@ -223,13 +221,7 @@ impl RigidSystem {
         let fired = work.region.fired;
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
-            let gap = fired.map(|fired| self.gap_at(fired, self.now).0);
-            self.now = self.cut_groups(&work.region, self.now, |system, time| {
-                match system.passed(&work.region, time) {
-                    Some(contact) => Some(contact.since(time)),
-                    None => system.time_error(fired, gap, time),
-                }
-            });
+            self.cut_groups(&mut work.region);
             self.remeasure(&mut work.region, self.now);
         }
         let rest = self.rest_speed();
@@ -337,36 +329,8 @@ impl RigidSystem {
         })
     }
 
-    /// By how much [s] the time is off at which a pair has the gap [m] that it had by dense output, if that can be told.
-    fn time_error(&self, fired: Option<Touch>, wanted: Option<f64>, time: Time) -> Option<f64> {
-        let (gap, rate) = self.gap_at(fired?, time);
-        let error = gap - wanted?;
-        let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
-        (counts && rate < -self.settings.tolerances.velocity_tol).then(|| -error / rate)
-    }
-
-    /// The earliest contact of the bodies of a region that was predicted for a time before this one, to which the present
-    /// event has been corrected, if it has been passed: what has sunk that deep is not found again.
-    fn passed(&self, region: &Region, time: Time) -> Option<Time> {
-        if time <= self.now {
-            return None;
-        }
-        let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
-        let links = region.bodies.iter().flat_map(|&body| self.pairs.of_body(body));
-        let contacts = links.filter_map(|link| {
-            let &Pair { bodies, prediction: Prediction::Contact(features), .. } = self.pairs.get(link.pair)
-            else {
-                return None;
-            };
-            let predicted = self.queue.time_of(self.pair_source(link.pair))?;
-            let has_sunk = || self.gap_at(Touch { bodies, features }, time).0 < least;
-            (predicted < time && has_sunk()).then_some(predicted)
-        });
-        contacts.min()
-    }
-
     /// Measures the touching features of a region at the present time.
-    fn measure_touches(&self, region: &mut Region) {
+    pub(crate) fn measure_touches(&self, region: &mut Region) {
         let Region { touches, motions, .. } = region;
         motions.clear();
         motions.extend(touches.iter().map(|&touch| self.gap_at(touch, self.now)));

@@ -76,8 +76,9 @@ pub(crate) struct Group {
     pub(crate) end_forces: Vec<f64>,
     /// x, y and angle of each body along the segment.
     pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
-    /// Works along the segment [J].
-    pub(crate) work_paths: Vec<SegmentPolynomial>,
+    /// Their velocities, by place as in the state, and then works [J], along the segment. The paths' own derivatives hold
+    /// what a projection has moved the end by, too: over a short step that is much.
+    pub(crate) rate_paths: Vec<SegmentPolynomial>,
     /// Length of the next step to try [s]; `None` if nothing is known.
     pub(crate) next_step: Option<f64>,
     /// The same, of the method that is asked for, while a brief one goes on.
@@ -97,7 +98,7 @@ pub(crate) struct Group {
     pub(crate) free_acceleration: f64,
     /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies are large.
     pub(crate) force_length: f64,
-    /// Energy [J] that projections changed in this segment.
+    /// Energy [J] that the projection of the end changed.
     pub(crate) projected: f64,
     /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.
     pub(crate) largest_error: f64,
@@ -146,6 +147,11 @@ impl Group {
     /// Where the velocities start in its state.
     pub(crate) fn velocities(&self) -> usize {
         3 * self.bodies.len()
+    }
+
+    /// Works along the segment [J].
+    pub(crate) fn work_paths(&self) -> &[SegmentPolynomial] {
+        &self.rate_paths[self.velocities().min(self.rate_paths.len())..]
     }
 
     /// When the segment ends or is interrupted by an event of the group itself.

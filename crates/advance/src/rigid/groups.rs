@@ -13,7 +13,6 @@ use super::segment::StepFailure;
 use super::settle::Settling;
 use super::system::RigidSystem;
 
-use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::Inertia;
 
@@ -107,68 +106,8 @@ impl RigidSystem {
         answer
     }
 
-    /// Cuts the groups of a region at a time: their bodies fly on from the states that the integrator finds there.
-    ///
-    /// Where dense output may err by much of what a step may, the step is repeated up to the event. `refine` tells by how
-    /// much the time is off once the bodies are in place.
-    pub(crate) fn cut_groups(
-        &mut self,
-        region: &Region,
-        time: Time,
-        refine: impl Fn(&Self, Time) -> Option<f64>,
-    ) -> Time {
-        self.complete_dense();
-        let mut time = time;
-        for round in 0..=MOST_CORRECTIONS {
-            for &leader in &region.groups {
-                self.cut_group(leader, time);
-            }
-            if round == MOST_CORRECTIONS {
-                break;
-            }
-            let Some(correction) = refine(self, time) else { break };
-            let corrected = time.plus(correction);
-            let starts =
-                region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
-            let latest = starts.map(|group| group.start).max().unwrap_or(time);
-            if corrected <= latest {
-                break;
-            }
-            time = corrected;
-        }
-        for &leader in &region.groups {
-            self.dissolve(leader);
-        }
-        time
-    }
-
-    /// Places the bodies of a group where they are at a time; the group stays as it was, so that it can be cut again.
-    fn cut_group(&mut self, leader: BodyId, time: Time) {
-        let Some(mut group) = self.groups.take(leader) else { return };
-        let offset = time.since(group.start).max(0.0);
-        if offset < 0.5 * group.span {
-            // What was read there is not reached.
-            group.largest_error = 0.0;
-        }
-        if offset != group.span {
-            self.with_group(&mut group, |dynamics, tools| {
-                if dynamics.is_dense_exact() {
-                    dynamics.end_by_dense(offset);
-                } else {
-                    dynamics.repeat_to(tools, offset);
-                }
-                dynamics.end_on_rows(tools);
-            });
-        }
-        for (place, &body) in group.bodies.iter().enumerate() {
-            let state = body_state(&group.end_state, group.bodies.len(), place);
-            self.flyers[body.index()].fly_from(time, state);
-        }
-        self.groups.put(group);
-    }
-
     /// Ends a group, whose bodies fly on; its works are booked.
-    fn dissolve(&mut self, leader: BodyId) {
+    pub(crate) fn dissolve(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         self.book_works(&group);
         if group.rows.iter().any(|row| !row.bilateral) {
@@ -516,6 +455,3 @@ impl RigidSystem {
         }
     }
 }
-
-/// Cap on the corrections of an event's time.
-const MOST_CORRECTIONS: usize = 2;

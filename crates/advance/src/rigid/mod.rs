@@ -16,6 +16,7 @@ mod boxes;
 mod brief;
 mod connectors;
 mod crossing;
+mod cutting;
 mod deferred;
 mod dynamics;
 mod error;

@@ -147,7 +147,7 @@ impl RigidSystem {
         let mut ledger = self.ledger.clone();
         for group in self.groups.by_leader.iter().flatten() {
             let offset = time.since(group.start);
-            for (&work, path) in group.works.iter().zip(&group.work_paths) {
+            for (&work, path) in group.works.iter().zip(group.work_paths()) {
                 ledger.book(work, path.value_at(offset));
             }
         }

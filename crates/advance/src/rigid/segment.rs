@@ -153,16 +153,15 @@ impl Dynamics<'_> {
     /// Ends the segment at an offset [s] within it, by its dense output.
     pub(crate) fn end_by_dense(&mut self, offset: f64) {
         self.place_at(offset);
-        let works = self.group.work_paths.iter().map(|path| path.value_at(offset));
-        let velocities = 2 * self.group.velocities();
-        self.group.end_state.clear();
-        self.group.end_state.extend_from_slice(&self.stage.trial[..velocities]);
-        self.group.end_state.extend(works);
+        let first_work = 2 * self.group.velocities();
+        let mut end = std::mem::take(&mut self.group.end_state);
+        end.clear();
+        end.extend_from_slice(&self.stage.trial[..first_work]);
+        end.extend(self.group.work_paths().iter().map(|path| path.value_at(offset)));
         if self.group.tree.is_used() {
-            let mut end = std::mem::take(&mut self.group.end_state);
             self.fit_to_tree(&mut end);
-            self.group.end_state = end;
         }
+        self.group.end_state = end;
         self.group.span = offset;
     }
 
@@ -399,20 +398,18 @@ impl Dynamics<'_> {
         }
         let (state, end) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.end_state));
         let end_rates = std::mem::take(&mut self.group.end_rates);
-        let mut velocities = std::mem::take(&mut self.stage.velocity_paths);
+        let mut rates = std::mem::take(&mut self.group.rate_paths);
         let first = self.group.velocities();
-        velocities.resize(state.len() - first, SegmentPolynomial::default());
+        rates.resize(state.len() - first, SegmentPolynomial::default());
         let end_point = Point { offset: self.group.span, state: &end, rates: &end_rates };
         self.stage.asks_force_ranges = true;
-        let Ok(()) = stepper.dense(self, end_point, first..state.len(), &mut velocities);
+        let Ok(()) = stepper.dense(self, end_point, first..state.len(), &mut rates);
         self.stage.asks_force_ranges = false;
-        let path = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &velocities[at]);
+        let path = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &rates[at]);
         self.group.paths.clear();
         let places = 0..self.group.bodies.len();
         self.group.paths.extend(places.map(|place| [0, 1, 2].map(|k| path(3 * place + k))));
-        self.group.work_paths.clear();
-        self.group.work_paths.extend_from_slice(&velocities[first..]);
-        self.stage.velocity_paths = velocities;
+        self.group.rate_paths = rates;
         (self.group.state, self.group.end_state, self.group.end_rates) = (state, end, end_rates);
     }
 }

@@ -389,12 +389,15 @@ impl RigidSystem {
     fn held_row(&self, record: &Collision, time: Time) -> Option<HeldRow> {
         let source = self.source_of(record)?;
         let bodies = [record.parties.primary.body, record.parties.normal.body];
-        // A connector is kept at its target, a contact where it formed, unless it has sunk too deep.
-        let (gap, hint) = match source {
-            RowSource::Connector(id, _) => (0.0, self.connector_states[id.index()].hint),
-            RowSource::Contact(_) => (record.geometry.distance.max(deepest(record)), None),
+        let hint = match source {
+            RowSource::Connector(id, _) => self.connector_states[id.index()].hint,
+            RowSource::Contact(_) => None,
         };
-        let row = HeldRow { source, bodies, bilateral: record.parties.bilateral, gap, hint, leans: false };
+        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to move a rope from
+        // there would move what hangs on it by a long arm by much more.
+        let bilateral = record.parties.bilateral;
+        let gap = if bilateral { 0.0 } else { record.geometry.distance.max(deepest(record)) };
+        let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false };
         Some(self.leaning(row, time))
     }
 
@@ -420,9 +423,10 @@ impl RigidSystem {
 }
 
 /// Gap [m] below which no contact is held: what touches without force sinks a little each time it is touched, and the search
-/// takes what lies much deeper for the far side of a body.
+/// takes what lies much deeper for the far side of a body. Connectors have none.
 fn deepest(record: &Collision) -> f64 {
-    -DEEPEST * record.tolerances.target_gap
+    let is_contact = record.parties.primary.site.is_some();
+    if is_contact { -DEEPEST * record.tolerances.target_gap } else { f64::NEG_INFINITY }
 }
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.

@@ -9,6 +9,7 @@ use super::dynamics::Dynamics;
 use super::group::{Group, SegmentEnd, Stop};
 use super::law::Snapshot;
 use super::rows::{RowSource, moving_of};
+use super::segment::StepControl;
 use crate::ode::Ode;
 
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
@@ -16,6 +17,9 @@ pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
 /// Part of the accuracy by which a held contact may be too near within a step.
 const INNER_SHARE: f64 = 0.5;
+/// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
+/// much more where connectors tell angles by little.
+const INNER_ERRORS: f64 = 50.0;
 /// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
 /// more for contacts.
 const INNER: [f64; 3] = [0.5, 0.3, 0.7];
@@ -124,15 +128,18 @@ impl Dynamics<'_> {
         let trial = &mut self.stage.trial;
         trial.clear();
         let paths = self.group.paths.iter().flatten();
-        trial.extend(paths.clone().map(|path| path.value_at(offset)));
-        trial.extend(paths.map(|path| path.derivative_at(offset)));
+        trial.extend(paths.map(|path| path.value_at(offset)));
+        let velocities = &self.group.rate_paths[..self.group.velocities()];
+        trial.extend(velocities.iter().map(|path| path.value_at(offset)));
         trial.resize(self.group.dimension(), 0.0);
     }
 
     /// By how much held contacts are too near between the ends of the segment, where dense output is less exact, in units of
-    /// what is allowed so that nothing overlaps. The largest error of a connector is noted.
-    pub(crate) fn inner_excess(&mut self, accuracy: f64) -> f64 {
+    /// what is allowed so that nothing overlaps, or connectors off, in units of what steps may err by. The largest error of
+    /// a connector is noted.
+    pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
         self.group.largest_error = 0.0;
+        let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
             return excess;
@@ -143,14 +150,14 @@ impl Dynamics<'_> {
             for row in &self.group.rows {
                 let error = self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap;
                 match row.source {
-                    RowSource::Contact(_) => excess = excess.max(-error / (INNER_SHARE * accuracy)),
+                    RowSource::Contact(_) => excess = excess.max(-error / least),
                     RowSource::Connector(..) => {
                         self.group.largest_error = self.group.largest_error.max(error.abs());
                     }
                 }
             }
         }
-        excess
+        excess.max(self.group.largest_error / most.max(least))
     }
 
     /// Forces of the rows at an offset [s] of the segment, left in the stage.

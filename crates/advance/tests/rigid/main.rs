@@ -2,6 +2,7 @@
 
 mod bounces;
 mod box_of_bodies;
+mod cutting;
 mod determinism;
 mod energy;
 mod hops;

@@ -93,8 +93,10 @@ pub(crate) struct JointTree {
     rates: Vec<f64>,
     end: Vec<f64>,
     end_rates: Vec<f64>,
-    /// Dense output of the coordinates, and positions of bodies at the inner nodes.
+    /// Dense output of the coordinates, and of their rates and the works.
     angles: Vec<SegmentPolynomial>,
+    velocities: Vec<SegmentPolynomial>,
+    /// Positions of bodies at the inner nodes.
     inner: Vec<[DVec2; SegmentPolynomial::INNER.len()]>,
     /// Link of each body of the group.
     link_of: Vec<Option<usize>>,

@@ -181,7 +181,7 @@ impl Dynamics<'_> {
         let tree = &mut self.group.tree;
         let mut state = std::mem::take(&mut tree.state);
         let (end, end_rates) = (std::mem::take(&mut tree.end), std::mem::take(&mut tree.end_rates));
-        let mut velocities = std::mem::take(&mut self.stage.velocity_paths);
+        let mut velocities = std::mem::take(&mut self.group.tree.velocities);
         let count = self.group.tree.count();
         velocities.resize(state.len() - count, SegmentPolynomial::default());
         let end_point = Point { offset: self.group.span, state: &end, rates: &end_rates };
@@ -190,11 +190,9 @@ impl Dynamics<'_> {
         angles.clear();
         let integrated = |at: usize| SegmentPolynomial::integrated(state[at], end[at], &velocities[at]);
         angles.extend((0..count).map(integrated));
-        self.group.work_paths.clear();
-        self.group.work_paths.extend_from_slice(&velocities[count..]);
         self.place_inner(&mut state);
-        self.join_inner();
-        self.stage.velocity_paths = velocities;
+        self.join_inner(&velocities);
+        self.group.tree.velocities = velocities;
         let tree = &mut self.group.tree;
         (tree.state, tree.end, tree.end_rates) = (state, end, end_rates);
     }
@@ -214,26 +212,33 @@ impl Dynamics<'_> {
         }
     }
 
-    fn join_inner(&mut self) {
-        let velocities = self.group.velocities();
-        let Group { tree, bodies, paths, state, end_state, span, .. } = &mut *self.group;
+    /// Makes the paths of the bodies; `velocities` are those of the coordinates, followed by works.
+    fn join_inner(&mut self, velocities: &[SegmentPolynomial]) {
+        let first_velocity = self.group.velocities();
+        let Group { tree, bodies, paths, rate_paths, state, end_state, span, .. } = &mut *self.group;
         paths.clear();
         paths.resize(bodies.len(), Default::default());
+        rate_paths.clear();
+        rate_paths.resize(first_velocity, SegmentPolynomial::default());
+        rate_paths.extend_from_slice(&velocities[tree.count()..]);
         let mut at = 0;
         for (link, inner) in tree.links.iter().zip(&tree.inner) {
-            let path = &mut paths[link.place];
-            path[2] = tree.angles[at];
+            let (path, rates) = (&mut paths[link.place], &mut rate_paths[3 * link.place..][..3]);
+            (path[2], rates[2]) = (tree.angles[at], velocities[at]);
             if link.hinge == Hinge::Free {
                 path[..2].copy_from_slice(&tree.angles[at + 1..at + 3]);
+                rates[..2].copy_from_slice(&velocities[at + 1..at + 3]);
                 at += 3;
                 continue;
             }
             at += 1;
             for axis in 0..2 {
                 let number = 3 * link.place + axis;
-                let ends = [&*state, &*end_state].map(|whole| [whole[number], whole[velocities + number]]);
+                let ends =
+                    [&*state, &*end_state].map(|whole| [whole[number], whole[first_velocity + number]]);
                 let of_axis = |place: &DVec2| if axis == 0 { place.x } else { place.y };
                 path[axis] = SegmentPolynomial::through(ends, inner.each_ref().map(of_axis), *span);
+                rates[axis] = path[axis].derivative();
             }
         }
     }
