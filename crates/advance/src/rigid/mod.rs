@@ -3,7 +3,7 @@
 //!
 //! What moves: `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
-//! motion, `segment` one step of them, `brief` which method makes it, `watch` (with `crossing`) what ends it early.
+//! motion, `tree` the same where they hang together by pins, `segment` one step of them, `brief` which method makes it, `watch` (with `crossing`) what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact (`marks` tells who is near), `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`

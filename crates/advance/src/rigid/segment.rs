@@ -118,6 +118,23 @@ impl Dynamics<'_> {
         outcome
     }
 
+    /// Goes a step from the group's state and rates to its end state, in the coordinates that the group is stepped in.
+    fn step(&mut self, stepper: &mut Stepper, step: f64) {
+        if self.group.tree.is_used() {
+            return self.step_tree(stepper, step);
+        }
+        let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
+        let mut end = std::mem::take(&mut self.group.end_state);
+        end.clear();
+        end.resize(state.len(), 0.0);
+        let from = Point { offset: 0.0, state: &state, rates: &rates };
+        self.stage.clear_force_ranges(self.group.rows.len());
+        self.stage.asks_force_ranges = true;
+        let Ok(()) = stepper.step(self, from, step, &mut end);
+        self.stage.asks_force_ranges = false;
+        (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
+    }
+
     /// By how much a step may be longer than the one before. Contacts soon cut steps short anyway, and where something has
     /// decayed steps are much longer at once.
     fn largest_growth(&self) -> f64 {

@@ -4,7 +4,7 @@
 use super::dynamics::Dynamics;
 use super::extending::Tools;
 use super::group::Group;
-use crate::ode::Method;
+use crate::ode::{Method, Point};
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
 const HELD_UP: f64 = 0.9;
@@ -79,7 +79,12 @@ impl Dynamics<'_> {
             self.group.stiffness.wait -= 1;
             return;
         }
-        let told = self.told_stiffness(tools.stepper, tools.scales);
+        let told = if self.group.tree.is_used() {
+            self.stiffness_of_tree(tools.stepper, tools.scales)
+        } else {
+            let Group { end_state, end_rates, span, .. } = &*self.group;
+            tools.stepper.stiffness(Point { offset: *span, state: end_state, rates: end_rates }, tools.scales)
+        };
         let numbers = self.group.numbers();
         let stiffness = &mut self.group.stiffness;
         stiffness.rate = told / self.group.span;

@@ -56,33 +56,19 @@ impl Group {
 }
 
 impl Dynamics<'_> {
-    /// Goes a step from the group's state and rates to its end state, in the coordinates that the group is stepped in.
-    pub(crate) fn step(&mut self, stepper: &mut Stepper, step: f64) {
-        if self.group.tree.is_used() {
-            self.group.gather_start();
-            let tree = &mut self.group.tree;
-            let (state, rates) = (std::mem::take(&mut tree.state), std::mem::take(&mut tree.rates));
-            let mut end = std::mem::take(&mut tree.end);
-            end.clear();
-            end.resize(state.len(), 0.0);
-            let from = Point { offset: 0.0, state: &state, rates: &rates };
-            let Ok(()) = stepper.step(&mut Hanging(self), from, step, &mut end);
-            self.unfold(&end);
-            let tree = &mut self.group.tree;
-            (tree.state, tree.rates, tree.end) = (state, rates, end);
-        } else {
-            let (state, rates) =
-                (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
-            let mut end = std::mem::take(&mut self.group.end_state);
-            end.clear();
-            end.resize(state.len(), 0.0);
-            let from = Point { offset: 0.0, state: &state, rates: &rates };
-            self.stage.clear_force_ranges(self.group.rows.len());
-            self.stage.asks_force_ranges = true;
-            let Ok(()) = stepper.step(self, from, step, &mut end);
-            self.stage.asks_force_ranges = false;
-            (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
-        }
+    /// Goes a step from the group's state and rates to its end state, in the coordinates of its tree.
+    pub(crate) fn step_tree(&mut self, stepper: &mut Stepper, step: f64) {
+        self.group.gather_start();
+        let tree = &mut self.group.tree;
+        let (state, rates) = (std::mem::take(&mut tree.state), std::mem::take(&mut tree.rates));
+        let mut end = std::mem::take(&mut tree.end);
+        end.clear();
+        end.resize(state.len(), 0.0);
+        let from = Point { offset: 0.0, state: &state, rates: &rates };
+        let Ok(()) = stepper.step(&mut Hanging(self), from, step, &mut end);
+        self.unfold(&end);
+        let tree = &mut self.group.tree;
+        (tree.state, tree.rates, tree.end) = (state, rates, end);
     }
 
     /// Writes a state of the tree into the group's end state.
@@ -129,16 +115,11 @@ impl Dynamics<'_> {
         self.stage.forces.clear();
     }
 
-    /// How fast the fastest part of the group is, as the stepper tells it of its last step.
-    pub(crate) fn told_stiffness(&mut self, stepper: &mut Stepper, scales: &[f64]) -> f64 {
-        let offset = self.group.span;
-        if !self.group.tree.is_used() {
-            let Group { end_state, end_rates, .. } = &*self.group;
-            return stepper.stiffness(Point { offset, state: end_state, rates: end_rates }, scales);
-        }
+    /// How fast the fastest part of the tree is, as the stepper tells it of its last step.
+    pub(crate) fn stiffness_of_tree(&mut self, stepper: &mut Stepper, scales: &[f64]) -> f64 {
         self.group.gather_end();
-        let tree = &self.group.tree;
-        stepper.stiffness(Point { offset, state: &tree.end, rates: &tree.end_rates }, scales)
+        let Group { tree, span, .. } = &*self.group;
+        stepper.stiffness(Point { offset: *span, state: &tree.end, rates: &tree.end_rates }, scales)
     }
 
     /// Errors that are just acceptable of the tree's coordinates and rates, where those of bodies are so large: the mean square
