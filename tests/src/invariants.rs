@@ -4,6 +4,7 @@
 //! budget: finished, or a clean error. Everything is judged from outside: distances by the geometry alone, energy from the
 //! states.
 
+use halfgap::force::{Moving, Snapshot, Wrench, Wrenches};
 use halfgap::geometry::{DVec2, Pose, Relation};
 use halfgap::scene::{ConnectorData, ForceData, Scene, SceneFormat};
 use halfgap::{BodyId, ConnectorId, World};
@@ -326,8 +327,9 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     depths.find(|&depth| frees(depth)).unwrap_or(f64::INFINITY)
 }
 
-/// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of a weight lifted by what is within the
-/// tolerance of a body's size.
+/// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of what a weight or another force does along
+/// what is within the tolerance of a body's size: where a spring presses on what is held, steps err by that much and
+/// projections take it back, though nothing moves.
 fn no_energy(scene: &Scene, world: &World) -> f64 {
     let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
     let reach = world.bodies().filter(|&body| !world.is_fixed(body)).map(|body| world.shape(body).reach());
@@ -336,7 +338,16 @@ fn no_energy(scene: &Scene, world: &World) -> f64 {
     let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
     let lifted = CONNECTOR_TOLERANCES * scene.run.tolerance * reach.fold(0.0, f64::max);
     let weight: f64 = scene.forces.iter().map(gravity).sum();
-    masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted)
+    masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted) + forces(world) * lifted
+}
+
+/// Sum of the sizes of the forces [N] of laws on all bodies.
+fn forces(world: &World) -> f64 {
+    let movings: Vec<Moving> = world.bodies().map(|body| Moving::from(&world.state(body))).collect();
+    let now = Snapshot::new(world.time(), &movings);
+    let mut sums = vec![Wrench::default(); movings.len()];
+    world.forces().iter().for_each(|law| law.apply(&now, &mut Wrenches::new(&mut sums)));
+    sums.iter().map(|wrench| wrench.force.length()).sum()
 }
 
 /// Uniform gravity [m/s^2] of a force, if it is that.

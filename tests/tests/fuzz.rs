@@ -83,6 +83,11 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (701560, "the same of a pin"),
     (432311, "rounding of places far away was a velocity along a step of nanoseconds"),
     (310743, "books of impacts did not know by what rounding moved the ends of long arms"),
+    (
+        730746,
+        "a spring pressed on two bodies at rest: what steps erred by and projections took back counted as lost",
+    ),
+    (721143, "the same of one body"),
     (429158, "a run that went on without an event for more than 20 s"),
 ];
 
