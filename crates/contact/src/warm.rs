@@ -52,6 +52,18 @@ impl WarmStart {
         }
     }
 
+    /// Replaces what is remembered by a guess: for each row, by its place, whether it is closed, if anything is known of it.
+    pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
+        self.by_key = false;
+        self.entries.clear();
+        self.entries.extend(closed.into_iter().map(|closed| Entry {
+            id: 0,
+            force: 0.0,
+            closed: closed == Some(true),
+            known: closed.is_some(),
+        }));
+    }
+
     /// Makes this the warm start of a part of `problem`, the rows `rows`, identified by their place in it.
     pub(crate) fn restrict(&mut self, whole: &WarmStart, problem: &Problem, rows: &[u32]) {
         let lookup = whole.lookup(problem);

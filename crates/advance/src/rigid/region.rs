@@ -198,6 +198,13 @@ impl RigidSystem {
         self.pairs.rules(pair).contains(&touch.skipped())
     }
 
+    /// Whether a record is likely to carry a force: if it was held until now; of others nothing is known.
+    pub(crate) fn is_likely(&self, record: &Collision) -> Option<bool> {
+        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let sides = if bodies[0] <= bodies[1] { bodies } else { [bodies[1], bodies[0]] };
+        self.is_held_contact(record, sides).then_some(true)
+    }
+
     /// Brings the records to the bodies' present motion at a time.
     pub(crate) fn remeasure(&self, region: &mut Region, time: Time) {
         for record in &mut region.records {

@@ -14,7 +14,7 @@ use super::watch::FORCE_SHARE;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin};
-use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveError, Solver};
+use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveError, Solver, WarmStart};
 
 /// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares: that of rows which
 /// move by what counts as rest. What crushes a body is of the order of 1.
@@ -39,6 +39,10 @@ pub(crate) struct Settling {
     lenient: Auto,
     /// Records that enter the problem.
     candidates: Vec<usize>,
+    /// Whether each record of the region is likely to carry a force, if that is known.
+    likely: Vec<Option<bool>>,
+    /// The same of the candidates, as the solver is told.
+    guess: WarmStart,
     /// The rows to be held, with the record of each.
     pub(crate) held: Vec<(usize, HeldRow)>,
     /// The contacts among them, sorted.
@@ -69,6 +73,8 @@ impl Default for Settling {
             solver: solver(settings),
             lenient: solver(lenient),
             candidates: Vec::new(),
+            likely: Vec::new(),
+            guess: WarmStart::new(),
             held: Vec::new(),
             touches: Vec::new(),
             laws: Vec::new(),
@@ -98,8 +104,22 @@ impl Clone for Settling {
 }
 
 impl Settling {
+    /// Solves for the forces of the candidates, beginning with those that are likely to carry some, and notes which do.
     fn solve_strictly(&mut self) -> Result<(), SolveError> {
-        self.solver.solve(&self.problem, &mut self.solution)
+        self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
+        self.solver
+            .solve_from(&self.problem, &self.guess, &mut self.solution)
+            .or_else(|_| self.solver.solve(&self.problem, &mut self.solution))?;
+        for (place, &index) in self.candidates.iter().enumerate() {
+            self.likely[index] = Some(self.solution.force[place] != 0.0);
+        }
+        Ok(())
+    }
+
+    /// Expects those records of a region to carry a force that do so already.
+    pub(crate) fn expect(&mut self, likely: impl Iterator<Item = Option<bool>>) {
+        self.likely.clear();
+        self.likely.extend(likely);
     }
 
     fn solve_at_all(&mut self) -> Result<(), SolveError> {
