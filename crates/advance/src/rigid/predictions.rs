@@ -139,10 +139,29 @@ impl RigidSystem {
     fn predict_any(&mut self, pair: PairId, from: Time) {
         let [a, b] = self.pairs.get(pair).bodies;
         let until = self.known_until(a).min(self.known_until(b));
+        if self.stays_apart(pair, from, until) {
+            self.note_prediction(pair, (Prediction::Quiet, until));
+            return;
+        }
         self.drop_rules(pair, from);
         if let Some(outlook) = look_ahead(from, until, |span| Some(self.search(pair, from, span))) {
             self.note_prediction(pair, outlook);
         }
+    }
+
+    /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near each other: in a
+    /// heap, where steps are short, few of those that are neighbours do.
+    fn stays_apart(&self, pair: PairId, from: Time, until: Time) -> bool {
+        let &Pair { bodies, has_rules, .. } = self.pairs.get(pair);
+        let [a, b] = bodies.map(|body| &self.lanes[body.index()]);
+        let span = until.since(from);
+        let any_integrated = a.kind == LaneKind::Other || b.kind == LaneKind::Other;
+        if has_rules || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
+            return false;
+        }
+        let (p, q) = (a.course_from(from, span), b.course_from(from, span));
+        let far = p.radius + q.radius + a.reach + b.reach + self.settings.tolerances.target_gap;
+        (p.center - q.center).length_squared() > far * far
     }
 
     #[inline]
