@@ -40,6 +40,8 @@ pub(crate) struct Region {
     fresh: Vec<Collision>,
     /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
     pub(crate) changes: Vec<[f64; 3]>,
+    /// Whether an impulse acts on each of them.
+    pub(crate) struck: Vec<bool>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
     stamp: u32,

@@ -62,16 +62,24 @@ impl ContactChanges {
         self.end.clear();
     }
 
-    /// Drops what ends only to begin at once.
-    fn drop_continued(&mut self) {
+    /// Drops what ends only to begin at once. Both lists mostly have what they share in one order: each search begins where
+    /// the last one ended.
+    fn drop_continued(&mut self, goes_on: &mut Vec<bool>) {
         let begin = &mut self.begin;
-        self.end.retain(|old| match begin.iter().position(|new| new.is_same(old)) {
-            Some(place) => {
-                _ = begin.remove(place);
-                false
+        goes_on.clear();
+        goes_on.resize(begin.len(), false);
+        let mut next = 0;
+        self.end.retain(|old| {
+            let mut places = (next..begin.len()).chain(0..next);
+            let found = places.find(|&place| !goes_on[place] && begin[place].is_same(old));
+            if let Some(place) = found {
+                goes_on[place] = true;
+                next = place + 1;
             }
-            None => true,
+            found.is_none()
         });
+        let mut flags = goes_on.iter();
+        begin.retain(|_| flags.next() != Some(&true));
     }
 }
 
@@ -124,7 +132,7 @@ impl RigidSystem {
             };
             self.changes.begin.push(told);
         }
-        self.changes.drop_continued();
+        self.changes.drop_continued(&mut self.goes_on);
     }
 
     /// How long [s] a single contact that was just captured would have gone on bouncing.
