@@ -76,7 +76,12 @@ impl DualActiveSet {
     pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
         let limit = self.settings.start_closed * system.scale;
-        self.is_warm = !matches!(start, Start::Nothing | Start::Guessed(_));
+        self.is_warm = match start {
+            Start::Nothing | Start::Guessed(_) => false,
+            Start::Earlier(warm) => !warm.is_guess(),
+            #[cfg(feature = "qp")]
+            Start::Closed(_) => true,
+        };
         let lookup = match start {
             Start::Earlier(warm) => Some(warm.lookup(problem)),
             Start::Nothing | Start::Guessed(_) => None,

@@ -121,9 +121,10 @@ impl Lane {
 
 #[cfg(test)]
 mod tests {
+    use super::super::test_scene::resting_discs;
     use super::*;
     use crate::rigid::FlightLaw;
-    use halfgap_collision::{Body, BodyState, Motion};
+    use halfgap_collision::{Body, BodyId, BodyState, Motion};
     use halfgap_geometry::Shape;
 
     fn thrown(linear_rate: f64) -> Flyer {
@@ -151,6 +152,29 @@ mod tests {
     #[test]
     fn a_damped_body_has_no_parabola() {
         assert_eq!(Lane::new(&thrown(0.3), 0.0).kind, LaneKind::Other);
+    }
+
+    #[test]
+    fn a_course_holds_the_parabola() {
+        let lane = Lane::new(&thrown(0.0), 0.0);
+        let start = Time::from_seconds(1.3);
+        let course = lane.course_from(start, 0.5);
+        for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            let position = lane.position_at(start.plus(0.5 * part));
+            assert!((position - course.center).length() <= course.radius);
+        }
+        // Of what is damped nothing is known.
+        assert_eq!(Lane::new(&thrown(0.3), 0.0).course_from(start, 0.5).radius, f64::INFINITY);
+    }
+
+    #[test]
+    fn a_course_holds_what_an_integrator_finds() {
+        let system = resting_discs(&[0.0]);
+        let (flyer, lane) = (system.flyer(BodyId(1)), &system.lanes[1]);
+        assert_eq!(lane.kind, LaneKind::Other);
+        let course = lane.course_from(flyer.start(), 1e-3);
+        let position = flyer.state_at(flyer.start().plus(1e-3)).position;
+        assert!((position - course.center).length() <= course.radius + 1e-15 && course.radius < 1e-3);
     }
 
     #[test]

@@ -284,3 +284,21 @@ fn look_ahead(
         Search::NoneBefore(time) => (Prediction::SearchOn, from.plus(time)),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::resting_discs;
+    use super::*;
+
+    #[test]
+    fn bodies_that_follow_an_integrator_far_from_each_other_stay_apart() {
+        let system = resting_discs(&[0.0, 1.5, 2.5 + 1e-9]);
+        let apart = |a, b| {
+            let pair = system.pairs.between(BodyId(a), BodyId(b)).expect("they are near each other");
+            assert!(system.group_of(BodyId(a)).is_some(), "it is held by the floor");
+            system.stays_apart(pair, system.now, system.now.plus(1e-3))
+        };
+        assert!(apart(1, 2));
+        assert!(!apart(2, 3), "the gap is less than the target");
+    }
+}

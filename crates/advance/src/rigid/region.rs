@@ -200,7 +200,8 @@ impl RigidSystem {
         self.pairs.rules(pair).contains(&touch.skipped())
     }
 
-    /// Whether a record is likely to carry a force: if it was held until now; of others nothing is known.
+    /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does what is held; of
+    /// others nothing is known.
     pub(crate) fn is_likely(&self, record: &Collision) -> Option<bool> {
         let bodies = [record.parties.primary.body, record.parties.normal.body];
         let sides = if bodies[0] <= bodies[1] { bodies } else { [bodies[1], bodies[0]] };

@@ -234,3 +234,32 @@ impl super::rows::Mechanism<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(body: u32) -> RowForce {
+        RowForce {
+            bodies: [BodyId(0), BodyId(body)],
+            connector: None,
+            features: None,
+            point: DVec2::ZERO,
+            normal: DVec2::Y,
+            force: 1.0,
+            bouncing: None,
+        }
+    }
+
+    #[test]
+    fn what_ends_only_to_begin_at_once_is_no_change_in_whatever_order() {
+        let mut changes = ContactChanges {
+            begin: [1, 2, 3, 4].map(of).to_vec(),
+            end: [3, 5, 1, 4].map(of).to_vec(),
+            ..ContactChanges::default()
+        };
+        changes.drop_continued(&mut Vec::new());
+        assert_eq!(changes.begin, [of(2)]);
+        assert_eq!(changes.end, [of(5)]);
+    }
+}

@@ -471,3 +471,35 @@ fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item =
 fn spin([x, y, angular]: [f64; 3]) -> Spin {
     Spin { linear: DVec2::new(x, y), angular }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::resting_discs;
+    use super::*;
+
+    #[test]
+    fn the_solver_begins_with_what_is_held() {
+        let mut system = resting_discs(&[0.0, 1.5]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [record] = work.region.records[..] else { panic!("one disc, one contact") };
+        assert_eq!(system.is_likely(&record), Some(true));
+        // Another contact, of which nothing is known, carries a force too.
+        let settling = &mut work.settling;
+        settling.problem.clear();
+        settling.candidates.clear();
+        settling.expect([system.is_likely(&record), None].into_iter());
+        for index in 0..2 {
+            let body = settling.problem.add_body(system.inertia(BodyId(1))).expect("a fine inertia");
+            let row = Row::new(body, [0.0, 1.0, 0.0], -9.81);
+            settling.problem.add_row(&row).expect("a row of finite numbers");
+            settling.candidates.push(index);
+        }
+        let mut guess = WarmStart::new();
+        for likely in [[Some(true), None], [Some(true), Some(true)]] {
+            settling.solve_strictly().expect("independent rows");
+            guess.guess(likely);
+            assert_eq!(settling.guess, guess);
+        }
+    }
+}
