@@ -215,3 +215,28 @@ impl DualActiveSet {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Inertia, Row};
+    use crate::solution::Solution;
+    use crate::solver::Solver;
+
+    #[test]
+    fn the_rows_of_an_answer_are_kept_those_of_a_guess_must_be_well_independent() {
+        let mut problem = Problem::new();
+        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
+        for arm in [-0.5, 0.5] {
+            problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81)).expect("a row");
+        }
+        let (mut solver, mut solution, mut warm) =
+            (DualActiveSet::default(), Solution::new(), WarmStart::new());
+        warm.guess([Some(true), Some(true)]);
+        solver.solve_from(&problem, &warm, &mut solution).expect("forces of a block");
+        assert!(!solver.is_warm);
+        warm.remember(&problem, &solution);
+        solver.solve_from(&problem, &warm, &mut solution).expect("forces of a block");
+        assert!(solver.is_warm);
+    }
+}
