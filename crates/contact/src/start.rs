@@ -76,7 +76,12 @@ impl DualActiveSet {
     pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
         let limit = self.settings.start_closed * system.scale;
-        self.is_warm = !matches!(start, Start::Nothing | Start::Guessed(_));
+        self.is_warm = match start {
+            Start::Nothing | Start::Guessed(_) => false,
+            Start::Earlier(warm) => !warm.is_guess(),
+            #[cfg(feature = "qp")]
+            Start::Closed(_) => true,
+        };
         let lookup = match start {
             Start::Earlier(warm) => Some(warm.lookup(problem)),
             Start::Nothing | Start::Guessed(_) => None,
@@ -208,5 +213,30 @@ impl DualActiveSet {
         if self.closed.len() != before {
             self.closed.accelerate();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Inertia, Row};
+    use crate::solution::Solution;
+    use crate::solver::Solver;
+
+    #[test]
+    fn the_rows_of_an_answer_are_kept_those_of_a_guess_must_be_well_independent() {
+        let mut problem = Problem::new();
+        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
+        for arm in [-0.5, 0.5] {
+            problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81)).expect("a row");
+        }
+        let (mut solver, mut solution, mut warm) =
+            (DualActiveSet::default(), Solution::new(), WarmStart::new());
+        warm.guess([Some(true), Some(true)]);
+        solver.solve_from(&problem, &warm, &mut solution).expect("forces of a block");
+        assert!(!solver.is_warm);
+        warm.remember(&problem, &solution);
+        solver.solve_from(&problem, &warm, &mut solution).expect("forces of a block");
+        assert!(solver.is_warm);
     }
 }

@@ -12,6 +12,7 @@ pub struct WarmStart {
     /// Sorted by key where rows have keys, by row otherwise.
     entries: Vec<Entry>,
     by_key: bool,
+    is_guess: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,7 @@ impl WarmStart {
 
     /// Remembers the answer `solution` of `problem`, replacing what was remembered.
     pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
-        self.by_key = has_keys(problem);
+        (self.by_key, self.is_guess) = (has_keys(problem), false);
         self.entries.clear();
         self.entries.extend(solution.force.iter().enumerate().map(|(row, &force)| {
             let id = if self.by_key { problem.keys[row].0 } else { row as u64 };
@@ -52,10 +53,27 @@ impl WarmStart {
         }
     }
 
+    /// Replaces what is remembered by a guess: for each row, by its place, whether it is closed, if anything is known of it.
+    pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
+        (self.by_key, self.is_guess) = (false, true);
+        self.entries.clear();
+        self.entries.extend(closed.into_iter().map(|closed| Entry {
+            id: 0,
+            force: 0.0,
+            closed: closed == Some(true),
+            known: closed.is_some(),
+        }));
+    }
+
+    /// False if these are rows that were closed in an answer, and then independent of each other.
+    pub(crate) fn is_guess(&self) -> bool {
+        self.is_guess
+    }
+
     /// Makes this the warm start of a part of `problem`, the rows `rows`, identified by their place in it.
     pub(crate) fn restrict(&mut self, whole: &WarmStart, problem: &Problem, rows: &[u32]) {
         let lookup = whole.lookup(problem);
-        self.by_key = false;
+        (self.by_key, self.is_guess) = (false, whole.is_guess);
         self.entries.clear();
         self.entries.extend(rows.iter().map(|&row| match lookup.find(row as usize) {
             Some(Earlier { force, closed }) => Entry { id: 0, force, closed, known: true },

@@ -274,6 +274,8 @@ impl RigidSystem {
 
     /// Finds what is held, and stills what of it hops: to stop some contacts makes others hop.
     fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let EventWork { region, settling, .. } = &mut *work;
+        settling.expect(region.records.iter().map(|record| self.is_likely(record)));
         self.settle_region(work, !work.region.at_start)?;
         for round in 1..=HOP_ROUNDS {
             if !self.any_held_hops(work) {

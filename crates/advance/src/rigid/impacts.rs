@@ -89,9 +89,13 @@ impl RigidSystem {
         let mut changes = std::mem::take(&mut region.changes);
         changes.clear();
         changes.resize(region.bodies.len(), [0.0; 3]);
+        let mut struck = std::mem::take(&mut region.struck);
+        struck.clear();
+        struck.resize(region.bodies.len(), false);
         for (row, &impulse) in impact.rows().iter().zip(impact.impulses()) {
             for (side, place) in row.bodies.iter().map(|&body| region.place(body)).enumerate() {
                 let Some(place) = place else { continue };
+                struck[place] |= impulse != 0.0;
                 for (change, response) in changes[place].iter_mut().zip(&row.response[3 * side..]) {
                     *change += response * impulse;
                 }
@@ -101,7 +105,7 @@ impl RigidSystem {
             self.restart_flight(body, time);
             self.flyer_mut(body).cut(time, DVec2::new(x, y), spin);
         }
-        region.changes = changes;
+        (region.changes, region.struck) = (changes, struck);
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);
             if !record.parties.bilateral {
@@ -124,9 +128,8 @@ impl RigidSystem {
             }
         }
         report.states.clear();
-        let takes_part = |body: BodyId| report.rows.iter().any(|row| row.collision.involves_body(body));
-        let states = region.bodies.iter().filter(|&&body| takes_part(body));
-        report.states.extend(states.map(|&body| (body, self.flyer(body).state_at(time))));
+        let struck = region.bodies.iter().zip(&region.struck).filter(|&(_, &is_struck)| is_struck);
+        report.states.extend(struck.map(|(&body, _)| (body, self.flyer(body).state_at(time))));
     }
 
     /// Rate of the gap of a record [m/s] by the bodies' motion at a time, at which they are still where it was measured.

@@ -4,6 +4,7 @@
 //! where it is: memory is slower than what is computed here.
 
 use super::flyer::Flyer;
+use super::path::Path;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Flight, Polynomial};
@@ -37,7 +38,17 @@ pub(crate) struct Lane {
     pub(crate) radius: f64,
     /// Gap [m] at which the body fires.
     pub(crate) halo: f64,
+    /// Of what has no parabola: how far [m] its centre of mass gets from `position` during its segment.
+    course: f64,
     pub(crate) kind: LaneKind,
+}
+
+/// A disc in which a centre of mass stays for some time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course {
+    pub(crate) center: DVec2,
+    /// Radius [m], without end where nothing is known.
+    pub(crate) radius: f64,
 }
 
 impl Lane {
@@ -52,6 +63,7 @@ impl Lane {
             reach: flyer.reach(),
             radius: flyer.disc().unwrap_or(0.0),
             halo,
+            course: f64::INFINITY,
             kind: LaneKind::Other,
         };
         lane.follow(flyer);
@@ -62,12 +74,30 @@ impl Lane {
     pub(crate) fn follow(&mut self, flyer: &Flyer) {
         let Some(parabola) = flyer.flight().and_then(Flight::parabola) else {
             self.kind = LaneKind::Other;
+            (self.position, self.course) = match flyer.path() {
+                Path::Dense(dense) => {
+                    let stay = dense.center_box();
+                    (stay.center(), 0.5 * stay.size().length())
+                }
+                Path::Flight(_) => (DVec2::ZERO, f64::INFINITY),
+            };
             return;
         };
         let Polynomial { position, velocity, acceleration } = parabola;
         (self.position, self.velocity, self.acceleration) = (position, velocity, acceleration);
         self.start = flyer.start();
         self.kind = if flyer.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
+    }
+
+    /// Where the centre of mass stays from a time on, for a span [s] within its segment.
+    #[inline]
+    pub(crate) fn course_from(&self, time: Time, span: f64) -> Course {
+        if self.kind == LaneKind::Other {
+            return Course { center: self.position, radius: self.course };
+        }
+        let Polynomial { position, velocity, acceleration } = self.parabola_from(time);
+        let radius = (velocity.length() + 0.5 * acceleration.length() * span) * span;
+        Course { center: position, radius }
     }
 
     /// Where the centre of mass is [m] at a time, to the bit what the body itself says; not to be asked of `Other`.
@@ -91,9 +121,10 @@ impl Lane {
 
 #[cfg(test)]
 mod tests {
+    use super::super::test_scene::resting_discs;
     use super::*;
     use crate::rigid::FlightLaw;
-    use halfgap_collision::{Body, BodyState, Motion};
+    use halfgap_collision::{Body, BodyId, BodyState, Motion};
     use halfgap_geometry::Shape;
 
     fn thrown(linear_rate: f64) -> Flyer {
@@ -121,6 +152,29 @@ mod tests {
     #[test]
     fn a_damped_body_has_no_parabola() {
         assert_eq!(Lane::new(&thrown(0.3), 0.0).kind, LaneKind::Other);
+    }
+
+    #[test]
+    fn a_course_holds_the_parabola() {
+        let lane = Lane::new(&thrown(0.0), 0.0);
+        let start = Time::from_seconds(1.3);
+        let course = lane.course_from(start, 0.5);
+        for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            let position = lane.position_at(start.plus(0.5 * part));
+            assert!((position - course.center).length() <= course.radius);
+        }
+        // Of what is damped nothing is known.
+        assert_eq!(Lane::new(&thrown(0.3), 0.0).course_from(start, 0.5).radius, f64::INFINITY);
+    }
+
+    #[test]
+    fn a_course_holds_what_an_integrator_finds() {
+        let system = resting_discs(&[0.0]);
+        let (flyer, lane) = (system.flyer(BodyId(1)), &system.lanes[1]);
+        assert_eq!(lane.kind, LaneKind::Other);
+        let course = lane.course_from(flyer.start(), 1e-3);
+        let position = flyer.state_at(flyer.start().plus(1e-3)).position;
+        assert!((position - course.center).length() <= course.radius + 1e-15 && course.radius < 1e-3);
     }
 
     #[test]

@@ -44,6 +44,8 @@ mod settle;
 mod stiff;
 mod storms;
 mod system;
+#[cfg(test)]
+mod test_scene;
 mod ticks;
 mod tree;
 mod watch;

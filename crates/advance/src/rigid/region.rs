@@ -40,6 +40,8 @@ pub(crate) struct Region {
     fresh: Vec<Collision>,
     /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
     pub(crate) changes: Vec<[f64; 3]>,
+    /// Whether an impulse acts on each of them.
+    pub(crate) struck: Vec<bool>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
     stamp: u32,
@@ -196,6 +198,14 @@ impl RigidSystem {
             return false;
         };
         self.pairs.rules(pair).contains(&touch.skipped())
+    }
+
+    /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does what is held; of
+    /// others nothing is known.
+    pub(crate) fn is_likely(&self, record: &Collision) -> Option<bool> {
+        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let sides = if bodies[0] <= bodies[1] { bodies } else { [bodies[1], bodies[0]] };
+        self.is_held_contact(record, sides).then_some(true)
     }
 
     /// Brings the records to the bodies' present motion at a time.

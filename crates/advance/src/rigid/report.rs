@@ -62,16 +62,24 @@ impl ContactChanges {
         self.end.clear();
     }
 
-    /// Drops what ends only to begin at once.
-    fn drop_continued(&mut self) {
+    /// Drops what ends only to begin at once. Both lists mostly have what they share in one order: each search begins where
+    /// the last one ended.
+    fn drop_continued(&mut self, goes_on: &mut Vec<bool>) {
         let begin = &mut self.begin;
-        self.end.retain(|old| match begin.iter().position(|new| new.is_same(old)) {
-            Some(place) => {
-                _ = begin.remove(place);
-                false
+        goes_on.clear();
+        goes_on.resize(begin.len(), false);
+        let mut next = 0;
+        self.end.retain(|old| {
+            let mut places = (next..begin.len()).chain(0..next);
+            let found = places.find(|&place| !goes_on[place] && begin[place].is_same(old));
+            if let Some(place) = found {
+                goes_on[place] = true;
+                next = place + 1;
             }
-            None => true,
+            found.is_none()
         });
+        let mut flags = goes_on.iter();
+        begin.retain(|_| flags.next() != Some(&true));
     }
 }
 
@@ -124,7 +132,7 @@ impl RigidSystem {
             };
             self.changes.begin.push(told);
         }
-        self.changes.drop_continued();
+        self.changes.drop_continued(&mut self.goes_on);
     }
 
     /// How long [s] a single contact that was just captured would have gone on bouncing.
@@ -224,5 +232,34 @@ impl super::rows::Mechanism<'_> {
                 (sample.point_primary, sample.normal)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(body: u32) -> RowForce {
+        RowForce {
+            bodies: [BodyId(0), BodyId(body)],
+            connector: None,
+            features: None,
+            point: DVec2::ZERO,
+            normal: DVec2::Y,
+            force: 1.0,
+            bouncing: None,
+        }
+    }
+
+    #[test]
+    fn what_ends_only_to_begin_at_once_is_no_change_in_whatever_order() {
+        let mut changes = ContactChanges {
+            begin: [1, 2, 3, 4].map(of).to_vec(),
+            end: [3, 5, 1, 4].map(of).to_vec(),
+            ..ContactChanges::default()
+        };
+        changes.drop_continued(&mut Vec::new());
+        assert_eq!(changes.begin, [of(2)]);
+        assert_eq!(changes.end, [of(5)]);
     }
 }

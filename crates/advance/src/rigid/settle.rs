@@ -14,7 +14,7 @@ use super::watch::FORCE_SHARE;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin};
-use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveError, Solver};
+use halfgap_contact::{Auto, Inertia, Problem, Row, Settings, Solution, SolveError, Solver, WarmStart};
 
 /// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares: that of rows which
 /// move by what counts as rest. What crushes a body is of the order of 1.
@@ -39,6 +39,10 @@ pub(crate) struct Settling {
     lenient: Auto,
     /// Records that enter the problem.
     candidates: Vec<usize>,
+    /// Whether each record of the region is likely to carry a force, if that is known.
+    likely: Vec<Option<bool>>,
+    /// The same of the candidates, as the solver is told.
+    guess: WarmStart,
     /// The rows to be held, with the record of each.
     pub(crate) held: Vec<(usize, HeldRow)>,
     /// The contacts among them, sorted.
@@ -69,6 +73,8 @@ impl Default for Settling {
             solver: solver(settings),
             lenient: solver(lenient),
             candidates: Vec::new(),
+            likely: Vec::new(),
+            guess: WarmStart::new(),
             held: Vec::new(),
             touches: Vec::new(),
             laws: Vec::new(),
@@ -98,8 +104,22 @@ impl Clone for Settling {
 }
 
 impl Settling {
+    /// Solves for the forces of the candidates, beginning with those that are likely to carry some, and notes which do.
     fn solve_strictly(&mut self) -> Result<(), SolveError> {
-        self.solver.solve(&self.problem, &mut self.solution)
+        self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
+        self.solver
+            .solve_from(&self.problem, &self.guess, &mut self.solution)
+            .or_else(|_| self.solver.solve(&self.problem, &mut self.solution))?;
+        for (place, &index) in self.candidates.iter().enumerate() {
+            self.likely[index] = Some(self.solution.force[place] != 0.0);
+        }
+        Ok(())
+    }
+
+    /// Expects those records of a region to carry a force that do so already.
+    pub(crate) fn expect(&mut self, likely: impl Iterator<Item = Option<bool>>) {
+        self.likely.clear();
+        self.likely.extend(likely);
     }
 
     fn solve_at_all(&mut self) -> Result<(), SolveError> {
@@ -450,4 +470,36 @@ fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item =
 
 fn spin([x, y, angular]: [f64; 3]) -> Spin {
     Spin { linear: DVec2::new(x, y), angular }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::resting_discs;
+    use super::*;
+
+    #[test]
+    fn the_solver_begins_with_what_is_held() {
+        let mut system = resting_discs(&[0.0, 1.5]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [record] = work.region.records[..] else { panic!("one disc, one contact") };
+        assert_eq!(system.is_likely(&record), Some(true));
+        // Another contact, of which nothing is known, carries a force too.
+        let settling = &mut work.settling;
+        settling.problem.clear();
+        settling.candidates.clear();
+        settling.expect([system.is_likely(&record), None].into_iter());
+        for index in 0..2 {
+            let body = settling.problem.add_body(system.inertia(BodyId(1))).expect("a fine inertia");
+            let row = Row::new(body, [0.0, 1.0, 0.0], -9.81);
+            settling.problem.add_row(&row).expect("a row of finite numbers");
+            settling.candidates.push(index);
+        }
+        let mut guess = WarmStart::new();
+        for likely in [[Some(true), None], [Some(true), Some(true)]] {
+            settling.solve_strictly().expect("independent rows");
+            guess.guess(likely);
+            assert_eq!(settling.guess, guess);
+        }
+    }
 }

@@ -163,6 +163,8 @@ pub struct RigidSystem {
     pub(crate) scales: Vec<f64>,
     pub(crate) last_impact: ImpactReport,
     pub(crate) changes: ContactChanges,
+    /// Which of what begins is no change.
+    pub(crate) goes_on: Vec<bool>,
     pub(crate) touched: Vec<PairId>,
     /// When contacts have fired again and again without time going by.
     pub(crate) last_insistent: Option<Time>,
@@ -226,6 +228,7 @@ impl RigidSystem {
             scales: Vec::new(),
             last_impact: ImpactReport::default(),
             changes: ContactChanges::default(),
+            goes_on: Vec::new(),
             touched: Vec::new(),
             last_insistent: None,
             links: Vec::new(),

@@ -58,3 +58,19 @@ fn a_misleading_warm_start_does_no_harm() {
         assert!((a - b).abs() < 1e-11);
     }
 }
+
+#[test]
+fn a_right_guess_needs_no_pivots() {
+    let case = Case::named("run__pile_10_random_blocks_0");
+    let (mut cold, mut solution, mut warm) = (Solution::new(), Solution::new(), WarmStart::new());
+    let mut solver = DualActiveSet::default();
+    solver.solve(&case.problem, &mut cold).unwrap();
+    warm.guess((0..case.problem.len()).map(|row| Some(cold.active.contains(&row))));
+    solver.solve_from(&case.problem, &warm, &mut solution).unwrap();
+    assert_eq!(solution.iterations, 0, "{} without a guess", cold.iterations);
+    assert!(cold.iterations > 0);
+    // Nothing known is as good as no guess.
+    warm.guess((0..case.problem.len()).map(|_| None));
+    solver.solve_from(&case.problem, &warm, &mut solution).unwrap();
+    assert_eq!(solution.iterations, cold.iterations);
+}
