@@ -42,12 +42,10 @@ impl JointTree {
             let column = &mut columns[row * bodies..][..bodies];
             self.pull(jacobian, sides(row), column);
         }
-        for row in 0..jacobians.len() {
-            for other in 0..=row {
-                let entry = rate(&jacobians[row], sides(row), &columns[other * bodies..][..bodies]);
-                self.rest.factor.push(entry);
-            }
-            let whole = self.square_of(&jacobians[row], sides(row));
+        for (row, jacobian) in jacobians.iter().enumerate() {
+            let responses = columns.chunks(bodies).take(row + 1);
+            self.rest.factor.extend(responses.map(|column| rate(jacobian, sides(row), column)));
+            let whole = self.square_of(jacobian, sides(row));
             self.rest.eliminate(row, whole);
         }
         self.rest.columns = columns;
@@ -135,12 +133,13 @@ impl Rest {
             let known: f64 = line(row).iter().zip(&*x).map(|(entry, x)| entry * x).sum();
             x.push(-offset - known);
         }
-        for row in 0..x.len() {
-            x[row] /= line(row)[row];
+        for (row, x) in x.iter_mut().enumerate() {
+            *x /= line(row)[row];
         }
         for row in (0..x.len()).rev() {
-            for column in 0..row {
-                x[column] -= line(row)[column] * x[row];
+            let (earlier, later) = x.split_at_mut(row);
+            for (x, entry) in earlier.iter_mut().zip(line(row)) {
+                *x -= entry * later[0];
             }
         }
     }

@@ -213,13 +213,13 @@ impl Dynamics<'_> {
                 continue;
             }
             at += 1;
-            for axis in 0..2 {
+            for (axis, (path, rate)) in path.iter_mut().zip(rates).take(2).enumerate() {
                 let number = 3 * link.place + axis;
                 let ends =
                     [&*state, &*end_state].map(|whole| [whole[number], whole[first_velocity + number]]);
                 let of_axis = |place: &DVec2| if axis == 0 { place.x } else { place.y };
-                path[axis] = SegmentPolynomial::through(ends, inner.each_ref().map(of_axis), *span);
-                rates[axis] = path[axis].derivative();
+                *path = SegmentPolynomial::through(ends, inner.each_ref().map(of_axis), *span);
+                *rate = path.derivative();
             }
         }
     }
