@@ -30,7 +30,7 @@ fn the_energy_books_close_to_the_tolerance() {
             let what = format!(
                 "energy books of {name} at tolerance {tolerance:.0e}, part of the energy turned over"
             );
-            within(&what, open_part(&mut scene, tolerance), 10.0 * tolerance);
+            within(&what, open_part(&mut scene, tolerance), tolerance);
         }
     }
 }
