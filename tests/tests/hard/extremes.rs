@@ -2,7 +2,7 @@
 
 use super::{bounced, within};
 use halfgap::geometry::{DVec2, Shape};
-use halfgap::{BodyState, World};
+use halfgap::{BodyId, BodyState, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
 use halfgap_tests::reference_scene;
 
@@ -78,6 +78,24 @@ fn a_block_with_a_spin_of_10000_rad_s_keeps_its_energy_in_a_room() {
     let impacts = world.statistics().impacts;
     assert!(impacts > 5, "{impacts} impacts");
     within("block at 1e4 rad/s in a room: energy, relative", world.energy().kinetic / start - 1.0, 1e-12);
+}
+
+#[test]
+fn a_bar_that_spins_on_a_pin_is_where_it_should_be_between_steps() {
+    // In angles it turns evenly, so nothing but the way from angles to places limits its steps.
+    let mut shop = Workshop::weightless(1e-9);
+    let state = BodyState { angular_velocity: 10.0, ..thrown(0.5, 0.0, DVec2::new(0.0, 5.0)) };
+    let bar = shop.body("bar", block(1.0, 0.1), 1.0, state);
+    shop.pin(BodyId::WORLD, bar, DVec2::ZERO);
+    let mut world = shop.build();
+    let mut worst: f64 = 0.0;
+    for piece in 1..=100 {
+        let time = 0.37 * f64::from(piece);
+        advance(&mut world, time);
+        let expected = 0.5 * DVec2::from_angle(10.0 * time);
+        worst = worst.max(world.state(bar).position.distance(expected));
+    }
+    within("bar that spins on a pin, 37 s: place [m]", worst, 1e-9);
 }
 
 #[test]
