@@ -96,31 +96,12 @@ impl Dynamics<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::ode::Method;
-    use crate::rigid::{FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl};
+    use crate::rigid::test_scene::FINE;
+    use crate::rigid::{FlightLaw, RigidParts, RigidSystem};
     use crate::time::Time;
     use glam::DVec2;
-    use halfgap_collision::{
-        Anchor, Body, BodyId, BodyState, Connector, ConnectorKind, SearchSettings, Tolerances,
-    };
-    use halfgap_contact::{ImpactLaw, ImpactOrder};
+    use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
-
-    const SETTINGS: RigidSettings = RigidSettings {
-        tolerances: Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 },
-        law: ImpactLaw::Hybrid,
-        order: ImpactOrder::Fastest,
-        collisions: true,
-        search: SearchSettings::STANDARD,
-        method: Method::Dop853,
-        steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
-        projection: true,
-        extra: None,
-        impulse_step: None,
-        joint_small_impacts: false,
-        rest_speed: 1e-12,
-        resolution_time: 1e-10,
-    };
 
     /// A disc at the end of a rod of 1 m, which moves at 2 m/s.
     fn pendulum() -> RigidSystem {
@@ -134,15 +115,13 @@ mod tests {
         let rod = ConnectorKind::Rod { a, b, length: 1.0 };
         let connectors = vec![Connector::new(rod, 0.0).expect("a fine rod")];
         let parts = RigidParts { bodies: vec![(body, law, state)], connectors, ..RigidParts::default() };
-        RigidSystem::new(parts, SETTINGS, Time::ZERO).expect("it hangs")
+        RigidSystem::new(parts, FINE, Time::ZERO).expect("it hangs")
     }
 
     #[test]
     fn what_a_projection_takes_is_noted_once() {
         let mut system = pendulum();
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
-        // A tree keeps to its pins by itself.
-        group.tree.clear();
         let taken = system.with_group(&mut group, |dynamics, tools| {
             dynamics.group.end_state[1] -= 0.1;
             [0, 1].map(|_| {

@@ -49,28 +49,11 @@ pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ode::Method;
-    use crate::rigid::{FlightLaw, RigidParts, RigidSettings, StepControl};
+    use crate::rigid::test_scene::FINE;
+    use crate::rigid::{FlightLaw, RigidParts};
     use glam::DVec2;
-    use halfgap_collision::{Body, BodyId, BodyState, SearchSettings, Tolerances};
-    use halfgap_contact::{ImpactLaw, ImpactOrder};
+    use halfgap_collision::{Body, BodyId, BodyState};
     use halfgap_geometry::{FeatureId, Shape};
-
-    const SETTINGS: RigidSettings = RigidSettings {
-        tolerances: Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 },
-        law: ImpactLaw::Hybrid,
-        order: ImpactOrder::Fastest,
-        collisions: true,
-        search: SearchSettings::STANDARD,
-        method: Method::Dop853,
-        steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
-        projection: true,
-        extra: None,
-        impulse_step: None,
-        joint_small_impacts: false,
-        rest_speed: 1e-12,
-        resolution_time: 1e-10,
-    };
 
     /// Two elastic discs at their target gap that close with 2 m/s, and their pair.
     fn meeting() -> (RigidSystem, PairId, [FeatureId; 2]) {
@@ -82,7 +65,7 @@ mod tests {
             (body, FlightLaw::default(), state)
         };
         let parts = RigidParts { bodies: vec![disc(-1.0), disc(1.0)], ..RigidParts::default() };
-        let system = RigidSystem::new(parts, SETTINGS, Time::from_seconds(1.0)).expect("nothing rests");
+        let system = RigidSystem::new(parts, FINE, Time::from_seconds(1.0)).expect("nothing rests");
         let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
         let features = [FeatureId(0), FeatureId(0)];
         (system, pair, features)
