@@ -10,30 +10,46 @@ use halfgap_collision::{Body, BodyState, SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Shape;
 
-const TARGET_GAP: f64 = 1e-6;
+/// Half-width of the target zone, in target gaps.
+const ZONE: f64 = 0.6;
 
-/// Far finer than anything that happens.
+/// Target gap [m], relative error of a step, and what counts as slow [m/s], as at rest [m/s] and as soon [s], where all of
+/// it is far finer than anything that happens.
+const FINE_GAP: f64 = 1e-10;
+const FINE_ERROR: f64 = 1e-11;
+const FINE_SLOW: f64 = 1e-9;
+const FINE_REST: f64 = 1e-12;
+const FINE_SOON: f64 = 1e-10;
+
+/// The same for discs at rest.
+const DISCS_GAP: f64 = 1e-6;
+const DISCS_ERROR: f64 = 1e-6;
+const DISCS_SLOW: f64 = 1e-3;
+const DISCS_REST: f64 = 1e-10;
+const DISCS_SOON: f64 = 1e-4;
+
+/// Settings far finer than anything that happens.
 pub(super) const FINE: RigidSettings = RigidSettings {
-    tolerances: Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 },
     law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
-    collisions: true,
-    search: SearchSettings::STANDARD,
     method: Method::Dop853,
-    steps: StepControl { local_error: 1e-11, length: 1.0, speed: 1.0, largest_step: None },
+    search: SearchSettings::STANDARD,
+    tolerances: Tolerances { target_gap: FINE_GAP, accuracy: ZONE * FINE_GAP, velocity_tol: FINE_SLOW },
+    rest_speed: FINE_REST,
+    resolution_time: FINE_SOON,
+    steps: StepControl { local_error: FINE_ERROR, length: 1.0, speed: 1.0, largest_step: None },
+    collisions: true,
     projection: true,
+    joint_small_impacts: false,
     extra: None,
     impulse_step: None,
-    joint_small_impacts: false,
-    rest_speed: 1e-12,
-    resolution_time: 1e-10,
 };
 
-const COARSE: RigidSettings = RigidSettings {
-    tolerances: Tolerances { target_gap: TARGET_GAP, accuracy: 0.6 * TARGET_GAP, velocity_tol: 1e-3 },
-    steps: StepControl { local_error: 1e-6, length: 0.5, speed: 1.0, largest_step: None },
-    rest_speed: 1e-10,
-    resolution_time: 1e-4,
+const DISCS: RigidSettings = RigidSettings {
+    tolerances: Tolerances { target_gap: DISCS_GAP, accuracy: ZONE * DISCS_GAP, velocity_tol: DISCS_SLOW },
+    steps: StepControl { local_error: DISCS_ERROR, length: 0.5, speed: 1.0, largest_step: None },
+    rest_speed: DISCS_REST,
+    resolution_time: DISCS_SOON,
     ..FINE
 };
 
@@ -51,9 +67,9 @@ pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
         let shape = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
         let gravity = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
-        let position = DVec2::new(place, 0.5 + TARGET_GAP);
+        let position = DVec2::new(place, 0.5 + DISCS_GAP);
         (body, gravity, BodyState { position, ..BodyState::default() })
     }));
-    RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, COARSE, Time::ZERO)
+    RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
         .expect("discs that rest on a floor")
 }

@@ -23,8 +23,8 @@ struct Pin {
 }
 
 impl Dynamics<'_> {
-    /// Finds the tree of the group, whose bodies are in place: none unless it is held by pins, with at most as many rows of
-    /// other connectors, none of them redundant, and is stepped without any of the remedies against drift that scenes may
+    /// Finds the tree of the group, whose bodies are in place: none unless it hangs by pins, with at most one row beside them
+    /// for each, none of these redundant, and is stepped without any of the remedies against drift that scenes may
     /// ask for.
     pub(crate) fn find_tree(&mut self, settings: &RigidSettings) {
         self.group.tree.clear();

@@ -14,6 +14,12 @@ use halfgap_geometry::Shape;
 use proptest::prelude::*;
 
 const TOLERANCES: Tolerances = Tolerances { target_gap: 1e-3, accuracy: 6e-4, velocity_tol: 1e-2 };
+/// By how much a step may err [m].
+const STEP_ERROR: f64 = 1e-9;
+/// Difference of two accelerations that is rounding, as a part of the largest [m/s^2 or rad/s^2].
+const ROUNDING: f64 = 1e-9;
+/// Part that a row must keep of its square, beside pins and other rows, so that softening does not show.
+const WELL_KEPT: f64 = 1e-3;
 const GRAVITY: DVec2 = DVec2::new(0.3, -9.81);
 
 /// What a body hangs on.
@@ -121,8 +127,8 @@ impl Scene {
         }
     }
 
-    /// Accelerations by the rows and by the tree, how many coordinates that has, and the least part that any row keeps.
-    fn accelerations(mut self) -> (Vec<f64>, Vec<f64>, usize, f64) {
+    /// Makes a group of all bodies and acts on its dynamics.
+    fn with_dynamics<T>(mut self, act: impl FnOnce(&mut Dynamics<'_>) -> T) -> T {
         let count = self.flyers.len();
         let Self { flyers, connectors, group } = &mut self;
         group.bodies = (0..count).map(|place| BodyId(u32::try_from(place).expect("few bodies"))).collect();
@@ -140,19 +146,25 @@ impl Scene {
         let mechanism = Mechanism { flyers, connectors, tolerances: &TOLERANCES };
         let physics = Physics { mechanism, laws: &[], extra: None };
         let mut stage = Stage::new(vec![Moving::BACKGROUND; count]);
-        let mut dynamics = Dynamics { physics, group, stage: &mut stage, start: Time::ZERO };
-        dynamics.set_out();
-        let by_rows = dynamics.group.rates.clone();
-        dynamics.find_tree_for(1e-9);
-        dynamics.set_out();
-        let tree = &dynamics.group.tree;
-        (by_rows, dynamics.group.rates.clone(), tree.count(), tree.rest.least_kept)
+        act(&mut Dynamics { physics, group, stage: &mut stage, start: Time::ZERO })
+    }
+
+    /// Accelerations by the rows and by the tree, how many coordinates that has, and the least part that any row keeps.
+    fn accelerations(self) -> (Vec<f64>, Vec<f64>, usize, f64) {
+        self.with_dynamics(|dynamics| {
+            dynamics.set_out();
+            let by_rows = dynamics.group.rates.clone();
+            dynamics.find_tree_for(STEP_ERROR);
+            dynamics.set_out();
+            let tree = &dynamics.group.tree;
+            (by_rows, dynamics.group.rates.clone(), tree.count(), tree.rest.least_kept)
+        })
     }
 }
 
 fn agree(by_rows: &[f64], by_tree: &[f64]) -> bool {
     let largest = by_rows.iter().fold(1.0f64, |most, rate| most.max(rate.abs()));
-    by_rows.iter().zip(by_tree).all(|(a, b)| (a - b).abs() <= 1e-9 * largest)
+    by_rows.iter().zip(by_tree).all(|(a, b)| (a - b).abs() <= ROUNDING * largest)
 }
 
 proptest! {
@@ -182,7 +194,7 @@ proptest! {
         });
         let (by_rows, by_tree, coordinates, kept) = scene.accelerations();
         // Nearly dependent rows are softened.
-        prop_assume!(kept > 1e-3);
+        prop_assume!(kept > WELL_KEPT);
         prop_assert_eq!(coordinates, hung.len());
         prop_assert!(agree(&by_rows, &by_tree), "{:?}\n{:?}", by_rows, by_tree);
     }
@@ -199,22 +211,12 @@ fn a_pin_given_twice_is_told_to_be_singular() {
     let mut scene = Scene::new(&[body(On::World), body(On::Earlier(0.0)), body(On::Earlier(0.99))]);
     scene.connectors.push(scene.connectors[2].clone());
     scene.hold(3);
-    let count = scene.flyers.len();
-    let mut group = std::mem::take(&mut scene.group);
-    group.bodies = (0..count).map(|place| BodyId(u32::try_from(place).expect("few bodies"))).collect();
-    group.find_sides();
-    group.state = vec![0.0; 6 * count];
-    for (place, flyer) in scene.flyers.iter().enumerate() {
-        set_body_state(&mut group.state, count, place, &flyer.state_at(Time::ZERO));
-    }
-    let mechanism =
-        Mechanism { flyers: &scene.flyers, connectors: &scene.connectors, tolerances: &TOLERANCES };
-    let physics = Physics { mechanism, laws: &[], extra: None };
-    let mut stage = Stage::new(vec![Moving::BACKGROUND; count]);
-    let mut dynamics = Dynamics { physics, group: &mut group, stage: &mut stage, start: Time::ZERO };
-    dynamics.find_tree_for(1e-9);
-    assert!(dynamics.group.tree.is_used());
-    dynamics.set_out();
-    assert!(dynamics.leave_singular_tree());
-    assert!(!dynamics.group.tree.is_used());
+    scene.with_dynamics(|dynamics| {
+        dynamics.set_out();
+        dynamics.find_tree_for(STEP_ERROR);
+        assert!(dynamics.group.tree.is_used());
+        dynamics.set_out();
+        assert!(dynamics.leave_singular_tree());
+        assert!(!dynamics.group.tree.is_used());
+    });
 }
