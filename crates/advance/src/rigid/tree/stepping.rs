@@ -66,30 +66,32 @@ impl Dynamics<'_> {
         end.resize(state.len(), 0.0);
         let from = Point { offset: 0.0, state: &state, rates: &rates };
         let Ok(()) = stepper.step(&mut Hanging(self), from, step, &mut end);
-        self.unfold(&end);
+        let mut whole = std::mem::take(&mut self.group.end_state);
+        self.unfold(&end, &mut whole);
+        self.group.end_state = whole;
         let tree = &mut self.group.tree;
         (tree.state, tree.rates, tree.end) = (state, rates, end);
     }
 
-    /// Writes a state of the tree into the group's end state.
-    fn unfold(&mut self, state: &[f64]) {
+    /// Turns a state of the tree into one of the group.
+    fn unfold(&mut self, state: &[f64], whole: &mut Vec<f64>) {
         let velocities = self.group.velocities();
-        let Group { tree, bodies, end_state, .. } = &mut *self.group;
+        let Group { tree, bodies, .. } = &mut *self.group;
         let count = tree.count();
         tree.place(state, bodies, &mut self.stage.movings);
-        end_state.clear();
-        end_state.resize(2 * velocities, 0.0);
+        whole.clear();
+        whole.resize(2 * velocities, 0.0);
         for (place, body) in bodies.iter().enumerate() {
             let moving = &self.stage.movings[body.index()];
             let (at, velocity) = (3 * place, moving.velocity);
-            end_state[at..at + 2].copy_from_slice(&moving.pose.position.to_array());
-            end_state[velocities + at..velocities + at + 2].copy_from_slice(&velocity.to_array());
+            whole[at..at + 2].copy_from_slice(&moving.pose.position.to_array());
+            whole[velocities + at..velocities + at + 2].copy_from_slice(&velocity.to_array());
         }
         for (coordinate, &number) in tree.numbers.0.iter().enumerate() {
-            end_state[number] = state[coordinate];
-            end_state[velocities + number] = state[count + coordinate];
+            whole[number] = state[coordinate];
+            whole[velocities + number] = state[count + coordinate];
         }
-        end_state.extend_from_slice(&state[2 * count..]);
+        whole.extend_from_slice(&state[2 * count..]);
     }
 
     /// Brings bodies onto the pins of the tree, by their angles and what is free.
@@ -98,9 +100,7 @@ impl Dynamics<'_> {
         let tree = &mut self.group.tree;
         let mut state = std::mem::take(&mut tree.end);
         tree.numbers.gather(whole, velocities, &mut state);
-        std::mem::swap(&mut self.group.end_state, whole);
-        self.unfold(&state);
-        std::mem::swap(&mut self.group.end_state, whole);
+        self.unfold(&state, whole);
         self.group.tree.end = state;
     }
 
