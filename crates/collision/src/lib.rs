@@ -39,7 +39,7 @@ pub use body::{Body, BodyId};
 pub use broad::BroadPhase;
 pub use connector::{
     Alignment, Anchor, Connector, ConnectorError, ConnectorId, ConnectorKind, ConnectorSample, RailError,
-    RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, rope_contact,
+    RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, SplineJoint, rope_contact,
 };
 pub use detect::{Moment, detect_features_of_pair, detect_pair, record_features};
 pub use estimate::{EstimatePoint, estimate_target_time};

@@ -26,9 +26,9 @@ impl Dynamics<'_> {
         }
         self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
         self.end_on_rows(tools);
+        self.follow_rails();
         self.evaluate_end();
         self.note_stiffness(tools);
-        self.follow_rails();
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
         (self.group.event, self.group.largest_error) = (None, self.stage.gap_error);
         Ok(())
@@ -48,8 +48,8 @@ impl Dynamics<'_> {
         for tries in 0.. {
             self.extend(tools.stepper, &steps, tools.scales)?;
             self.end_on_rows(tools);
-            self.evaluate_end();
             self.follow_rails();
+            self.evaluate_end();
             self.make_dense(tools.stepper);
             let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
             let proposed = *proposed.get_or_insert(self.group.next_step);

@@ -370,23 +370,27 @@ impl RigidSystem {
         self.extend_group(group)
     }
 
-    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by what is near.
+    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by what is near. Rows
+    /// on splines were followed to it.
     fn renew_hints(&mut self, group: &mut Group) {
         let count = group.bodies.len();
         let Group { bodies, state, rows, stops, .. } = group;
-        let renew = |id: ConnectorId, hint: &mut Option<RailHint>| {
+        let renew = |id: ConnectorId, hint: &mut Option<RailHint>, is_followed: bool| {
             let connector = self.connector(id);
             let (anchor, _) = connector.anchors();
             let (Some(path), Ok(place)) = (connector.path(), bodies.binary_search(&anchor.body)) else {
                 return;
             };
+            if is_followed && path.knots().is_empty() {
+                return;
+            }
             let point = body_state(state, count, place).pose().point_to_world(anchor.point);
             *hint = Some(path.hint_near(point, hint.as_ref()).staying());
         };
-        stops.iter_mut().for_each(|stop| renew(stop.id, &mut stop.hint));
+        stops.iter_mut().for_each(|stop| renew(stop.id, &mut stop.hint, false));
         for row in rows.iter_mut() {
             if let RowSource::Connector(id, _) = row.source {
-                renew(id, &mut row.hint);
+                renew(id, &mut row.hint, true);
             }
         }
         let hints = rows.iter().filter_map(|row| match row.source {

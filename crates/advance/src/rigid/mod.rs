@@ -27,6 +27,7 @@ mod group;
 mod groups;
 mod hops;
 mod impacts;
+mod kinks;
 mod lane;
 mod law;
 mod ledger;

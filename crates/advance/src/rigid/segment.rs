@@ -4,7 +4,7 @@ use super::brief::Stepping;
 use super::dynamics::{Dynamics, body_state};
 use super::extending::Tools;
 use super::group::Group;
-use super::rows::{RowSource, moving_of};
+use super::rows::RowSource;
 use crate::ode::{Accepted, Point, SegmentPolynomial, Stepper};
 use glam::DVec2;
 use halfgap_collision::BodyId;
@@ -90,6 +90,7 @@ impl Dynamics<'_> {
         stepper.set_scales(scales);
         let turning = self.longest_turning_step();
         let longest = self.longest_sound_step().min(self.longest_watched_step()).min(turning);
+        let longest = longest.min(self.longest_smooth_step(control));
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
@@ -239,7 +240,7 @@ impl Dynamics<'_> {
 
     /// A speed [m/s] of the group: of its fastest point now, or what forces would make of it over the length. What forces
     /// of rows cancel counts too, so that a group at rest is not held to its rounding.
-    fn speed(&self, control: &StepControl) -> f64 {
+    pub(crate) fn speed(&self, control: &StepControl) -> f64 {
         let count = self.group.bodies.len();
         let mut speed = (self.group.free_acceleration * self.length(control)).sqrt();
         for (place, &body) in self.group.bodies.iter().enumerate() {
@@ -377,16 +378,18 @@ impl Dynamics<'_> {
         (self.group.end_state, self.group.end_rates) = (end, rates);
     }
 
-    /// Notes where on splines the points of rails are, with the bodies in place: searches from nearby are short, and do not
-    /// stray where a rail crosses itself. On other rails events tell.
+    /// Notes where on splines the points of rails are at the end: searches from nearby are short, and do not stray where a
+    /// rail crosses itself. On other rails events tell.
     pub(crate) fn follow_rails(&mut self) {
         let mechanism = &self.physics.mechanism;
-        for row in &mut self.group.rows {
+        let Group { rows, bodies, end_state, .. } = &mut *self.group;
+        for row in rows {
             let (RowSource::Connector(id, _), Some(hint)) = (row.source, &row.hint) else { continue };
             let connector = &mechanism.connectors[id.index()];
             let Some(path) = connector.path().filter(|path| path.knots().is_empty()) else { continue };
             let anchor = connector.anchors().0;
-            let point = moving_of(&self.stage.movings, anchor.body).pose.point_to_world(anchor.point);
+            let Ok(place) = bodies.binary_search(&anchor.body) else { continue };
+            let point = body_state(end_state, bodies.len(), place).pose().point_to_world(anchor.point);
             row.hint = Some(path.hint_near(point, Some(hint)).staying());
         }
     }
@@ -401,6 +404,9 @@ impl Dynamics<'_> {
             energy += 0.5 * state.velocity.length_squared() / inertia.inverse_mass;
             energy += 0.5 * state.angular_velocity * state.angular_velocity / inertia.inverse_moment;
             energy -= flyer.law().acceleration.dot(state.position) / inertia.inverse_mass;
+        }
+        if self.group.laws.is_empty() {
+            return energy;
         }
         self.stage.load(&self.group.bodies, state);
         let now = super::law::Snapshot::new(self.start.seconds(), &self.stage.movings);

@@ -24,7 +24,7 @@ mod spline_nearest;
 
 pub use align::Alignment;
 pub use error::{ConnectorError, RailError};
-pub use path::{RailHint, RailKnot, RailPath, RailPlace};
+pub use path::{RailHint, RailKnot, RailPath, RailPlace, SplineJoint};
 pub use rope::{Rope, RopeSearch, rope_contact};
 pub use row::ConnectorSample;
 

@@ -73,6 +73,19 @@ pub struct RailKnot {
     pub curvatures: [f64; 2],
 }
 
+/// A joint of a path through points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplineJoint {
+    /// Where it is [m].
+    pub point: DVec2,
+    /// Unit vector along the path, as a velocity points.
+    pub tangent: DVec2,
+    /// Length of the piece up to it [m], as the points' distances measure it.
+    pub width: f64,
+    /// By how much the third derivative of the path by its parameter, nearly its length, jumps there [1/m^2].
+    pub jump: f64,
+}
+
 impl RailPath {
     /// The path of lines and arcs that starts at a point [m]; closed if it ends there.
     ///
@@ -134,6 +147,16 @@ impl RailPath {
         match &self.curve {
             Curve::Edges(path) => path.knots(),
             Curve::Spline(_) => &[],
+        }
+    }
+
+    /// The next joint of a spline along a velocity [m/s], from the place of a hint. One that is all but reached counts as
+    /// passed. `None` beyond an open end, and on a path of edges.
+    #[must_use]
+    pub fn joint_ahead(&self, hint: &RailHint, velocity: DVec2) -> Option<SplineJoint> {
+        match &self.curve {
+            Curve::Edges(_) => None,
+            Curve::Spline(spline) => spline.joint_ahead((hint.piece as usize, hint.parameter), velocity),
         }
     }
 

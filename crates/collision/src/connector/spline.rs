@@ -10,6 +10,7 @@
 use super::box_tree::BoxTree;
 use super::cubic::{Cubic, Jet};
 use super::error::RailError;
+use super::path::SplineJoint;
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
@@ -21,6 +22,8 @@ const SPAN_TURN: f64 = 0.25;
 const SLOWEST: f64 = 1e-3;
 /// Most spans of a piece: a piece that is nowhere slower than `SLOWEST` rarely needs as many.
 const MOST_SPANS: f64 = 256.0;
+/// A joint nearer than this part of the piece up to it counts as passed.
+const PASSED: f64 = 1.0 / 128.0;
 
 /// The spline.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +78,27 @@ impl Spline {
         }
         let end = u.clamp(0.0, cubic.width);
         cubic.jet(end).straight_on(u - end)
+    }
+
+    /// The next joint along a velocity; the ends of an open spline are none, since it goes on straight.
+    pub(super) fn joint_ahead(&self, (piece, u): (usize, f64), velocity: DVec2) -> Option<SplineJoint> {
+        let cubic = self.pieces.get(piece)?;
+        let forward = self.jet(piece, u).slope.dot(velocity) >= 0.0;
+        let left = if forward { cubic.width - u } else { u };
+        let piece = if left > PASSED * cubic.width { piece } else { self.beside(piece, forward)? };
+        let (here, next) = (&self.pieces[piece], &self.pieces[self.beside(piece, forward)?]);
+        let at = here.jet(if forward { here.width } else { 0.0 });
+        let tangent = at.slope.normalize_or_zero() * if forward { 1.0 } else { -1.0 };
+        let jump = 6.0 * (next.twist - here.twist).length();
+        Some(SplineJoint { point: at.point, tangent, width: here.width, jump })
+    }
+
+    /// The piece after another, or before it.
+    fn beside(&self, piece: usize, forward: bool) -> Option<usize> {
+        let count = self.pieces.len();
+        let next = if forward { piece + 1 } else { piece + count - 1 };
+        let is_within = if forward { next < count } else { piece > 0 };
+        (self.closed || is_within).then_some(next % count)
     }
 
     fn in_spans(pieces: Vec<Cubic>, closed: bool) -> Result<Self, RailError> {
