@@ -20,9 +20,10 @@ pub(crate) enum LaneKind {
     Disc,
 }
 
-/// A copy of the motion of one body, renewed whenever that changes. Two lines of the cache; the first says where it is.
+/// A copy of the motion of one body, renewed whenever that changes. Two lines of the cache that are read
+/// together; the first says where it is.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[repr(align(128))]
 pub(crate) struct Lane {
     /// Position [m] and velocity [m/s] at the start.
     position: DVec2,
