@@ -241,11 +241,15 @@ impl Dynamics<'_> {
     /// A speed [m/s] of the group: of its fastest point now, or what forces would make of it over the length. What forces
     /// of rows cancel counts too, so that a group at rest is not held to its rounding.
     pub(crate) fn speed(&self, control: &StepControl) -> f64 {
+        self.speed_in(&self.group.state, control)
+    }
+
+    /// The same of a state.
+    fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
         let count = self.group.bodies.len();
         let mut speed = (self.group.free_acceleration * self.length(control)).sqrt();
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let at = 3 * (count + place);
-            let state = &self.group.state;
             let of_points =
                 DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body);
             speed = speed.max(of_points);
@@ -300,8 +304,10 @@ impl Dynamics<'_> {
 
     /// Moves the end state onto the held rows, by the least displacement and the least change of velocities in the metric
     /// of the masses; each row to the gap at which it formed.
-    pub(crate) fn project_end(&mut self, length: f64) {
+    pub(crate) fn project_end(&mut self, control: &StepControl) {
+        let length = control.length;
         let mut end = std::mem::take(&mut self.group.end_state);
+        let speed = self.speed_in(&end, control);
         let velocities = self.group.velocities();
         let mut rates = std::mem::take(&mut self.stage.rates);
         let is_soft = self.group.held.is_soft();
@@ -319,6 +325,9 @@ impl Dynamics<'_> {
             let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
             self.stage.offsets = offsets;
             self.respond();
+            if !self.is_sound(error, length) {
+                break;
+            }
             self.change(&mut end, 0);
             // Newton's method squares the relative error.
             let is_enough = if is_soft {
@@ -334,9 +343,25 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&rates);
         self.respond();
-        self.change(&mut end, velocities);
+        let rate = rates.iter().fold(0.0f64, |most, rate| most.max(rate.abs()));
+        if self.is_sound(rate, speed) {
+            self.change(&mut end, velocities);
+        }
         self.stage.rates = rates;
         self.group.end_state = end;
+    }
+
+    /// True if the change in the stage, which is to mend an error, is so small beside a scale that it errs by less itself:
+    /// rows that all but depend on each other ask for more, and for what rounding of their errors makes of it.
+    fn is_sound(&self, error: f64, scale: f64) -> bool {
+        let sizes = self
+            .group
+            .bodies
+            .iter()
+            .zip(&self.stage.changes)
+            .map(|(&body, &[x, y, angle])| DVec2::new(x, y).length() + angle.abs() * self.reach(body));
+        let change = sizes.fold(0.0, f64::max);
+        change * change <= error * scale
     }
 
     /// Adds the changes in the stage to the numbers of a state that begin at a place: positions or velocities.
