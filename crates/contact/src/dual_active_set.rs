@@ -45,6 +45,9 @@ pub struct DualActiveSet {
     pub(crate) is_warm: bool,
     /// The same while others are tried.
     pub(crate) set_aside: Vec<bool>,
+    /// Forces that do not pull, from which the answer is looked for, and whether they are those of an earlier one.
+    pub(crate) admissible: Vec<f64>,
+    pub(crate) knows_forces: bool,
     pub(crate) shift: Shift,
     /// Whether contacts contradicted each other in the last attempt, connectors not counted.
     pub(crate) contacts_contradict: bool,
@@ -167,10 +170,17 @@ impl DualActiveSet {
         attempt: Attempt,
     ) -> Result<(), SolveError> {
         self.prepare(problem, warm, solution, attempt);
-        let end = match self.find_start(problem) {
+        let goes_down = self.knows_forces && self.may_descend();
+        let certificate = if goes_down { None } else { self.find_start(problem) };
+        let end = match certificate {
             Some(certificate) => End::Infeasible(certificate),
             None if self.handed_over => End::Stopped,
             None => {
+                if goes_down {
+                    self.descend()
+                } else {
+                    self.untangle()
+                }
                 self.make_forces_admissible();
                 self.pivot(problem, attempt)
             }
@@ -280,7 +290,8 @@ impl DualActiveSet {
             let full = if relation.dependent {
                 f64::INFINITY
             } else {
-                -self.closed.acceleration[row] / relation.complement
+                // What rounding has made of an acceleration that came to zero is no reason to go back.
+                -self.closed.acceleration[row].min(0.0) / relation.complement
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
             match self.blocking(full, rounding) {
@@ -342,11 +353,13 @@ impl DualActiveSet {
             Some(certificate) => End::Infeasible(certificate),
             None => {
                 self.contacts_contradict = true;
+                let before = self.closed.acceleration[row];
                 self.closed.force[row] = 0.0;
                 self.closed.solve_closed();
                 self.closed.accelerate();
                 self.make_forces_admissible();
-                End::Done
+                // What is as wrong as it was would come up again and again.
+                if self.closed.acceleration[row] > before { End::Done } else { End::Stopped }
             }
         }
     }

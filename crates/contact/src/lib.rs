@@ -30,6 +30,7 @@ mod body_factor;
 mod check;
 mod closed_rows;
 mod dependent;
+mod descent;
 mod dictionary;
 mod dual_active_set;
 mod entries;

@@ -18,7 +18,7 @@ const SUBSTANTIAL: usize = 4;
 
 /// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the forces,
 /// which of them are wrong means nothing. Pivots close what has less.
-const WELL: f64 = 1e-7;
+pub(crate) const WELL: f64 = 1e-7;
 
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
 const MOVING: usize = 50;
@@ -88,6 +88,14 @@ impl DualActiveSet {
             #[cfg(feature = "qp")]
             Start::Closed(_) => None,
         };
+        self.knows_forces = matches!(start, Start::Earlier(warm) if warm.has_forces());
+        if self.knows_forces {
+            let earlier = |row| lookup.as_ref().and_then(|lookup| lookup.find(row));
+            let scaled =
+                |row| earlier(row).map_or(0.0, |earlier| earlier.force.max(0.0) * system.row_scale[row]);
+            self.admissible.clear();
+            self.admissible.extend((0..problem.len()).map(scaled));
+        }
         self.start.clear();
         self.start.extend((0..problem.len()).map(|row| {
             let earlier = lookup.as_ref().and_then(|lookup| lookup.find(row));
@@ -168,11 +176,14 @@ impl DualActiveSet {
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }
 
+    /// Whether pivots have widened the factor by much.
+    pub(crate) fn is_factor_wide(&self) -> bool {
+        self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
+    }
+
     /// Makes the factor anew, in the order that keeps it narrow, when pivots have widened it.
     pub(crate) fn narrow_factor(&mut self) {
-        if self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
-            && !self.closed.refactor()
-        {
+        if self.is_factor_wide() && !self.closed.refactor() {
             self.closed.solve_closed();
             self.closed.accelerate();
             self.make_forces_admissible();

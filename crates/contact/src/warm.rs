@@ -13,6 +13,7 @@ pub struct WarmStart {
     entries: Vec<Entry>,
     by_key: bool,
     is_guess: bool,
+    has_forces: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +40,7 @@ impl WarmStart {
 
     /// Remembers the answer `solution` of `problem`, replacing what was remembered.
     pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
-        (self.by_key, self.is_guess) = (has_keys(problem), false);
+        (self.by_key, self.is_guess, self.has_forces) = (has_keys(problem), false, false);
         self.entries.clear();
         self.entries.extend(solution.force.iter().enumerate().map(|(row, &force)| {
             let id = if self.by_key { problem.keys[row].0 } else { row as u64 };
@@ -55,7 +56,7 @@ impl WarmStart {
 
     /// Replaces what is remembered by a guess: for each row, by its place, whether it is closed, if anything is known of it.
     pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
-        (self.by_key, self.is_guess) = (false, true);
+        (self.by_key, self.is_guess, self.has_forces) = (false, true, false);
         self.entries.clear();
         self.entries.extend(closed.into_iter().map(|closed| Entry {
             id: 0,
@@ -63,6 +64,21 @@ impl WarmStart {
             closed: closed == Some(true),
             known: closed.is_some(),
         }));
+    }
+
+    /// Replaces what is remembered by a guess of the force of each row, by its place, if anything is known of it.
+    pub fn guess_forces(&mut self, forces: impl IntoIterator<Item = Option<f64>>) {
+        (self.by_key, self.is_guess, self.has_forces) = (false, true, true);
+        self.entries.clear();
+        self.entries.extend(forces.into_iter().map(|guess| {
+            let force = guess.unwrap_or(0.0);
+            Entry { id: 0, force, closed: force > 0.0, known: guess.is_some() }
+        }));
+    }
+
+    /// True if these are forces from which to look for the answer.
+    pub(crate) fn has_forces(&self) -> bool {
+        self.has_forces
     }
 
     /// False if these are rows that were closed in an answer, and then independent of each other.
@@ -73,7 +89,7 @@ impl WarmStart {
     /// Makes this the warm start of a part of `problem`, the rows `rows`, identified by their place in it.
     pub(crate) fn restrict(&mut self, whole: &WarmStart, problem: &Problem, rows: &[u32]) {
         let lookup = whole.lookup(problem);
-        (self.by_key, self.is_guess) = (false, whole.is_guess);
+        (self.by_key, self.is_guess, self.has_forces) = (false, whole.is_guess, whole.has_forces);
         self.entries.clear();
         self.entries.extend(rows.iter().map(|&row| match lookup.find(row as usize) {
             Some(Earlier { force, closed }) => Entry { id: 0, force, closed, known: true },

@@ -41,7 +41,9 @@ pub(crate) struct Settling {
     candidates: Vec<usize>,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
-    /// The same of the candidates, as the solver is told.
+    /// Force [N] of each in the last solve of the event, if it was in it.
+    forces: Vec<Option<f64>>,
+    /// What is known of the candidates, as the solver is told.
     guess: WarmStart,
     /// The rows to be held, with the record of each.
     pub(crate) held: Vec<(usize, HeldRow)>,
@@ -74,6 +76,7 @@ impl Default for Settling {
             lenient: solver(lenient),
             candidates: Vec::new(),
             likely: Vec::new(),
+            forces: Vec::new(),
             guess: WarmStart::new(),
             held: Vec::new(),
             touches: Vec::new(),
@@ -106,12 +109,17 @@ impl Clone for Settling {
 impl Settling {
     /// Solves for the forces of the candidates, beginning with those that are likely to carry some, and notes which do.
     fn solve_strictly(&mut self) -> Result<(), SolveError> {
-        self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
+        if self.forces.is_empty() {
+            self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
+        } else {
+            self.guess.guess_forces(self.candidates.iter().map(|&index| self.forces[index]));
+        }
         self.solver
             .solve_from(&self.problem, &self.guess, &mut self.solution)
             .or_else(|_| self.solver.solve(&self.problem, &mut self.solution))?;
+        self.forces.resize(self.likely.len(), None);
         for (place, &index) in self.candidates.iter().enumerate() {
-            self.likely[index] = Some(self.solution.force[place] != 0.0);
+            self.forces[index] = Some(self.solution.force[place]);
         }
         Ok(())
     }
@@ -120,6 +128,7 @@ impl Settling {
     pub(crate) fn expect(&mut self, likely: impl Iterator<Item = Option<bool>>) {
         self.likely.clear();
         self.likely.extend(likely);
+        self.forces.clear();
     }
 
     fn solve_at_all(&mut self) -> Result<(), SolveError> {

@@ -1,0 +1,225 @@
+//! From forces that do not pull to those of the answer, many rows at a time.
+//!
+//! In a heap the closed rows carry each other: one row wrong among them turns the sign of a hundred forces, so that an
+//! exchange of all wrong rows leads astray, and pivots mend them one by one. The forces minimise f.(Af + 2b)/2 over f >= 0.
+//! From any such forces, those of the rows that carry one, or would close without, go towards the least value with these
+//! rows closed; whichever would pull on the way opens, and the rest goes on. Every such pass lowers the value, so that
+//! none comes back. It is the method of C. Lawson, R. Hanson, "Solving Least Squares Problems", 1974, chapter 23, in which rows
+//! close many at once. A row that depends on others keeps its force during a pass; at the end these forces are moved to
+//! independent rows, each along its null direction. Pivots mend what is left.
+
+use crate::dual_active_set::DualActiveSet;
+use crate::start::WELL;
+
+/// One in so many closed rows that pull, and so many at least, are more than blocks can mend.
+const MANY: usize = 16;
+const LEAST: usize = 8;
+
+/// Cap on the passes.
+const PASSES: usize = 24;
+
+impl DualActiveSet {
+    /// Starts anew from the closed forces that do not pull, if many of them do.
+    pub(crate) fn untangle(&mut self) {
+        let closed = &self.closed;
+        let pulls = |&&row: &&usize| closed.force[row] < 0.0 && !closed.free[row];
+        let pulling = closed.rows.iter().filter(pulls).count();
+        if self.may_descend() && pulling >= LEAST.max(closed.len() / MANY) {
+            self.admissible.clear();
+            self.admissible.extend(closed.force.iter().map(|force| force.max(0.0)));
+            self.descend();
+        }
+    }
+
+    /// Whether all rows are unilateral, and none is closed for other reasons than those of here.
+    pub(crate) fn may_descend(&self) -> bool {
+        let closed = &self.closed;
+        closed.spread == 0.0 && closed.proximal == 0.0 && closed.kept == 0 && !closed.free.contains(&true)
+    }
+
+    /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other afterwards.
+    pub(crate) fn descend(&mut self) {
+        let mut force = std::mem::take(&mut self.admissible);
+        self.start.fill(false);
+        self.closed.open_all();
+        self.closed.force.copy_from_slice(&force);
+        self.closed.accelerate();
+        for _ in 0..PASSES {
+            if !self.mark_pushing(&force) {
+                break;
+            }
+            self.close_pushing();
+            self.go_to_face(&mut force);
+            self.closed.force.copy_from_slice(&force);
+            self.closed.accelerate();
+        }
+        self.move_to_basis(&mut force);
+        self.closed.force.copy_from_slice(&force);
+        self.closed.accelerate();
+        self.admissible = force;
+    }
+
+    /// Marks the rows that have a force, or would close without one; whether they are others than before.
+    fn mark_pushing(&mut self, force: &[f64]) -> bool {
+        let limit = -self.noise();
+        let closed = &self.closed;
+        let mut any = false;
+        for (row, start) in self.start.iter_mut().enumerate() {
+            let closes = force[row] > 0.0 || closed.acceleration[row] < limit;
+            let is_marked = closes && closed.system.movable[row];
+            any |= std::mem::replace(start, is_marked) != is_marked;
+        }
+        any
+    }
+
+    /// Closes the marked rows, as far as they are independent; all of them anew, in the order that keeps the factor narrow, if
+    /// they are many or it is wide.
+    fn close_pushing(&mut self) {
+        let closed = &self.closed;
+        let fresh = (0..self.start.len()).filter(|&row| self.start[row] && !closed.is_closed(row)).count();
+        if fresh > closed.len() / MANY || self.is_factor_wide() {
+            self.closed.open_all();
+            self.closed.close_independent(&self.start, WELL);
+            return;
+        }
+        for row in 0..self.start.len() {
+            if self.start[row] && !self.closed.is_closed(row) {
+                let relation = self.closed.consider(row);
+                if relation.complement > WELL {
+                    self.closed.close(row, relation);
+                }
+            }
+        }
+    }
+
+    /// Takes the closed forces to where the closed accelerations are zero; rows whose force runs out on the way open. Only
+    /// the closed accelerations are followed.
+    fn go_to_face(&mut self, force: &mut [f64]) {
+        let closed = &mut self.closed;
+        loop {
+            let count = closed.len();
+            for (at, &row) in closed.rows.iter().enumerate() {
+                closed.step[at] = -closed.acceleration[row];
+            }
+            closed.factor.solve(&mut closed.step[..count]);
+            let mut length = 1.0;
+            let mut first = None;
+            for (at, &row) in closed.rows.iter().enumerate() {
+                if force[row] + length * closed.step[at] < 0.0 {
+                    (length, first) = (force[row] / -closed.step[at], Some(at));
+                }
+            }
+            for (at, &row) in closed.rows.iter().enumerate() {
+                force[row] = (force[row] + length * closed.step[at]).max(0.0);
+                closed.acceleration[row] *= 1.0 - length;
+            }
+            let Some(first) = first else { break };
+            force[closed.rows[first]] = 0.0;
+            // Of those that had none and would pull none can stay.
+            for at in (0..count).rev() {
+                if at == first || (force[closed.rows[at]] == 0.0 && closed.step[at] < 0.0) {
+                    closed.open_at(at);
+                }
+            }
+        }
+    }
+
+    /// Moves the forces of open rows, which depend on closed ones, to these; a closed row that runs out makes room.
+    fn move_to_basis(&mut self, force: &mut [f64]) {
+        let closed = &mut self.closed;
+        for row in 0..force.len() {
+            while force[row] > 0.0 && !closed.is_closed(row) {
+                let relation = closed.consider(row);
+                if !relation.dependent {
+                    closed.close(row, relation);
+                    break;
+                }
+                closed.find_response();
+                let mut length = force[row];
+                let mut first = None;
+                for (at, &other) in closed.rows.iter().enumerate() {
+                    if force[other] + length * closed.step[at] < 0.0 {
+                        (length, first) = (force[other] / -closed.step[at], Some(at));
+                    }
+                }
+                for (at, &other) in closed.rows.iter().enumerate() {
+                    force[other] = (force[other] + length * closed.step[at]).max(0.0);
+                }
+                force[row] -= length;
+                match first {
+                    Some(at) => {
+                        force[closed.rows[at]] = 0.0;
+                        closed.open_at(at);
+                    }
+                    None => force[row] = 0.0,
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::dual_active_set::DualActiveSet;
+    use crate::problem::{Inertia, Problem, Row};
+    use crate::solution::Solution;
+    use crate::solver::Solver;
+    use crate::warm::WarmStart;
+
+    /// Discs of 1 kg in rows of so many, each on two of the row below, in directions that vary by some tenths of a radian;
+    /// those at the ends of a row lean on walls.
+    fn heap(across: usize, rows: usize) -> Problem {
+        let mut problem = Problem::new();
+        let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 8.0 };
+        let discs: Vec<_> = (0..across * rows).map(|_| problem.add_body(inertia).expect("a disc")).collect();
+        let tilt = |index: usize| 0.5 * (1.7 * index as f64).sin();
+        for (index, &disc) in discs.iter().enumerate() {
+            let (row, column) = (index / across, index % across);
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                let (x, y) = (sign * 0.5 + tilt(2 * index + side), 0.8);
+                let (x, y) = (x / f64::hypot(x, y), y / f64::hypot(x, y));
+                let up = Row::new(disc, [x, y, 0.0], if row == 0 { -9.81 * y } else { 0.0 });
+                let below =
+                    (row > 0).then(|| discs[index - across + if column + side < across { side } else { 0 }]);
+                let up = below.map_or(up, |below| up.against(below, [-x, -y, 0.0]));
+                problem.add_row(&up).expect("a row");
+            }
+            if column == 0 || column + 1 == across {
+                let inwards = if column == 0 { 1.0 } else { -1.0 };
+                problem.add_row(&Row::new(disc, [inwards, 0.0, 0.0], 0.0)).expect("a row");
+            }
+        }
+        problem
+    }
+
+    fn differ_by(a: &Solution, b: &Solution) -> f64 {
+        let accelerations = a.acceleration.iter().zip(&b.acceleration);
+        accelerations.fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+    }
+
+    #[test]
+    fn the_forces_of_a_heap_take_few_pivots() {
+        let problem = heap(12, 16);
+        let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
+        solver.solve(&problem, &mut solution).expect("forces of a heap");
+        assert!(solution.iterations < problem.len() / 16, "{} pivots", solution.iterations);
+    }
+
+    #[test]
+    fn known_forces_are_gone_on_with() {
+        let problem = heap(12, 16);
+        let (mut solver, mut solution, mut warm) =
+            (DualActiveSet::default(), Solution::new(), WarmStart::new());
+        solver.solve(&problem, &mut solution).expect("forces of a heap");
+        let mut again = Solution::new();
+        for scale in [1.0, 0.5, 0.0] {
+            warm.guess_forces(solution.force.iter().map(|force| Some(scale * force)));
+            solver.solve_from(&problem, &warm, &mut again).expect("forces of a heap");
+            assert!(differ_by(&again, &solution) < 1e-9);
+            assert!(again.iterations == 0 || scale < 1.0, "{} pivots", again.iterations);
+        }
+        warm.guess_forces(solution.force.iter().map(|_| None));
+        solver.solve_from(&problem, &warm, &mut again).expect("forces of a heap");
+        assert!(differ_by(&again, &solution) < 1e-9);
+    }
+}
