@@ -81,6 +81,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (424424, "a light body stood still as rounding while the heavy one that it was pinned to went on"),
     (424911, "a slot was off between the ends of long steps"),
     (701560, "the same of a pin"),
+    (
+        740986,
+        "a light disc pinned twice by long arms: what was lacking was given up because rates grew on the way",
+    ),
     (432311, "rounding of places far away was a velocity along a step of nanoseconds"),
     (310743, "books of impacts did not know by what rounding moved the ends of long arms"),
     (
