@@ -63,10 +63,11 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Forces vary over so short a length that rounding of coordinates makes energy of nothing.
+    /// Forces vary over so short a length that rounding of coordinates, or the gap that contacts have, makes energy of
+    /// nothing.
     #[error(
-        "at {time} s the forces of {} on {} vary over {length:e} m: rounding of the coordinates makes more of that than the \
-         tolerance allows",
+        "at {time} s the forces of {} on {} vary over {length:e} m: rounding of the coordinates, or the gap of bodies in \
+         contact, makes more of that than the tolerance allows",
         quoted(laws),
         quoted(bodies)
     )]

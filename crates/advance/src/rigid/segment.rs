@@ -52,6 +52,8 @@ const WATCHED_SHARE: f64 = 0.5;
 /// What rounding of positions may add to the energy in a step, in local errors of what is usual in the scene: more, and
 /// energy comes from nothing whatever the steps.
 const UNRESOLVED: f64 = 1e4;
+/// Forces on bodies in contact vary over more target gaps than this, or what contacts are apart by decides on them.
+const TOLD_FROM_GAP: f64 = 10.0;
 
 /// Why a group could not be stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,10 +229,26 @@ impl Dynamics<'_> {
         if self.group.force_length >= control.length || control.speed == 0.0 {
             return true;
         }
-        let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
-        let coordinate = positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max);
-        let rounding = f64::EPSILON * coordinate * self.group.free_acceleration;
+        let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
+        let gap = self.physics.mechanism.tolerances.target_gap;
+        if any_contact && self.group.force_length <= TOLD_FROM_GAP * gap {
+            return false;
+        }
+        let rounding = self.rounding() * self.group.free_acceleration;
         rounding <= UNRESOLVED * control.local_error * control.speed * control.speed
+    }
+
+    /// Rounding [m] of the positions of the group's bodies.
+    fn rounding(&self) -> f64 {
+        let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
+        f64::EPSILON * positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max)
+    }
+
+    /// The part of errors that is acceptable where forces vary over less than the length asked for, as near a centre of
+    /// attraction. The bodies are faster there than before and after by much: an error that is small for that speed is not
+    /// for the others. Energy as of a pull by the inverse square is told from less to the same part.
+    fn depth_share(&self, control: &StepControl) -> f64 {
+        (self.group.force_length / control.length).min(1.0)
     }
 
     /// The length [m] to which errors of position are relative: that over which forces vary, if it is less than asked for.
@@ -267,13 +285,21 @@ impl Dynamics<'_> {
     /// Errors that are just acceptable, of positions and velocities; works follow them.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
+        let share = self.depth_share(control);
+        // What rounding of positions makes of both is no error of a step.
+        let least = if share < 1.0 {
+            let rounding = self.rounding();
+            [rounding, rounding * self.group.free_acceleration / speed]
+        } else {
+            [0.0; 2]
+        };
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let clearance = any_contact.then_some(CLEAR_SHARE * self.physics.mechanism.tolerances.accuracy);
         // Where nothing moves there is nothing to be wrong about.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();
-        let linear = [length, speed].map(|size| {
-            let linear = or_infinite(control.local_error * size);
+        let linear = [(length, least[0]), (speed, least[1])].map(|(size, least)| {
+            let linear = or_infinite((control.local_error * size * share).max(least));
             clearance.map_or(linear, |clearance| linear.min(clearance * size / length))
         });
         if self.group.tree.is_used() {
