@@ -85,6 +85,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         740986,
         "a light disc pinned twice by long arms: what was lacking was given up because rates grew on the way",
     ),
+    (
+        422917,
+        "a light body that was damped: stages of implicit steps counted as solved when what is fast had yet to follow",
+    ),
     (432311, "rounding of places far away was a velocity along a step of nanoseconds"),
     (310743, "books of impacts did not know by what rounding moved the ends of long arms"),
     (

@@ -16,6 +16,9 @@ use std::ops::Range;
 const CONVERGED: f64 = 1e-2;
 /// Corrections below so many roundings of the state cannot be told from none.
 const ROUNDINGS: f64 = 16.0;
+/// A correction leaves at least this part of itself to correct, however much smaller it is than the one before: the first
+/// is the whole way of the step, and what is slow may hide that what is fast has yet to follow it.
+const LEAST_LEFT: f64 = 1e-2;
 /// Corrections in one step; more mean that a shorter step costs less.
 const MOST_CORRECTIONS: usize = 10;
 /// Corrections that fall by less than this factor do not converge.
@@ -207,7 +210,7 @@ impl Radau {
                 }
                 continue;
             };
-            let factor = correction / last;
+            let factor = (correction / last).max(LEAST_LEFT);
             if correction == 0.0 || factor / (1.0 - factor).max(0.0) * correction <= CONVERGED {
                 return Ok(true);
             }
