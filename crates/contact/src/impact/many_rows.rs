@@ -20,6 +20,10 @@ const CONTRADICTION: f64 = 1e-3;
 /// A: the least part of a row that the solver tells from none is a root of `Settings::dependence`.
 pub(super) const NEARLY: f64 = 1e-5;
 
+/// Growth beyond which no impulses are accepted. A body that is wedged between others a million million times heavier takes
+/// impulses that would make it that much faster than it gets; what their rounding leaves the next pass makes good.
+const GREATEST_GROWTH: f64 = 1e13;
+
 /// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given:
 /// first just beyond what the solver takes for dependent (`Settings::dependence`), then more.
 const RAISES: [f64; 2] = [1e-10, 1e-6];
@@ -44,7 +48,11 @@ pub(super) struct ManyRows {
 
 impl Default for ManyRows {
     fn default() -> Self {
-        let settings = Settings { contradiction: Contradiction::LeastSquares, ..Settings::default() };
+        let settings = Settings {
+            contradiction: Contradiction::LeastSquares,
+            greatest_growth: GREATEST_GROWTH,
+            ..Settings::default()
+        };
         let mut problem = Problem::new();
         problem.matrix = Matrix::Symmetric(SparseMatrix::new());
         Self {
@@ -192,5 +200,44 @@ impl Impact {
     /// s = sqrt(A_ii) [1/sqrt(kg)] of a row, by which the solver measures it.
     pub(super) fn length(&self, row: usize) -> f64 {
         self.couplings.diagonal(row).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Inertia;
+    use crate::row::CollisionRow;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn a_light_body_wedged_into_a_corner_stops_a_heavy_one() -> Result<(), ImpactError> {
+        // Two corners of a ring of 900 t against two sides of a flake of 3 mg that leans against a wall and a floor.
+        let ring = Inertia { inverse_mass: 1.11e-6, inverse_moment: 3.83e-6 };
+        let flake = Inertia { inverse_mass: 3.07e5, inverse_moment: 6.72e6 };
+        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let (on_ring, on_wall) = ([BodyId(0), BodyId(1)], [BodyId(1), BodyId::WORLD]);
+        let row = |bodies: [BodyId; 2], jacobian, rate| {
+            let inertia = if bodies == on_ring { [ring, flake] } else { [flake, fixed] };
+            CollisionRow::new(bodies, jacobian, inertia, rate, 0.0, 5e-8, false)
+        };
+        let mut impact = Impact::new();
+        impact.set_rows([
+            row(
+                on_ring,
+                [-0.731007, 0.682369866, 0.0098468537, 0.731007, -0.682369866, 0.3309805286],
+                -1.97e-6,
+            ),
+            row(
+                on_ring,
+                [-0.999866068, -0.016366017, 0.108669443, 0.999866068, 0.016366017, -0.3309805286],
+                -2.89e-6,
+            ),
+            row(on_wall, [-1.0, 0.0, 0.156312, 1.0, 0.0, 1.678756], -2.85e-5),
+            row(on_wall, [0.0, 1.0, 0.156312, 0.0, -1.0, -1.991381], -3.82e-6),
+        ]);
+        impact.resolve_inelastic()?;
+        assert!(impact.rates().iter().all(|&rate| rate >= -1e-6), "{:?}", impact.rates());
+        Ok(())
     }
 }
