@@ -239,7 +239,7 @@ impl Dynamics<'_> {
     }
 
     /// Rounding [m] of the positions of the group's bodies.
-    fn rounding(&self) -> f64 {
+    pub(crate) fn rounding(&self) -> f64 {
         let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
         f64::EPSILON * positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max)
     }
@@ -273,6 +273,11 @@ impl Dynamics<'_> {
             speed = speed.max(of_points);
         }
         if speed > 0.0 { speed } else { control.speed }
+    }
+
+    /// Error of a velocity [m/s] that is just acceptable.
+    pub(crate) fn velocity_scale(&self, control: &StepControl) -> f64 {
+        control.local_error * self.speed(control)
     }
 
     /// A first step [s] where nothing is known: what takes the group its length, shorter for small errors.

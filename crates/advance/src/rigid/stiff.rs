@@ -8,6 +8,9 @@ use crate::ode::{Method, Point};
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
 const HELD_UP: f64 = 0.9;
+/// The same where rounding may be what errors are made of: an explicit method feels that of the fastest forces whatever its
+/// steps, an implicit one does not.
+const ROUGH_HELD_UP: f64 = 0.1;
 /// What is less than this part of it is far from held up.
 const FAR: f64 = 0.5;
 /// Explicit steps over which nobody looks again after one that was far from held up.
@@ -86,10 +89,14 @@ impl Dynamics<'_> {
             tools.stepper.stiffness(Point { offset: *span, state: end_state, rates: end_rates }, tools.scales)
         };
         let numbers = self.group.numbers();
+        let rate = told / self.group.span;
+        // What is fast makes this of the rounding of positions in a step.
+        let is_rough = told * rate * self.rounding() >= self.velocity_scale(&tools.settings.steps);
+        let held_up = if is_rough { ROUGH_HELD_UP } else { HELD_UP };
         let stiffness = &mut self.group.stiffness;
-        stiffness.rate = told / self.group.span;
+        stiffness.rate = rate;
         match (tools.stepper.method().stability_limit(), tools.settings.method.stability_limit()) {
-            (Some(limit), _) if told >= HELD_UP * limit => stiffness.held_up += 1,
+            (Some(limit), _) if told >= held_up * limit => stiffness.held_up += 1,
             (Some(limit), _) => {
                 stiffness.held_up = stiffness.held_up.saturating_sub(1);
                 stiffness.wait = if told < FAR * limit { UNTOLD_STEPS } else { 0 };
