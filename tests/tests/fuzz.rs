@@ -89,6 +89,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         422917,
         "a light body that was damped: stages of implicit steps counted as solved when what is fast had yet to follow",
     ),
+    (
+        1320122,
+        "two rails that led into a floor at a millionth: what stops that took impulses that were refused",
+    ),
     (432311, "rounding of places far away was a velocity along a step of nanoseconds"),
     (310743, "books of impacts did not know by what rounding moved the ends of long arms"),
     (
