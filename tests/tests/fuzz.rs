@@ -100,6 +100,11 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a spring pressed on two bodies at rest: what steps erred by and projections took back counted as lost",
     ),
     (721143, "the same of one body"),
+    (1301890, "a heavy disc at rest was hit by a light body, and bounced for ever as high as the gap"),
+    (1311418, "the same of a disc that others had left with a little speed"),
+    (1310301, "a light body on a stiff spring: steps were held up by rounding of its place"),
+    (1320181, "the same far from the origin"),
+    (1321352, "the same of a body in contact"),
     (429158, "a run that went on without an event for more than 20 s"),
 ];
 

@@ -291,21 +291,15 @@ impl Dynamics<'_> {
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
         let share = self.depth_share(control);
-        // What rounding of positions makes of both is no error of a step.
-        let least = if share < 1.0 {
-            let rounding = self.rounding();
-            [rounding, rounding * self.group.free_acceleration / speed]
-        } else {
-            [0.0; 2]
-        };
+        let least = self.least_errors(share, speed);
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let clearance = any_contact.then_some(CLEAR_SHARE * self.physics.mechanism.tolerances.accuracy);
         // Where nothing moves there is nothing to be wrong about.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();
         let linear = [(length, least[0]), (speed, least[1])].map(|(size, least)| {
-            let linear = or_infinite((control.local_error * size * share).max(least));
-            clearance.map_or(linear, |clearance| linear.min(clearance * size / length))
+            let linear = or_infinite(control.local_error * size * share);
+            clearance.map_or(linear, |clearance| linear.min(clearance * size / length)).max(least)
         });
         if self.group.tree.is_used() {
             return self.scale_tree(linear, scales);
@@ -315,6 +309,16 @@ impl Dynamics<'_> {
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }
         }
+    }
+
+    /// Errors of positions and velocities that are no errors of a step: what rounding of positions makes of them. What is fast
+    /// has velocities of that rounding times its rate. An explicit step is short for such a rate, so that what is slow does not
+    /// err by as much; an implicit one knows what is rounding itself.
+    fn least_errors(&self, share: f64, speed: f64) -> [f64; 2] {
+        let (rounding, group) = (self.rounding(), &*self.group);
+        let rate = if group.stepping() == Stepping::Stiff { 0.0 } else { group.stiffness.of_rounding() };
+        let steep = if share < 1.0 { group.free_acceleration / speed } else { 0.0 };
+        [rounding, rounding * f64::max(rate, steep)]
     }
 
     /// Lets connectors share what they hold, if some depend on others at the end.
