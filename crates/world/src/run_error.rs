@@ -76,7 +76,7 @@ pub enum RunError {
         time: f64,
         /// Length [m] over which forces vary by as much as they are.
         length: f64,
-        /// Names of the bodies that share the step.
+        /// Names of the two bodies that are so near each other, or of all that share the step.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
         laws: Vec<String>,

@@ -57,7 +57,7 @@ pub enum AdvanceError {
         time: f64,
         /// Length [m] over which forces vary by as much as they are.
         length: f64,
-        /// The bodies that share the step.
+        /// The two bodies that are so near each other, or all that share the step.
         bodies: Vec<BodyId>,
         /// Names of the force laws that act on them.
         laws: Vec<String>,
