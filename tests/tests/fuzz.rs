@@ -81,6 +81,18 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (424424, "a light body stood still as rounding while the heavy one that it was pinned to went on"),
     (424911, "a slot was off between the ends of long steps"),
     (701560, "the same of a pin"),
+    (
+        740986,
+        "a light disc pinned twice by long arms: what was lacking was given up because rates grew on the way",
+    ),
+    (
+        422917,
+        "a light body that was damped: stages of implicit steps counted as solved when what is fast had yet to follow",
+    ),
+    (
+        1320122,
+        "two rails that led into a floor at a millionth: what stops that took impulses that were refused",
+    ),
     (432311, "rounding of places far away was a velocity along a step of nanoseconds"),
     (310743, "books of impacts did not know by what rounding moved the ends of long arms"),
     (
@@ -88,6 +100,11 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a spring pressed on two bodies at rest: what steps erred by and projections took back counted as lost",
     ),
     (721143, "the same of one body"),
+    (1301890, "a heavy disc at rest was hit by a light body, and bounced for ever as high as the gap"),
+    (1311418, "the same of a disc that others had left with a little speed"),
+    (1310301, "a light body on a stiff spring: steps were held up by rounding of its place"),
+    (1320181, "the same far from the origin"),
+    (1321352, "the same of a body in contact"),
     (429158, "a run that went on without an event for more than 20 s"),
 ];
 

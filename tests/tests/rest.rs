@@ -1,6 +1,7 @@
 //! Rest: bodies that lose their bounce stay where they are, at no cost.
 
-use halfgap_tests::mechanism::rest_time;
+use halfgap::geometry::DVec2;
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, rest_time};
 use halfgap_tests::{on_floor, world_of};
 
 #[test]
@@ -49,4 +50,34 @@ fn a_bouncing_ball_rests_when_the_geometric_series_ends() {
         assert!(ledger.integration_error().abs() < 1e-12 * ledger.start, "{ledger:?}");
         assert!((ledger.impacts + ledger.captures + 12.5).abs() < 1e-6, "{ledger:?}");
     }
+}
+
+/// Impacts of an elastic ball within 0.2 s, which starts at so many target gaps above the place where it bounces, and the
+/// energy [J] that it loses meanwhile, in units of its weight times the target gap.
+fn bounces_from(gaps: f64) -> (u64, f64) {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
+    let mut state = at_rest(0.0, 0.5);
+    let ball = shop.settler("ball", disc(0.5), 1.0, state, 1.0);
+    let gap = shop.build().tolerances().target_gap;
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
+    state.position.y += (1.0 + gaps) * gap;
+    shop.settler("ball", disc(0.5), 1.0, state, 1.0);
+    let mut world = shop.build();
+    let weight = GRAVITY * world.inertia(ball).map_or(0.0, |inertia| inertia.mass);
+    advance(&mut world, 0.2);
+    let ledger = world.ledger();
+    (world.statistics().impacts, -(ledger.impacts + ledger.captures) / (weight * gap))
+}
+
+#[test]
+fn an_elastic_ball_that_bounces_as_high_as_the_gap_comes_to_rest_in_the_end() {
+    let (impacts, lost) = bounces_from(5.0);
+    assert!((1000..1100).contains(&impacts), "{impacts} impacts");
+    assert!((lost - 5.0).abs() < 0.1, "{lost} gaps");
+    // 20 gaps of 5e-11 m: 2.9e-5 s from one impact to the next.
+    let (impacts, lost) = bounces_from(20.0);
+    assert!((6900..7100).contains(&impacts), "{impacts} impacts");
+    assert!(lost.abs() < 1e-3, "{lost} gaps");
 }

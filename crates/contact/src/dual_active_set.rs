@@ -133,6 +133,17 @@ impl DualActiveSet {
         self.attempt(problem, start, solution, attempt)
     }
 
+    /// As [`run`](Self::run), but at once as given, with forces as large as it takes.
+    pub(crate) fn run_strictly(
+        &mut self,
+        problem: &Problem,
+        start: Start<'_>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let [_, strict, _] = self.attempts();
+        self.attempt(problem, start, solution, strict)
+    }
+
     /// As [`run`](Self::run), but returns `Ok(false)` once many pivots are in sight on a large problem.
     pub(crate) fn run_or_hand_over(
         &mut self,

@@ -54,6 +54,8 @@ pub struct Impact {
     /// The fastest rate [m/s] that was to be changed.
     fastest: f64,
     bound: f64,
+    /// What is left has resisted small impulses.
+    at_last: bool,
     /// How many complementarity problems were solved.
     solves: u64,
     scratch: Scratch,
@@ -95,6 +97,7 @@ impl Impact {
         self.largest_change = 0.0;
         self.fastest = 0.0;
         self.bound = 0.0;
+        self.at_last = false;
         self.solves = 0;
     }
 

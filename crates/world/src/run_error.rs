@@ -63,10 +63,11 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Forces vary over so short a length that rounding of coordinates makes energy of nothing.
+    /// Forces vary over so short a length that rounding of coordinates, or the gap that contacts have, makes energy of
+    /// nothing.
     #[error(
-        "at {time} s the forces of {} on {} vary over {length:e} m: rounding of the coordinates makes more of that than the \
-         tolerance allows",
+        "at {time} s the forces of {} on {} vary over {length:e} m: rounding of the coordinates, or the gap of bodies in \
+         contact, makes more of that than the tolerance allows",
         quoted(laws),
         quoted(bodies)
     )]
@@ -75,7 +76,7 @@ pub enum RunError {
         time: f64,
         /// Length [m] over which forces vary by as much as they are.
         length: f64,
-        /// Names of the bodies that share the step.
+        /// Names of the two bodies that are so near each other, or of all that share the step.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
         laws: Vec<String>,

@@ -3,6 +3,10 @@
 //! How high a pair has risen follows from its rate when it was seen last, its rate now, and the time between: under a
 //! constant acceleration that is v1^2 t / (2 (v1 + v2)). Such a pair meets without elasticity, unless something else in the
 //! same event closes fast. What is cut off is shorter than the fall through the zone and no higher than it.
+//!
+//! What is perfectly elastic and has come to bounce a few target gaps high, as when something light hits it while it rests,
+//! would go on with that for ever, hundreds of thousands of times a second. The energy of that is what the gap itself is
+//! worth: after very many such bounces in a row it is let go as well.
 
 use super::pairs::Seen;
 use super::region::Region;
@@ -11,13 +15,18 @@ use halfgap_collision::Collision;
 
 /// So many feature pairs are remembered of a pair of bodies.
 const MOST_SEEN: usize = 16;
+/// Bounces no higher than so many target gaps are low, and end after so many in a row.
+const LOW_GAPS: f64 = 10.0;
+const MOST_LOW: u32 = 1000;
 
 impl RigidSystem {
     /// Remembers the gaps and rates of the contacts of a region, whose bodies have their new velocities.
     pub(crate) fn note_seen(&mut self, region: &Region) {
         for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-            let fresh = Seen { features: touch.features, time: self.now, gap, rate };
+            let before = self.pairs.seen(pair).iter().find(|old| old.features == touch.features);
+            let low = before.map_or(0, |before| self.low_bounces(before, gap));
+            let fresh = Seen { features: touch.features, time: self.now, gap, rate, low };
             let seen = self.pairs.seen_mut(pair);
             seen.retain(|old| old.features != fresh.features);
             if seen.len() == MOST_SEEN {
@@ -25,6 +34,16 @@ impl RigidSystem {
             }
             seen.push(fresh);
         }
+    }
+
+    /// How many low bounces in a row a contact has come to that was seen before and has a gap [m] now.
+    fn low_bounces(&self, seen: &Seen, gap: f64) -> u32 {
+        let way = seen.rate.max(0.0) * self.now.since(seen.time);
+        // Under a constant acceleration it has come back by so much in the meantime.
+        let back = way - (gap - seen.gap);
+        let rise = if back > 0.0 { 0.25 * way * (way / back) } else { way };
+        let is_low = seen.gap + rise <= LOW_GAPS * self.settings.tolerances.target_gap;
+        if is_low { seen.low.saturating_add(u32::from(seen.rate > self.rest_speed())) } else { 0 }
     }
 
     /// True if all that closes fast in a region was seen within the target zone before and has not left it since.
@@ -43,7 +62,9 @@ impl RigidSystem {
         };
         let (up, down) = (seen.rate.max(0.0), -record.motion.normal_velocity);
         let rise = 0.5 * up * up * self.now.since(seen.time) / (up + down);
-        seen.gap + rise <= record.tolerances.target_gap + record.tolerances.accuracy
+        let gap = record.tolerances.target_gap;
+        let most = if seen.low >= MOST_LOW { LOW_GAPS * gap } else { gap + record.tolerances.accuracy };
+        seen.gap + rise <= most
     }
 }
 

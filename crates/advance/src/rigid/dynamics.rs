@@ -394,12 +394,17 @@ impl Dynamics<'_> {
         }
     }
 
+    /// Rates of a state of the group, stepped as a tree or not.
+    pub(crate) fn find_rates_at(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
+        let constrain = if self.group.tree.is_used() { Self::hang } else { Self::solve_rows };
+        self.find_rates(offset, state, rates, constrain);
+    }
+
     /// Rates of the group's state, with its largest acceleration without the forces of rows, and the forces of rows unless
     /// it is stepped as a tree.
     pub(crate) fn evaluate_with_free(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         self.stage.asks_free_acceleration = true;
-        let constrain = if self.group.tree.is_used() { Self::hang } else { Self::solve_rows };
-        self.find_rates(offset, state, rates, constrain);
+        self.find_rates_at(offset, state, rates);
         self.stage.asks_free_acceleration = false;
         self.group.free_acceleration = self.stage.free_acceleration;
         self.group.force_length = self.stage.force_length;

@@ -48,16 +48,16 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Forces vary over so short a length that rounding of positions makes energy of nothing.
+    /// Forces vary over so short a length that rounding of positions, or the gap that contacts have, makes energy of nothing.
     #[error(
-        "at {time} s the forces on bodies {bodies:?} vary over {length:e} m, too little for their coordinates: {laws:?}"
+        "at {time} s the forces on bodies {bodies:?} vary over {length:e} m, too little for their coordinates or gaps: {laws:?}"
     )]
     Unresolved {
         /// When [s].
         time: f64,
         /// Length [m] over which forces vary by as much as they are.
         length: f64,
-        /// The bodies that share the step.
+        /// The two bodies that are so near each other, or all that share the step.
         bodies: Vec<BodyId>,
         /// Names of the force laws that act on them.
         laws: Vec<String>,

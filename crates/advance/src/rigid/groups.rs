@@ -455,7 +455,24 @@ impl RigidSystem {
         let laws = group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect();
         match failure {
             StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
-            StepFailure::Unresolved(length) => AdvanceError::Unresolved { time, length, bodies, laws },
+            StepFailure::Unresolved(length) => {
+                let bodies = self.so_far_apart(group, length).map_or(bodies, Vec::from);
+                AdvanceError::Unresolved { time, length, bodies, laws }
+            }
         }
+    }
+
+    /// Two bodies whose centres are so far apart [m], if there are such among those that the laws of a group act on: where
+    /// forces vary over that length, these are to blame.
+    fn so_far_apart(&self, group: &Group, length: f64) -> Option<[BodyId; 2]> {
+        let center = |body: BodyId| match group.bodies.binary_search(&body) {
+            Ok(place) => body_state(&group.state, group.bodies.len(), place).position,
+            Err(_) => self.moving_at(body, group.start).pose.position,
+        };
+        let bodies = group.laws.iter().map(|&law| self.laws[law].bodies());
+        let mut pairs = bodies
+            .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
+            .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));
+        pairs.find(|&[a, b]| (center(a) - center(b)).length() == length)
     }
 }

@@ -72,6 +72,8 @@ pub(crate) struct Seen {
     pub(crate) gap: f64,
     /// Rate of the gap [m/s].
     pub(crate) rate: f64,
+    /// How many low bounces have come before, one after another.
+    pub(crate) low: u32,
 }
 
 /// All pairs, and those of each body.

@@ -52,6 +52,8 @@ const WATCHED_SHARE: f64 = 0.5;
 /// What rounding of positions may add to the energy in a step, in local errors of what is usual in the scene: more, and
 /// energy comes from nothing whatever the steps.
 const UNRESOLVED: f64 = 1e4;
+/// Forces on bodies in contact vary over more target gaps than this, or what contacts are apart by decides on them.
+const TOLD_FROM_GAP: f64 = 10.0;
 
 /// Why a group could not be stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,10 +229,26 @@ impl Dynamics<'_> {
         if self.group.force_length >= control.length || control.speed == 0.0 {
             return true;
         }
-        let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
-        let coordinate = positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max);
-        let rounding = f64::EPSILON * coordinate * self.group.free_acceleration;
+        let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
+        let gap = self.physics.mechanism.tolerances.target_gap;
+        if any_contact && self.group.force_length <= TOLD_FROM_GAP * gap {
+            return false;
+        }
+        let rounding = self.rounding() * self.group.free_acceleration;
         rounding <= UNRESOLVED * control.local_error * control.speed * control.speed
+    }
+
+    /// Rounding [m] of the positions of the group's bodies.
+    pub(crate) fn rounding(&self) -> f64 {
+        let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
+        f64::EPSILON * positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max)
+    }
+
+    /// The part of errors that is acceptable where forces vary over less than the length asked for, as near a centre of
+    /// attraction. The bodies are faster there than before and after by much: an error that is small for that speed is not
+    /// for the others. Energy as of a pull by the inverse square is told from less to the same part.
+    fn depth_share(&self, control: &StepControl) -> f64 {
+        (self.group.force_length / control.length).min(1.0)
     }
 
     /// The length [m] to which errors of position are relative: that over which forces vary, if it is less than asked for.
@@ -257,6 +275,11 @@ impl Dynamics<'_> {
         if speed > 0.0 { speed } else { control.speed }
     }
 
+    /// Error of a velocity [m/s] that is just acceptable.
+    pub(crate) fn velocity_scale(&self, control: &StepControl) -> f64 {
+        control.local_error * self.speed(control)
+    }
+
     /// A first step [s] where nothing is known: what takes the group its length, shorter for small errors.
     fn first_step(&self, control: &StepControl) -> f64 {
         let speed = self.speed(control);
@@ -267,14 +290,16 @@ impl Dynamics<'_> {
     /// Errors that are just acceptable, of positions and velocities; works follow them.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
+        let share = self.depth_share(control);
+        let least = self.least_errors(share, speed);
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let clearance = any_contact.then_some(CLEAR_SHARE * self.physics.mechanism.tolerances.accuracy);
         // Where nothing moves there is nothing to be wrong about.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();
-        let linear = [length, speed].map(|size| {
-            let linear = or_infinite(control.local_error * size);
-            clearance.map_or(linear, |clearance| linear.min(clearance * size / length))
+        let linear = [(length, least[0]), (speed, least[1])].map(|(size, least)| {
+            let linear = or_infinite(control.local_error * size * share);
+            clearance.map_or(linear, |clearance| linear.min(clearance * size / length)).max(least)
         });
         if self.group.tree.is_used() {
             return self.scale_tree(linear, scales);
@@ -284,6 +309,16 @@ impl Dynamics<'_> {
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }
         }
+    }
+
+    /// Errors of positions and velocities that are no errors of a step: what rounding of positions makes of them. What is fast
+    /// has velocities of that rounding times its rate. An explicit step is short for such a rate, so that what is slow does not
+    /// err by as much; an implicit one knows what is rounding itself.
+    fn least_errors(&self, share: f64, speed: f64) -> [f64; 2] {
+        let (rounding, group) = (self.rounding(), &*self.group);
+        let rate = if group.stepping() == Stepping::Stiff { 0.0 } else { group.stiffness.of_rounding() };
+        let steep = if share < 1.0 { group.free_acceleration / speed } else { 0.0 };
+        [rounding, rounding * f64::max(rate, steep)]
     }
 
     /// Lets connectors share what they hold, if some depend on others at the end.

@@ -5,9 +5,13 @@ use super::dynamics::Dynamics;
 use super::extending::Tools;
 use super::group::Group;
 use crate::ode::{Method, Point};
+use glam::DVec2;
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
 const HELD_UP: f64 = 0.9;
+/// The same where rounding may be what errors are made of: an explicit method feels that of the fastest forces whatever its
+/// steps, an implicit one does not.
+const ROUGH_HELD_UP: f64 = 0.1;
 /// What is less than this part of it is far from held up.
 const FAR: f64 = 0.5;
 /// Explicit steps over which nobody looks again after one that was far from held up.
@@ -30,6 +34,11 @@ const PATIENCE: f64 = 10.0;
 /// A step that may grow by no more than this is as long as its error allows.
 const FULL_GROWN: f64 = 1.2;
 
+/// Places are moved by so many of their roundings to see how steep forces are.
+const PROBE: f64 = 1e6;
+/// A probe that finds less than this part of what the last one found is taken for one in an idle direction.
+const FADING: f64 = 0.9;
+
 /// What is known of the fastest rate of a group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Stiffness {
@@ -39,6 +48,8 @@ pub(crate) struct Stiffness {
     is_known: bool,
     /// The fastest rate [1/s], as last told.
     rate: f64,
+    /// The rate [1/s] that the steepest forces have, where rounding of places may matter: short steps do not tell it.
+    steep: f64,
     /// Steps that were held up, less those that were not.
     held_up: u32,
     /// Steps until somebody looks again.
@@ -55,6 +66,11 @@ impl Stiffness {
         let first_tells = (self.is_known, self.rate) >= (other.is_known, other.rate);
         let told = if first_tells { self } else { other };
         Self { in_vain: self.in_vain.max(other.in_vain), ..told }
+    }
+
+    /// The fastest rate [1/s] of what rounding moves.
+    pub(crate) fn of_rounding(&self) -> f64 {
+        self.rate.max(self.steep)
     }
 
     /// True if what is fast lets an explicit method go so long a step [s].
@@ -85,11 +101,18 @@ impl Dynamics<'_> {
             let Group { end_state, end_rates, span, .. } = &*self.group;
             tools.stepper.stiffness(Point { offset: *span, state: end_state, rates: end_rates }, tools.scales)
         };
+        self.probe(tools);
         let numbers = self.group.numbers();
+        let rate = told / self.group.span;
+        // What is fast makes this of the rounding of positions in a step.
+        let steep = rate.max(self.group.stiffness.steep);
+        let is_rough =
+            steep * steep * self.group.span * self.rounding() >= self.velocity_scale(&tools.settings.steps);
+        let held_up = if is_rough { ROUGH_HELD_UP } else { HELD_UP };
         let stiffness = &mut self.group.stiffness;
-        stiffness.rate = told / self.group.span;
+        stiffness.rate = rate;
         match (tools.stepper.method().stability_limit(), tools.settings.method.stability_limit()) {
-            (Some(limit), _) if told >= HELD_UP * limit => stiffness.held_up += 1,
+            (Some(limit), _) if told >= held_up * limit => stiffness.held_up += 1,
             (Some(limit), _) => {
                 stiffness.held_up = stiffness.held_up.saturating_sub(1);
                 stiffness.wait = if told < FAR * limit { UNTOLD_STEPS } else { 0 };
@@ -99,6 +122,53 @@ impl Dynamics<'_> {
                 stiffness.saved = saved.min(PATIENCE * cost(numbers));
             }
         }
+    }
+}
+
+impl Dynamics<'_> {
+    /// Finds how steep forces are at the end of an explicit step, if rounding may be what its errors are made of: by what they
+    /// change where bodies are moved a little, each time in other directions.
+    fn probe(&mut self, tools: &Tools<'_>) {
+        let (rounding, span) = (self.rounding(), self.group.span);
+        let scale = self.velocity_scale(&tools.settings.steps);
+        let Some(limit) = tools.stepper.method().stability_limit() else { return };
+        // What is steeper than this would have ended the step.
+        if limit * limit * rounding < scale * span {
+            self.group.stiffness.steep = 0.0;
+            return;
+        }
+        let moved = PROBE * rounding;
+        let turn = self.stage.evaluations;
+        let mut trial = std::mem::take(&mut self.stage.trial);
+        let mut rates = std::mem::take(&mut self.stage.trial_rates);
+        trial.clone_from(&self.group.end_state);
+        rates.clear();
+        rates.resize(trial.len(), 0.0);
+        for (place, &body) in self.group.bodies.iter().enumerate() {
+            let way = moved * DVec2::from_angle((turn + place as u64) as f64);
+            let reach = self.physics.mechanism.flyers[body.index()].reach();
+            trial[3 * place] += way.x;
+            trial[3 * place + 1] += way.y;
+            trial[3 * place + 2] += (way.x + way.y) / reach;
+        }
+        let gap_error = self.stage.gap_error;
+        self.find_rates_at(span, &trial, &mut rates);
+        self.stage.gap_error = gap_error;
+        self.stage.load(&self.group.bodies, &self.group.end_state);
+        let velocities = self.group.velocities();
+        let mut most: f64 = 0.0;
+        for (place, &body) in self.group.bodies.iter().enumerate() {
+            let reach = self.physics.mechanism.flyers[body.index()].reach();
+            let change = |k: usize| {
+                let at = velocities + 3 * place + k;
+                (rates[at] - self.group.end_rates[at]).abs()
+            };
+            most = most.max(change(0)).max(change(1)).max(change(2) * reach);
+        }
+        (self.stage.trial, self.stage.trial_rates) = (trial, rates);
+        let found = (most / moved).sqrt();
+        let known = &mut self.group.stiffness.steep;
+        *known = found.max(FADING * *known);
     }
 }
 

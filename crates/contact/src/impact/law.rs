@@ -182,16 +182,23 @@ impl Impact {
             }
             self.solve_all_inelastic(small)?;
         }
-        let left = (0..self.rows.len()).max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)));
-        let violation = left.map_or(0.0, |row| self.violation(row));
-        self.bound = self.rest(small).max(violation);
-        let most = self.rest(NEARLY * self.fastest);
-        match left {
-            Some(row) if violation > most + self.rounding_of_rates(most) => {
-                Err(ImpactError::Unfinished { row, rate: self.rates[row], bound: most })
-            }
-            _ => Ok(()),
+        if self.unfinished().is_some() {
+            self.at_last = true;
+            let outcome = self.solve_all_inelastic(small);
+            self.at_last = false;
+            outcome?;
         }
+        let violation = (0..self.rows.len()).fold(0.0f64, |most, row| most.max(self.violation(row)));
+        self.bound = self.rest(small).max(violation);
+        self.unfinished().map_or(Ok(()), Err)
+    }
+
+    /// The row that is violated most, if by more than may be left.
+    fn unfinished(&self) -> Option<ImpactError> {
+        let row = (0..self.rows.len()).max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)))?;
+        let bound = self.rest(NEARLY * self.fastest);
+        let is_left = self.violation(row) > bound + self.rounding_of_rates(bound);
+        is_left.then(|| ImpactError::Unfinished { row, rate: self.rates[row], bound })
     }
 }
 

@@ -20,6 +20,10 @@ const CONTRADICTION: f64 = 1e-3;
 /// A: the least part of a row that the solver tells from none is a root of `Settings::dependence`.
 pub(super) const NEARLY: f64 = 1e-5;
 
+/// Growth beyond which no impulses are accepted. A body that is wedged between others a million million times heavier takes
+/// impulses that would make it that much faster than it gets; what their rounding leaves the next pass makes good.
+const GREATEST_GROWTH: f64 = 1e13;
+
 /// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given:
 /// first just beyond what the solver takes for dependent (`Settings::dependence`), then more.
 const RAISES: [f64; 2] = [1e-10, 1e-6];
@@ -44,7 +48,11 @@ pub(super) struct ManyRows {
 
 impl Default for ManyRows {
     fn default() -> Self {
-        let settings = Settings { contradiction: Contradiction::LeastSquares, ..Settings::default() };
+        let settings = Settings {
+            contradiction: Contradiction::LeastSquares,
+            greatest_growth: GREATEST_GROWTH,
+            ..Settings::default()
+        };
         let mut problem = Problem::new();
         problem.matrix = Matrix::Symmetric(SparseMatrix::new());
         Self {
@@ -103,7 +111,12 @@ impl ManyRows {
         })
     }
 
-    /// Solves as given.
+    /// Solves as given, with impulses as large as it takes: as of a body that slides into a wedge.
+    fn solve_strictly(&mut self) -> Result<(), SolveError> {
+        self.solver.run_strictly(&self.problem, Start::Nothing, &mut self.solution)
+    }
+
+    /// Solves as given, but for contradictions that are small.
     fn solve(&mut self) -> Result<(), SolveError> {
         let start = if self.likely.is_empty() { Start::Nothing } else { Start::Guessed(&self.likely) };
         self.solver.run_modestly(&self.problem, start, &mut self.solution)
@@ -133,11 +146,13 @@ impl Impact {
                 return Ok(());
             }
             let error = self.explain(error, many, set);
-            if matches!(error, ImpactError::Infeasible { contradiction, .. } if contradiction > NEARLY * self.fastest)
-            {
-                return Err(error);
+            let is_large = matches!(error, ImpactError::Infeasible { contradiction, .. }
+                if contradiction > NEARLY * self.fastest);
+            if self.at_last || is_large {
+                many.solve_strictly().map_err(|_| error)?;
+            } else {
+                many.solve_raised().ok_or(error)?;
             }
-            many.solve_raised().ok_or(error)?;
         }
         // What the solver leaves, rounding or contradictions, is not to be taken for motion.
         let left = many.solution.residuals.natural * many.scale;
@@ -192,5 +207,123 @@ impl Impact {
     /// s = sqrt(A_ii) [1/sqrt(kg)] of a row, by which the solver measures it.
     pub(super) fn length(&self, row: usize) -> f64 {
         self.couplings.diagonal(row).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::{ImpactLaw, ImpactOrder};
+    use crate::problem::Inertia;
+    use crate::row::CollisionRow;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn a_light_body_wedged_into_a_corner_stops_a_heavy_one() -> Result<(), ImpactError> {
+        // Two corners of a ring of 900 t against two sides of a flake of 3 mg that leans against a wall and a floor.
+        let ring = Inertia { inverse_mass: 1.11e-6, inverse_moment: 3.83e-6 };
+        let flake = Inertia { inverse_mass: 3.07e5, inverse_moment: 6.72e6 };
+        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let (on_ring, on_wall) = ([BodyId(0), BodyId(1)], [BodyId(1), BodyId::WORLD]);
+        let row = |bodies: [BodyId; 2], jacobian, rate| {
+            let inertia = if bodies == on_ring { [ring, flake] } else { [flake, fixed] };
+            CollisionRow::new(bodies, jacobian, inertia, rate, 0.0, 5e-8, false)
+        };
+        let mut impact = Impact::new();
+        impact.set_rows([
+            row(
+                on_ring,
+                [-0.731007, 0.682369866, 0.0098468537, 0.731007, -0.682369866, 0.3309805286],
+                -1.97e-6,
+            ),
+            row(
+                on_ring,
+                [-0.999866068, -0.016366017, 0.108669443, 0.999866068, 0.016366017, -0.3309805286],
+                -2.89e-6,
+            ),
+            row(on_wall, [-1.0, 0.0, 0.156312, 1.0, 0.0, 1.678756], -2.85e-5),
+            row(on_wall, [0.0, 1.0, 0.156312, 0.0, -1.0, -1.991381], -3.82e-6),
+        ]);
+        impact.resolve_inelastic()?;
+        assert!(impact.rates().iter().all(|&rate| rate >= -1e-6), "{:?}", impact.rates());
+        Ok(())
+    }
+
+    #[test]
+    fn a_body_on_two_rails_that_lead_into_the_floor_at_a_millionth_stops() -> Result<(), ImpactError> {
+        // The rails are parallel to the floor but for 1e-6: the body goes along them at 7 m/s and comes down at 1e-5 m/s.
+        let (body, fixed) = (
+            Inertia { inverse_mass: 0.46, inverse_moment: 25.0 },
+            Inertia { inverse_mass: 0.0, inverse_moment: 0.0 },
+        );
+        let along = 7.0;
+        let [first, second] = [[9.5e-7, 1.0, -0.029], [1.22e-6, 1.0, -0.0156]];
+        let spin = -along * (second[0] - first[0]) / (second[2] - first[2]);
+        let down = -(along * first[0] + spin * first[2]);
+        let row = |[x, y, turn]: [f64; 3], bilateral| {
+            let rate = x * along + y * down + turn * spin;
+            let jacobian = [x, y, turn, -x, -y, 0.0];
+            CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, fixed], rate, 0.0, 6e-5, bilateral)
+        };
+        let mut impact = Impact::new();
+        impact.set_rows([row(first, true), row(second, true), row([0.0, 1.0, 0.0], false)]);
+        assert!(impact.rates()[2] < -5e-6, "{:?}", impact.rates());
+        ImpactLaw::SerialSeparate.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
+        let changes = impact.rows().iter().zip(impact.impulses()).map(|(row, j)| row.response[0] * j);
+        assert!((along + changes.sum::<f64>()).abs() < 1e-3, "{:?}", impact.impulses());
+        assert!(impact.rates().iter().all(|rate| rate.abs() < 1e-8), "{:?}", impact.rates());
+        Ok(())
+    }
+
+    #[test]
+    fn what_resists_small_impulses_is_held_by_large_ones() -> Result<(), ImpactError> {
+        // A light body on two rails that are parallel but for 1e-4 is pinned by long arms to a heavy one and to another, which
+        // hits the heavy one and touches a third.
+        let inertias = [
+            (1.966_996_099_768_953_3, 199_516.372),
+            (0.345_544_057_994_402_8, 1.450_1),
+            (4.393_578_581_882_733_5e-4, 1.159_423_6e-3),
+            (0.693_840_2, 2.439_869_7),
+            (0.0, 0.0),
+        ];
+        let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, bilateral| {
+            let inertia = bodies.map(|body| {
+                let (inverse_mass, inverse_moment) = inertias[body as usize];
+                Inertia { inverse_mass, inverse_moment }
+            });
+            let bodies = bodies.map(|body| if body == 4 { BodyId::WORLD } else { BodyId(body) });
+            let jacobian = [x, y, turns[0], -x, -y, turns[1]];
+            CollisionRow::new(bodies, jacobian, inertia, rate, 0.0, 3e-5, bilateral)
+        };
+        let mut impact = Impact::new();
+        impact.set_rows([
+            row([0, 2], [1.0, 0.0], [-0.0033061730114849475, 4.421053633593274], 0.0, true),
+            row([0, 2], [0.0, 1.0], [-0.00033792322108583406, -4.141241410333202], 0.0, true),
+            row(
+                [3, 2],
+                [0.4524345105792622, -0.8917976304279484],
+                [0.3728759855825903, 0.7028326465702406],
+                0.0,
+                false,
+            ),
+            row([2, 1], [-0.0514784547046198, 0.9986741053523037], [-0.15008070184769445, 0.0], -3.1, false),
+            row([1, 0], [1.0, 0.0], [-0.0835908273973045, -6.027404821825888], 0.0, true),
+            row([1, 0], [0.0, 1.0], [-0.3208527307114073, 4.52543049521314], 0.0, true),
+            row(
+                [3, 1],
+                [-0.7912890264419127, -0.611442292152424],
+                [0.12415462398435718, 0.26200585712386515],
+                0.0,
+                false,
+            ),
+            row([3, 4], [0.15057760360235742, 0.9885981920342416], [-0.3605402600715962, 0.0], 0.0, true),
+            row([0, 4], [0.9338833544160206, 0.3575777962131898], [9.877447213480273e-5, 0.0], 0.0, true),
+            row([0, 4], [0.9338536361396701, 0.35765540156513337], [0.00012183002597049753, 0.0], 0.0, true),
+        ]);
+        ImpactLaw::SerialSeparate.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
+        let rates = impact.rows().iter().zip(impact.rates());
+        let violations = rates.map(|(row, rate)| if row.bilateral { rate.abs() } else { -rate });
+        assert!(violations.fold(0.0, f64::max) < 1e-7, "{:?}", impact.rates());
+        Ok(())
     }
 }

@@ -16,6 +16,9 @@ use std::ops::Range;
 const CONVERGED: f64 = 1e-2;
 /// Corrections below so many roundings of the state cannot be told from none.
 const ROUNDINGS: f64 = 16.0;
+/// A correction leaves at least this part of itself to correct, however much smaller it is than the one before: the first
+/// is the whole way of the step, and what is slow may hide that what is fast has yet to follow it.
+const LEAST_LEFT: f64 = 1e-2;
 /// Corrections in one step; more mean that a shorter step costs less.
 const MOST_CORRECTIONS: usize = 10;
 /// Corrections that fall by less than this factor do not converge.
@@ -49,6 +52,8 @@ pub(super) struct Radau {
     split: [Vec<f64>; 3],
     /// Derivatives of the rates by the active components, row by row.
     jacobian: Vec<f64>,
+    /// What rounding makes of the active components along a step.
+    rounding: Vec<f64>,
     real: Factors,
     pair: Factors,
     right: Vec<f64>,
@@ -76,7 +81,9 @@ impl Radau {
     ) -> Result<(), S::Error> {
         self.open(from, step);
         self.differentiate(system, from)?;
-        self.solved = self.factorize() && self.solve_stages(system, from)?;
+        self.solved = self.factorize();
+        self.find_rounding();
+        self.solved = self.solved && self.solve_stages(system, from)?;
         end.copy_from_slice(from.state);
         if self.solved {
             end.iter_mut().zip(&self.stages[2]).for_each(|(end, way)| *end += way);
@@ -186,6 +193,22 @@ impl Radau {
         self.real.factorize() && self.pair.factorize()
     }
 
+    /// Finds what rounding makes of the components: of each itself, and, where rates depend much on some, of these: what is
+    /// fast follows the rounding of the rates.
+    fn find_rounding(&mut self) {
+        let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
+        self.rounding.clear();
+        self.rounding.extend(self.jacobian.chunks_exact(self.active).map(|slopes| {
+            slopes.iter().zip(&self.start).map(|(slope, value)| slope.abs() * rounding(value)).sum::<f64>()
+        }));
+        if self.solved {
+            self.real.solve(&mut self.rounding);
+        }
+        for (found, value) in self.rounding.iter_mut().zip(&self.start) {
+            *found = found.abs() + rounding(value);
+        }
+    }
+
     /// Solves the equations of the stages; false if the corrections do not converge.
     fn solve_stages<S: Ode + ?Sized>(&mut self, system: &mut S, from: Point<'_>) -> Result<bool, S::Error> {
         self.stages.iter_mut().chain(&mut self.split).for_each(|row| row.fill(0.0));
@@ -207,7 +230,7 @@ impl Radau {
                 }
                 continue;
             };
-            let factor = correction / last;
+            let factor = (correction / last).max(LEAST_LEFT);
             if correction == 0.0 || factor / (1.0 - factor).max(0.0) * correction <= CONVERGED {
                 return Ok(true);
             }
@@ -222,13 +245,12 @@ impl Radau {
     /// rounding.
     fn correct(&mut self) -> f64 {
         let (active, length) = (self.active, self.length);
-        let rates = &self.rates;
+        let (rates, rounding) = (&self.rates, &self.rounding);
         let mixed =
             |row: &[f64; 3], at: usize| (0..3).map(|stage| row[stage] * rates[stage][at]).sum::<f64>();
         let mut sum = 0.0;
         let mut note = |at: usize, correction: f64| {
-            let rounding = ROUNDINGS * f64::EPSILON * self.start[at].abs();
-            let beyond = (correction.abs() - rounding).max(0.0) / self.scales[at];
+            let beyond = (correction.abs() - rounding[at]).max(0.0) / self.scales[at];
             sum += beyond * beyond;
         };
         let [first, second, third] = &mut self.split;
@@ -279,6 +301,9 @@ impl Radau {
             self.error[at] = from.rates[at] + stages / self.length;
         }
         self.real.solve(&mut self.error[..self.active]);
+        for (error, rounding) in self.error.iter_mut().zip(&self.rounding) {
+            *error = (error.abs() - rounding).max(0.0);
+        }
     }
 
     /// A few turns of the power method, which goes on from step to step, for the largest eigenvalue in size.
