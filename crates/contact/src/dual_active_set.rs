@@ -301,8 +301,9 @@ impl DualActiveSet {
             let full = if relation.dependent {
                 f64::INFINITY
             } else {
-                // What rounding has made of an acceleration that came to zero is no reason to go back.
-                -self.closed.acceleration[row].min(0.0) / relation.complement
+                // Where rounding has made an acceleration that came to zero positive, the force goes back, but not to where
+                // it would pull.
+                (-self.closed.acceleration[row] / relation.complement).max(-self.closed.force[row])
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
             match self.blocking(full, rounding) {
@@ -364,13 +365,11 @@ impl DualActiveSet {
             Some(certificate) => End::Infeasible(certificate),
             None => {
                 self.contacts_contradict = true;
-                let before = self.closed.acceleration[row];
                 self.closed.force[row] = 0.0;
                 self.closed.solve_closed();
                 self.closed.accelerate();
                 self.make_forces_admissible();
-                // What is as wrong as it was would come up again and again.
-                if self.closed.acceleration[row] > before { End::Done } else { End::Stopped }
+                End::Done
             }
         }
     }

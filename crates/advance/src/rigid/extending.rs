@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn rows_that_all_but_depend_on_each_other_do_not_throw_their_bodies_about() {
         /// Angle between the rods [rad], an error of the second [m], and how far the disc may move for it [m].
-        const ANGLE: f64 = 1e-4;
+        const ANGLE: f64 = 1e-5;
         const ERROR: f64 = 1e-7;
         const WAY: f64 = 1e-5;
         let mut system = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, ANGLE)]);
@@ -155,7 +155,7 @@ mod tests {
             dynamics.end_on_rows(tools);
             (dynamics.group.end_state[1] - before[1]).abs()
         });
-        // To make both rods as long as they say takes a millimetre along the other direction.
+        // To make both rods as long as they say takes a centimetre along the other direction.
         assert!(moved < WAY, "{moved} m");
     }
 

@@ -33,6 +33,9 @@ const PROJECTIONS: usize = 5;
 /// The same where rows share what they hold, which converges more slowly, while each leaves less than so much of the error.
 const SOFT_PROJECTIONS: usize = 20;
 const WORTHWHILE: f64 = 0.5;
+/// A projection that moves bodies by x over a length L leaves errors of x^2/L. One that leaves so many times the error that it
+/// is to mend is not made.
+const WILD: f64 = 16.0;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
 /// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
@@ -360,7 +363,9 @@ impl Dynamics<'_> {
             let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
             self.stage.offsets = offsets;
             self.respond();
-            if !self.is_sound(error, length) {
+            // Rows that all but depend on each other ask for more than what holds near here, and for what rounding makes
+            // of their gaps.
+            if self.largest_change().powi(2) > WILD * error * length {
                 break;
             }
             self.change(&mut end, 0);
@@ -378,25 +383,22 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&rates);
         self.respond();
-        let rate = rates.iter().fold(0.0f64, |most, rate| most.max(rate.abs()));
-        if self.is_sound(rate, speed) {
+        if self.largest_change() <= speed {
             self.change(&mut end, velocities);
         }
         self.stage.rates = rates;
         self.group.end_state = end;
     }
 
-    /// True if the change in the stage, which is to mend an error, is so small beside a scale that it errs by less itself:
-    /// rows that all but depend on each other ask for more, and for what rounding of their errors makes of it.
-    fn is_sound(&self, error: f64, scale: f64) -> bool {
+    /// How far [m], or by how much [m/s], the changes in the stage move a point of a body at most.
+    fn largest_change(&self) -> f64 {
         let sizes = self
             .group
             .bodies
             .iter()
             .zip(&self.stage.changes)
             .map(|(&body, &[x, y, angle])| DVec2::new(x, y).length() + angle.abs() * self.reach(body));
-        let change = sizes.fold(0.0, f64::max);
-        change * change <= error * scale
+        sizes.fold(0.0, f64::max)
     }
 
     /// Adds the changes in the stage to the numbers of a state that begin at a place: positions or velocities.
