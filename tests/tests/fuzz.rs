@@ -83,6 +83,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (701560, "the same of a pin"),
     (
         740986,
+        1401109,
         "a light disc pinned twice by long arms: what was lacking was given up because rates grew on the way",
     ),
     (

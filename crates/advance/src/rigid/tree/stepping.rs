@@ -139,7 +139,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The longest step [s] over which no body of the tree turns by more than it may.
+    /// The longest step [s] over which no body of the tree turns by more than it may, and would not if it always turned as fast
+    /// as it does at last.
     pub(crate) fn longest_turning_step(&self) -> f64 {
         let Group { tree, state, rates, .. } = &*self.group;
         let velocities = self.group.velocities();
@@ -149,7 +150,7 @@ impl Dynamics<'_> {
             if spin == 0.0 && angular == 0.0 {
                 return f64::INFINITY;
             }
-            2.0 * link.most_turn / (spin + (spin * spin + 2.0 * angular * link.most_turn).sqrt())
+            2.0 * link.most_turn / (spin + (spin * spin + 4.0 * angular * link.most_turn).sqrt())
         });
         steps.fold(f64::INFINITY, f64::min)
     }
