@@ -15,6 +15,9 @@ use crate::start::WELL;
 const MANY: usize = 16;
 const LEAST: usize = 8;
 
+/// With fewer rows pivots are as fast.
+const FEWEST_ROWS: usize = 64;
+
 /// Cap on the passes.
 const PASSES: usize = 24;
 
@@ -31,10 +34,11 @@ impl DualActiveSet {
         }
     }
 
-    /// Whether all rows are unilateral, and none is closed for other reasons than those of here.
+    /// Whether there are many rows, all of them unilateral, and none is closed for other reasons than those of here.
     pub(crate) fn may_descend(&self) -> bool {
         let closed = &self.closed;
-        closed.spread == 0.0 && closed.proximal == 0.0 && closed.kept == 0 && !closed.free.contains(&true)
+        let is_plain = closed.spread == 0.0 && closed.proximal == 0.0 && closed.kept == 0;
+        is_plain && closed.force.len() >= FEWEST_ROWS && !closed.free.contains(&true)
     }
 
     /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other afterwards.
