@@ -33,9 +33,6 @@ const PROJECTIONS: usize = 5;
 /// The same where rows share what they hold, which converges more slowly, while each leaves less than so much of the error.
 const SOFT_PROJECTIONS: usize = 20;
 const WORTHWHILE: f64 = 0.5;
-/// A projection that moves bodies by x over a length L leaves errors of x^2/L. One that leaves so many times the error that it
-/// is to mend is not made.
-const WILD: f64 = 16.0;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
 /// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
@@ -363,9 +360,9 @@ impl Dynamics<'_> {
             let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
             self.stage.offsets = offsets;
             self.respond();
-            // Rows that all but depend on each other ask for more than what holds near here, and for what rounding makes
-            // of their gaps.
-            if self.largest_change().powi(2) > WILD * error * length {
+            // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask for more than
+            // what holds near here, and for what rounding makes of their gaps.
+            if self.largest_change().powi(2) > error * length {
                 break;
             }
             self.change(&mut end, 0);
