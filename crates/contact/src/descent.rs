@@ -8,6 +8,7 @@
 //! close many at once. A row that depends on others keeps its force during a pass; at the end these forces are moved to
 //! independent rows, each along its null direction. Pivots mend what is left.
 
+use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::DualActiveSet;
 use crate::start::WELL;
 
@@ -106,19 +107,11 @@ impl DualActiveSet {
                 closed.step[at] = -closed.acceleration[row];
             }
             closed.factor.solve(&mut closed.step[..count]);
-            let mut length = 1.0;
-            let mut first = None;
-            for (at, &row) in closed.rows.iter().enumerate() {
-                if force[row] + length * closed.step[at] < 0.0 {
-                    (length, first) = (force[row] / -closed.step[at], Some(at));
-                }
-            }
-            for (at, &row) in closed.rows.iter().enumerate() {
-                force[row] = (force[row] + length * closed.step[at]).max(0.0);
+            let (length, first) = closed.go_along_step(force, 1.0);
+            for &row in &closed.rows {
                 closed.acceleration[row] *= 1.0 - length;
             }
             let Some(first) = first else { break };
-            force[closed.rows[first]] = 0.0;
             // Of those that had none and would pull none can stay.
             for at in (0..count).rev() {
                 if at == first || (force[closed.rows[at]] == 0.0 && closed.step[at] < 0.0) {
@@ -139,26 +132,34 @@ impl DualActiveSet {
                     break;
                 }
                 closed.find_response();
-                let mut length = force[row];
-                let mut first = None;
-                for (at, &other) in closed.rows.iter().enumerate() {
-                    if force[other] + length * closed.step[at] < 0.0 {
-                        (length, first) = (force[other] / -closed.step[at], Some(at));
-                    }
-                }
-                for (at, &other) in closed.rows.iter().enumerate() {
-                    force[other] = (force[other] + length * closed.step[at]).max(0.0);
-                }
+                let (length, first) = closed.go_along_step(force, force[row]);
                 force[row] -= length;
                 match first {
-                    Some(at) => {
-                        force[closed.rows[at]] = 0.0;
-                        closed.open_at(at);
-                    }
+                    Some(at) => closed.open_at(at),
                     None => force[row] = 0.0,
                 }
             }
         }
+    }
+}
+
+impl ClosedRows {
+    /// Adds the step, times a length, to forces of the closed rows, no farther than until the first runs out: how far, and the
+    /// position of that row.
+    fn go_along_step(&self, force: &mut [f64], limit: f64) -> (f64, Option<usize>) {
+        let (mut length, mut first) = (limit, None);
+        for (at, &row) in self.rows.iter().enumerate() {
+            if force[row] + length * self.step[at] < 0.0 {
+                (length, first) = (force[row] / -self.step[at], Some(at));
+            }
+        }
+        for (at, &row) in self.rows.iter().enumerate() {
+            force[row] = (force[row] + length * self.step[at]).max(0.0);
+        }
+        if let Some(first) = first {
+            force[self.rows[first]] = 0.0;
+        }
+        (length, first)
     }
 }
 
