@@ -20,7 +20,7 @@ use refining::Refining;
 use structure::Shared;
 
 /// Part of a row's square below which what earlier rows leave of it is measured with care.
-const DOUBTFUL: f64 = 1e-5;
+const DOUBTFUL: f64 = 1e-4;
 
 /// Part of a row's square below which what earlier rows leave of it is not told from rounding of their forces.
 const RESOLVED: f64 = 1e-13;
@@ -173,20 +173,17 @@ impl HeldRows {
     pub fn factorize(&mut self, jacobians: &[[f64; 6]]) -> usize {
         assert_eq!(jacobians.len(), self.len(), "coefficients of every row");
         let mut dependent = 0;
-        let mut nearly = false;
         self.shares.fill(false);
         for place in 0..self.len() {
             let coefficients = &jacobians[self.order.rows[place] as usize];
             let diagonal = self.scale_row(place, coefficients);
             let raised = self.raise[place] * diagonal;
             let mut left = (diagonal + raised) - self.eliminate(place);
-            if raised == 0.0 && (nearly || left <= DOUBTFUL * diagonal) {
+            if raised == 0.0 && left <= DOUBTFUL * diagonal {
                 left = self.measure_rest(place);
             }
             let independent = left > self.dependence * diagonal
                 || (raised == 0.0 && left > RESOLVED * diagonal && self.moves_by_itself(place));
-            // A small pivot enlarges the rounding of all that follows.
-            nearly |= independent && left <= DOUBTFUL * diagonal;
             self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
             if !independent {
                 dependent += 1;

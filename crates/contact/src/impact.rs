@@ -56,6 +56,8 @@ pub struct Impact {
     bound: f64,
     /// What is left has resisted small impulses.
     at_last: bool,
+    /// What takes many pivots is given up.
+    is_trial: bool,
     /// How many complementarity problems were solved.
     solves: u64,
     scratch: Scratch,

@@ -3,7 +3,7 @@
 use super::bounces::closes_fast;
 use super::error::AdvanceError;
 use super::group::SegmentEnd;
-use super::impacts::ImpactReport;
+use super::impacts::{ImpactReport, Manner};
 use super::pairs::PairId;
 use super::region::{Region, Touch};
 use super::repeats::{CALM_REPEATS, is_same_time};
@@ -98,6 +98,10 @@ impl RigidSystem {
 
     /// A group's segment ends, or something ends it early; true if that is an impact: at a stop or a corner of a rail.
     pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<bool, AdvanceError> {
+        if self.group_of(leader).is_some_and(|group| group.look.is_some()) {
+            self.look_further(leader);
+            return Ok(false);
+        }
         if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
             return self.extend_naturally(leader).map(|()| false);
         }
@@ -240,7 +244,8 @@ impl RigidSystem {
         let is_storm = self.at_tick || self.note_events(&work.region) || work.repeats > 0;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
-        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, is_storm);
+        let manner = if is_storm { Manner::Inelastic } else { Manner::Lawful };
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner);
         if outcome.is_ok() {
             self.book_impact(&report, is_storm);
         }
@@ -276,6 +281,7 @@ impl RigidSystem {
     fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let EventWork { region, settling, .. } = &mut *work;
         settling.expect(region.records.iter().map(|record| self.is_likely(record)));
+        settling.expect_forces(region, &self.changes.end);
         self.settle_region(work, !work.region.at_start)?;
         for round in 1..=HOP_ROUNDS {
             if !self.any_held_hops(work) {
@@ -302,7 +308,8 @@ impl RigidSystem {
         let now = self.now;
         work.before.clear();
         work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
-        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, true);
+        let trial = Manner::Trial;
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, trial);
         if outcome.is_ok() {
             self.remeasure(&mut work.region, now);
         }

@@ -21,7 +21,7 @@ impl Dynamics<'_> {
         if !self.group.is_unwatched {
             self.extend_on_rows(tools)?;
             self.note_stiffness(tools);
-            self.group.event = self.find_event();
+            self.find_event();
             return Ok(());
         }
         self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
@@ -30,7 +30,8 @@ impl Dynamics<'_> {
         self.evaluate_end();
         self.note_stiffness(tools);
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
-        (self.group.event, self.group.largest_error) = (None, self.stage.gap_error);
+        (self.group.event, self.group.look) = (None, None);
+        self.group.largest_error = self.stage.gap_error;
         Ok(())
     }
 

@@ -104,6 +104,8 @@ pub(crate) struct Group {
     pub(crate) largest_error: f64,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
+    /// Offset [s] up to which it is certain that no contact loses its force, where that has not been looked at further.
+    pub(crate) look: Option<f64>,
 }
 
 impl Group {
@@ -123,7 +125,7 @@ impl Group {
         (self.is_brief, self.has_kinks, self.is_unwatched) = (false, false, false);
         self.stiffness = Stiffness::default();
         self.accepted = None;
-        self.event = None;
+        (self.event, self.look) = (None, None);
     }
 
     /// The body by which the group is found.
@@ -154,9 +156,10 @@ impl Group {
         &self.rate_paths[self.velocities().min(self.rate_paths.len())..]
     }
 
-    /// When the segment ends or is interrupted by an event of the group itself.
+    /// When the segment ends, is interrupted by an event of the group itself, or has to be looked at further.
     pub(crate) fn due(&self) -> Time {
-        self.start.plus(self.event.map_or(self.span, |(offset, _)| offset))
+        let end = self.event.map_or(self.span, |(offset, _)| offset);
+        self.start.plus(self.look.unwrap_or(end))
     }
 
     /// When the segment ends.

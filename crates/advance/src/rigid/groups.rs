@@ -434,6 +434,14 @@ impl RigidSystem {
         Ok(())
     }
 
+    /// Looks along the rest of a group's segment for a contact that loses its force.
+    pub(crate) fn look_further(&mut self, leader: BodyId) {
+        let Some(mut group) = self.groups.take(leader) else { return };
+        self.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
+        self.queue.set(self.group_source(leader), group.due());
+        self.groups.put(group);
+    }
+
     /// Forgets a group that cannot be stepped: its bodies are where its last segment ended.
     fn give_up(&mut self, group: &Group) {
         for (place, &body) in group.bodies.iter().enumerate() {

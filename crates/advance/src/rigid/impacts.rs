@@ -36,6 +36,17 @@ pub struct ImpactReport {
     pub states: Vec<(BodyId, BodyState)>,
 }
 
+/// In what way an impact is resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Manner {
+    /// By the scene's law.
+    Lawful,
+    /// Without elasticity.
+    Inelastic,
+    /// The same, unless that takes long.
+    Trial,
+}
+
 impl RigidSystem {
     /// Rates [m/s] up to which a row counts as neither closing nor opening.
     pub(crate) fn rest_speed(&self) -> f64 {
@@ -58,7 +69,7 @@ impl RigidSystem {
         impact: &mut Impact,
         report: &mut ImpactReport,
         time: Time,
-        is_storm: bool,
+        manner: Manner,
     ) -> Result<bool, AdvanceError> {
         let dull = self.settings.impulse_step.is_none() && self.bounces_low(region);
         let rows = region.records.iter().map(|record| {
@@ -69,10 +80,10 @@ impl RigidSystem {
         });
         impact.set_rows(rows);
         let random = self.counts.impacts;
-        let outcome = if is_storm {
-            impact.resolve_inelastic()
-        } else {
-            self.settings.law.resolve(impact, self.settings.order, random)
+        let outcome = match manner {
+            Manner::Lawful => self.settings.law.resolve(impact, self.settings.order, random),
+            Manner::Inelastic => impact.resolve_inelastic(),
+            Manner::Trial => impact.try_inelastic(),
         };
         outcome.map_err(|source| impact_error(region, time, source))?;
         self.counts.contact_solves += impact.solves();

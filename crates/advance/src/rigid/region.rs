@@ -217,12 +217,16 @@ impl RigidSystem {
 }
 
 fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Option<Touch> {
-    let (primary, normal) = (&record.parties.primary, &record.parties.normal);
-    let touch = Touch::new([primary.body, normal.body], [primary.feature()?, normal.feature()?]);
-    (touch.bodies == bodies).then_some(touch)
+    Touch::of(record).filter(|touch| touch.bodies == bodies)
 }
 
 impl Touch {
+    /// The features of a record, unless it is a connector's.
+    pub(crate) fn of(record: &Collision) -> Option<Touch> {
+        let (primary, normal) = (&record.parties.primary, &record.parties.normal);
+        Some(Touch::new([primary.body, normal.body], [primary.feature()?, normal.feature()?]))
+    }
+
     /// The features of a contact, whichever of its two bodies is named first.
     pub(crate) fn new(bodies: [BodyId; 2], features: [FeatureId; 2]) -> Self {
         if bodies[0] <= bodies[1] {

@@ -7,6 +7,7 @@
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
 use super::region::{Region, Touch};
+use super::report::RowForce;
 use super::rows::{HeldRow, RowSource};
 use super::segment::LONGEST_STEP;
 use super::system::RigidSystem;
@@ -41,8 +42,10 @@ pub(crate) struct Settling {
     candidates: Vec<usize>,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
-    /// Force [N] of each in the last solve of the event, if it was in it.
+    /// Force [N] of each in the last solve of the event, if it was in it; before the first that at which its contact was cut.
     forces: Vec<Option<f64>>,
+    /// Contacts that were cut in the event, sorted, with their forces [N].
+    ended: Vec<(Touch, f64)>,
     /// What is known of the candidates, as the solver is told.
     guess: WarmStart,
     /// The rows to be held, with the record of each.
@@ -77,6 +80,7 @@ impl Default for Settling {
             candidates: Vec::new(),
             likely: Vec::new(),
             forces: Vec::new(),
+            ended: Vec::new(),
             guess: WarmStart::new(),
             held: Vec::new(),
             touches: Vec::new(),
@@ -129,6 +133,22 @@ impl Settling {
         self.likely.clear();
         self.likely.extend(likely);
         self.forces.clear();
+    }
+
+    /// Expects the records of a region to carry the forces at which their contacts were cut, if there were any.
+    pub(crate) fn expect_forces(&mut self, region: &Region, ended: &[RowForce]) {
+        self.ended.clear();
+        self.ended
+            .extend(ended.iter().filter_map(|row| Some((Touch::new(row.bodies, row.features?), row.force))));
+        if self.ended.is_empty() {
+            return;
+        }
+        self.ended.sort_unstable_by_key(|(touch, _)| *touch);
+        self.forces.extend(region.records.iter().map(|record| {
+            let touch = Touch::of(record)?;
+            let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
+            Some(self.ended[place].1)
+        }));
     }
 
     fn solve_at_all(&mut self) -> Result<(), SolveError> {
@@ -485,6 +505,18 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 mod tests {
     use super::super::test_scene::resting_discs;
     use super::*;
+
+    #[test]
+    fn what_is_cut_is_expected_to_carry_its_force_again() {
+        let mut system = resting_discs(&[0.0, 1.5]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(1));
+        system.collect_region(&mut work.region, &[BodyId(2), BodyId(1)], system.now);
+        work.settling.expect([None, None].into_iter());
+        work.settling.expect_forces(&work.region, &system.changes.end);
+        let [None, Some(force)] = work.settling.forces[..] else { panic!("{:?}", work.settling.forces) };
+        assert!((force - 9.81).abs() < 1e-9, "{force} N");
+    }
 
     #[test]
     fn the_solver_begins_with_what_is_held() {

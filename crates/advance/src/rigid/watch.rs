@@ -8,7 +8,7 @@ use super::crossing::{EARLY, NODES, early_fall, early_node, first_fall, first_fa
 use super::dynamics::Dynamics;
 use super::group::{Group, SegmentEnd, Stop};
 use super::law::Snapshot;
-use super::rows::{RowSource, moving_of};
+use super::rows::{HeldRow, RowSource, moving_of};
 use super::segment::StepControl;
 use crate::ode::Ode;
 
@@ -23,6 +23,9 @@ const INNER_ERRORS: f64 = 50.0;
 /// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
 /// more for contacts.
 const INNER: [f64; 3] = [0.5, 0.3, 0.7];
+
+/// A force may begin to fall this many times as fast as it varies along a step.
+const STEEP: f64 = 4.0;
 
 /// Functions of the rows along a segment of which the first to fall below zero is an event.
 struct Watch {
@@ -65,13 +68,49 @@ pub(crate) struct Samples {
     early: Vec<[f64; EARLY]>,
 }
 
+/// Makes room for so many rows.
+fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
+    list.clear();
+    list.resize(rows, [0.0; NODES]);
+}
+
 impl Dynamics<'_> {
-    /// The earliest event of the group itself on the segment, whose dense output and end forces are known.
-    pub(crate) fn find_event(&mut self) -> Option<(f64, SegmentEnd)> {
+    /// Finds what ends the segment early, whose dense output and end forces are known. Whether a contact loses its force takes
+    /// an evaluation for every place looked at, so that waits until the time up to which none can: mostly something else
+    /// has happened by then.
+    pub(crate) fn find_event(&mut self) {
+        self.group.event = self.find_geometric_event();
+        let firm = self.firm_part().map(|part| part * self.group.span);
+        let earlier = |offset: &f64| self.group.event.is_none_or(|(event, _)| *offset < event);
+        self.group.look = firm.filter(earlier);
+        if self.group.look == Some(0.0) {
+            self.look_for_release();
+        }
+    }
+
+    /// Finds the first contact that loses its force on the segment, if that comes before what ends it otherwise.
+    pub(crate) fn look_for_release(&mut self) {
+        self.group.look = None;
+        self.find_least_forces();
+        let mut forces = std::mem::take(&mut self.stage.samples.forces);
+        fill(&mut forces, self.group.rows.len());
+        for index in 0..NODES {
+            if index > 0 && index + 1 < NODES {
+                self.evaluate_at(node(index, self.group.span));
+            }
+            self.sample_forces(&mut forces, index);
+        }
+        let mut earliest = self.group.event;
+        self.find_first(&mut earliest, &forces, &RELEASES);
+        self.group.event = earliest;
+        self.stage.samples.forces = forces;
+    }
+
+    /// The earliest event that bodies' places tell.
+    fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest: Option<(f64, SegmentEnd)> = None;
         let samples = self.sample_rows();
         self.find_early_sinking(&mut earliest, &samples);
-        self.find_first(&mut earliest, &samples.forces, &RELEASES);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
@@ -170,48 +209,39 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
-    /// True if no contact comes near to losing its force within the step, as its stages tell: its least force there and at
-    /// both ends is more than all of them vary by. Implicit steps have too few stages to tell.
-    fn is_firm(&self) -> bool {
+    /// Up to which part of the step no contact comes near to losing its force, as its stages tell; none if that is so all along.
+    /// A force is firm where its least value at the stages and both ends is more than all of them vary by, and for as long as
+    /// it would take to vanish several times as fast as it varies. Implicit steps have too few stages to tell.
+    fn firm_part(&self) -> Option<f64> {
         let Group { rows, forces, end_forces, .. } = &*self.group;
-        let ranges = self.stage.force_ranges.iter().zip(forces.iter().zip(end_forces));
-        let is_firm = |([least, largest], (start, end)): (&[f64; 2], (&f64, &f64))| {
-            let (least, largest) = (least.min(*start).min(*end), largest.max(*start).max(*end));
-            least > largest - least
+        let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
+        let is_known =
+            self.group.stepping() != Stepping::Stiff && self.stage.force_ranges.len() == rows.len();
+        let part = |(index, _): (usize, &HeldRow)| {
+            let (start, end) = (forces[index], end_forces[index]);
+            let [least, largest] = if is_known { self.stage.force_ranges[index] } else { [start, end] };
+            let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
+            let is_firm = is_known && least > largest - least;
+            let part = if is_known && start > 0.0 { start / (STEEP * (largest - least)) } else { 0.0 };
+            (!is_firm).then_some(part)
         };
-        self.group.stepping() != Stepping::Stiff
-            && ranges.len() == rows.len()
-            && rows.iter().zip(ranges).all(|(row, range)| row.bilateral || is_firm(range))
+        contacts.filter_map(part).min_by(f64::total_cmp)
     }
 
-    /// Samples all that is watched of the rows at the nodes.
+    /// Samples what places tell of the rows at the nodes.
     fn sample_rows(&mut self) -> Samples {
         let mut samples = std::mem::take(&mut self.stage.samples);
-        let has_contacts = self.group.rows.iter().any(|row| !row.bilateral) && !self.is_firm();
         let group = &*self.group;
         let can_change = group.rows.iter().any(|row| self.physics.mechanism.can_change(row));
-        let fill = |list: &mut Vec<[f64; NODES]>, rows: usize| {
-            list.clear();
-            list.resize(rows, [0.0; NODES]);
-        };
-        fill(&mut samples.forces, if has_contacts { group.rows.len() } else { 0 });
         fill(&mut samples.rooms, if can_change { group.rows.len() } else { 0 });
         fill(&mut samples.heights, group.leaning.len());
         samples.early.clear();
         samples.early.resize(group.leaning.len(), [0.0; EARLY]);
-        if has_contacts {
-            self.find_least_forces();
-        }
         let any_place = can_change || !samples.heights.is_empty();
         for index in 0..NODES {
-            let is_inside = index > 0 && index + 1 < NODES;
-            let offset = node(index, self.group.span);
-            if has_contacts && is_inside {
-                self.evaluate_at(offset);
-            } else if any_place {
-                self.place_at(offset);
+            if any_place {
+                self.place_at(node(index, self.group.span));
             }
-            self.sample_forces(&mut samples.forces, index);
             for (row, sample) in samples.rooms.iter_mut().enumerate() {
                 sample[index] = self.room(row);
             }
@@ -393,3 +423,56 @@ const SHORTER: f64 = 0.25;
 const MOST_SHORTER: usize = 30;
 /// Part of the segment after which the sign of a switching function is taken.
 const SIGN_AT: f64 = 1.0 / 1024.0;
+
+#[cfg(test)]
+mod tests {
+    use super::super::group::SegmentEnd;
+    use super::super::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    /// Part of its step up to which a contact is firm whose force [N] goes from the first number to the second.
+    fn firm_part(start: f64, end: f64) -> Option<f64> {
+        let mut system = resting_discs(&[0.0]);
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        group.forces[0] = start;
+        group.end_forces[0] = end;
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.firm_part()
+        })
+    }
+
+    #[test]
+    fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
+        assert_eq!(firm_part(10.0, 9.0), None);
+        assert_eq!(firm_part(9.0, 10.0), None);
+        // It falls by 8 N along the step, and to begin with no more than four times as fast.
+        assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
+        assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
+        // What starts without force is looked at once.
+        assert_eq!(firm_part(0.0, 5.0), Some(0.0));
+        assert_eq!(firm_part(0.0, 0.0), Some(0.0));
+    }
+
+    #[test]
+    fn what_may_lose_its_force_is_looked_at_when_its_time_comes() {
+        let leader = BodyId(1);
+        let mut system = resting_discs(&[0.0]);
+        let mut group = system.groups.take(leader).expect("it is held");
+        // As if its force fell from twice its weight and were gone at the end.
+        group.forces[0] = 20.0;
+        group.end_forces[0] = -20.0;
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.find_event();
+        });
+        assert!(group.event.is_none());
+        assert_eq!(group.due(), group.start.plus(group.span / 8.0));
+        system.groups.put(group);
+        system.look_further(leader);
+        let group = system.group_of(leader).expect("it goes on");
+        let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
+        assert!(offset > 0.75 * group.span, "{offset} s");
+        assert_eq!(system.queue.time_of(system.group_source(leader)), Some(group.start.plus(offset)));
+    }
+}

@@ -98,4 +98,21 @@ mod tests {
         held.set_structure(&[inertia(1.0), inertia(1e11)], &[[Some(0), Some(1)]; 6]);
         assert_eq!(held.factorize(&rows), 3);
     }
+
+    #[test]
+    fn what_depends_on_rows_that_leave_little_is_told_from_their_rounding() {
+        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
+        // A light and a heavy body, both pinned to the world and to each other, and the heavy one once more.
+        let sides = [[Some(0), None], [Some(0), Some(1)], [Some(1), None], [Some(1), None]];
+        let sides: Vec<_> = sides.iter().flat_map(|sides| [*sides; 2]).collect();
+        let arms = [[-0.987, -0.937], [0.986, -0.954], [-0.882, -0.968], [0.686, -0.979], [-0.418, -0.988]];
+        for heavy in [1e9, 1e11, 3e12] {
+            let to_world = |arm: usize| pin(arms[arm], [0.0; 2]);
+            let pins = [to_world(0), pin(arms[1], arms[2]), to_world(3), to_world(4)];
+            let rows: Vec<_> = pins.into_iter().flatten().collect();
+            let mut held = HeldRows::default();
+            held.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
+            assert_eq!(held.factorize(&rows), 2, "{heavy:e}");
+        }
+    }
 }

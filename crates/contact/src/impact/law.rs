@@ -142,6 +142,18 @@ impl Impact {
         self.finish(small)
     }
 
+    /// As [`resolve_inelastic`](Self::resolve_inelastic), for what may as well be left: rows that take many pivots are given
+    /// up.
+    ///
+    /// # Errors
+    /// As for [`ImpactLaw::resolve`].
+    pub fn try_inelastic(&mut self) -> Result<(), ImpactError> {
+        self.is_trial = true;
+        let outcome = self.resolve_inelastic();
+        self.is_trial = false;
+        outcome
+    }
+
     /// Speed [m/s] below which no row rebounds.
     fn slow_speed(&self) -> f64 {
         self.rows.iter().map(|row| row.velocity_tol).fold(f64::INFINITY, f64::min)

@@ -28,14 +28,18 @@ const GREATEST_GROWTH: f64 = 1e13;
 /// first just beyond what the solver takes for dependent (`Settings::dependence`), then more.
 const RAISES: [f64; 2] = [1e-10, 1e-6];
 
+/// Cap on the pivots of a trial, per row.
+const TRIAL_PIVOTS: usize = 1;
+
 const OUTSIDE: u32 = u32::MAX;
 
 /// The problem of some rows of an impact, with its solver.
 #[derive(Clone, Debug)]
 pub(super) struct ManyRows {
     solver: DualActiveSet,
-    /// `inconsistency` of the solver when nothing asks for more.
+    /// `inconsistency` and `pivots_per_row` of the solver when nothing asks for more, or less.
     inconsistency: f64,
+    pivots_per_row: usize,
     problem: Problem,
     solution: Solution,
     /// Place of each row of the impact in the problem, or `OUTSIDE`.
@@ -58,6 +62,7 @@ impl Default for ManyRows {
         Self {
             solver: DualActiveSet::new(settings).expect("the default settings are usable"),
             inconsistency: settings.inconsistency,
+            pivots_per_row: settings.pivots_per_row,
             problem,
             solution: Solution::new(),
             place: Vec::new(),
@@ -202,6 +207,7 @@ impl Impact {
         }
         let relative = if many.scale > 0.0 { allowed / many.scale } else { 0.0 };
         many.solver.settings.inconsistency = many.inconsistency.max(relative);
+        many.solver.settings.pivots_per_row = if self.is_trial { TRIAL_PIVOTS } else { many.pivots_per_row };
     }
 
     /// s = sqrt(A_ii) [1/sqrt(kg)] of a row, by which the solver measures it.

@@ -188,10 +188,13 @@ mod tests {
             CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 0.0, 1e-3, false)
         };
         let mut impact = Impact::new();
-        impact.set_rows((0..8).map(|place| row(place, if place == 0 { -1.0 } else { 1e-3 })));
-        impact.resolve_inelastic()?;
-        assert_eq!((impact.solves(), impact.active_rows()), (1, 8));
-        assert!(impact.rates().iter().all(|rate| rate.abs() <= impact.bound()), "{:?}", impact.rates());
+        // A trial has time for as much.
+        for resolve in [Impact::resolve_inelastic, Impact::try_inelastic] {
+            impact.set_rows((0..8).map(|place| row(place, if place == 0 { -1.0 } else { 1e-3 })));
+            resolve(&mut impact)?;
+            assert_eq!((impact.solves(), impact.active_rows()), (1, 8));
+            assert!(impact.rates().iter().all(|rate| rate.abs() <= impact.bound()), "{:?}", impact.rates());
+        }
         Ok(())
     }
 }
