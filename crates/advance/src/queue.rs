@@ -20,23 +20,37 @@ pub struct Scheduled {
     pub source: SourceId,
 }
 
-impl Scheduled {
-    #[inline]
-    fn is_before(&self, other: &Self) -> bool {
-        self.time.is_before(other.time) | ((self.time == other.time) & (self.source < other.source))
-    }
+const ABSENT: u32 = u32::MAX;
+/// Children of a node of the heap.
+const CHILDREN: usize = 4;
+/// Slots before the root, so that the children of a node fill one family.
+const BEFORE_ROOT: usize = CHILDREN - 1;
+
+/// What an entry is ordered by first: the first number of its time. The rest of the time decides between equal ones, and is
+/// kept elsewhere.
+#[derive(Clone, Copy, Debug)]
+struct Key {
+    seconds: f64,
+    source: u32,
 }
 
-const ABSENT: u32 = u32::MAX;
-/// Children of a node of the heap: they lie side by side, and half as many levels are gone through as with two.
-const CHILDREN: usize = 4;
+/// Where there is no entry: later than all.
+const NOTHING: Key = Key { seconds: f64::INFINITY, source: ABSENT };
+
+/// The children of a node, in one line of the cache: a heap of many sources costs as much as the lines it touches.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Family([Key; CHILDREN]);
 
 /// The predicted events of all sources.
 #[derive(Clone, Debug, Default)]
 pub struct EventQueue {
-    heap: Vec<Scheduled>,
+    families: Vec<Family>,
+    len: usize,
     /// Place in the heap of each source's entry.
     places: Vec<u32>,
+    /// What the first number of each source's time leaves.
+    rests: Vec<f64>,
 }
 
 impl EventQueue {
@@ -49,26 +63,26 @@ impl EventQueue {
     /// How many sources have an event.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.heap.len()
+        self.len
     }
 
     /// True if no source has an event.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.heap.is_empty()
+        self.len == 0
     }
 
     /// The earliest event.
     #[must_use]
     pub fn first(&self) -> Option<Scheduled> {
-        self.heap.first().copied()
+        let key = (self.len > 0).then(|| self.key(0))?;
+        Some(Scheduled { time: self.time(key), source: SourceId(key.source) })
     }
 
     /// When the source's event is predicted, if it has one.
     #[must_use]
     pub fn time_of(&self, source: SourceId) -> Option<Time> {
-        let place = self.places.get(source.0 as usize).copied().filter(|&place| place != ABSENT)?;
-        Some(self.heap[place as usize].time)
+        Some(self.time(self.key(self.place_of(source)?)))
     }
 
     /// Predicts the source's event for `time`, in place of any earlier prediction.
@@ -76,78 +90,117 @@ impl EventQueue {
         let index = source.0 as usize;
         if index >= self.places.len() {
             self.places.resize(index + 1, ABSENT);
+            self.rests.resize(index + 1, 0.0);
         }
-        let entry = Scheduled { time, source };
-        if self.places[index] == ABSENT {
-            self.heap.push(entry);
-            self.rise(self.heap.len() - 1);
-        } else {
-            let place = self.places[index] as usize;
-            let is_earlier = entry.is_before(&self.heap[place]);
-            self.heap[place] = entry;
-            if is_earlier { self.rise(place) } else { self.sink(place) }
-        }
+        let (seconds, rest) = time.parts();
+        let key = Key { seconds, source: source.0 };
+        let Some(place) = self.place_of(source) else {
+            self.rests[index] = rest;
+            let place = self.grow();
+            self.rise(place, key);
+            return;
+        };
+        let is_earlier = time < self.time(self.key(place));
+        self.rests[index] = rest;
+        if is_earlier { self.rise(place, key) } else { self.sink(place, key) }
     }
 
     /// Takes the source's event away, if it has one.
     pub fn clear(&mut self, source: SourceId) {
-        let Some(place) = self.places.get(source.0 as usize).copied().filter(|&place| place != ABSENT) else {
-            return;
-        };
+        let Some(place) = self.place_of(source) else { return };
         self.places[source.0 as usize] = ABSENT;
-        let place = place as usize;
-        let Some(last) = self.heap.pop() else { return };
-        if place < self.heap.len() {
-            let is_earlier = last.is_before(&self.heap[place]);
-            self.heap[place] = last;
-            if is_earlier { self.rise(place) } else { self.sink(place) }
+        self.len -= 1;
+        let (gone, last) = (self.key(place), self.key(self.len));
+        *self.slot(self.len) = NOTHING;
+        if place < self.len {
+            if self.is_before(last, gone) { self.rise(place, last) } else { self.sink(place, last) }
         }
     }
 
-    fn rise(&mut self, mut place: usize) {
-        let entry = self.heap[place];
+    fn place_of(&self, source: SourceId) -> Option<usize> {
+        let place = self.places.get(source.0 as usize).copied().filter(|&place| place != ABSENT)?;
+        Some(place as usize)
+    }
+
+    fn time(&self, key: Key) -> Time {
+        Time::from_parts(key.seconds, self.rests[key.source as usize])
+    }
+
+    /// Makes room for one more entry, and says at which place.
+    fn grow(&mut self) -> usize {
+        let place = self.len;
+        self.len += 1;
+        if (place + BEFORE_ROOT) / CHILDREN >= self.families.len() {
+            self.families.push(Family([NOTHING; CHILDREN]));
+        }
+        place
+    }
+
+    #[inline]
+    fn key(&self, place: usize) -> Key {
+        let slot = place + BEFORE_ROOT;
+        self.families[slot / CHILDREN].0[slot % CHILDREN]
+    }
+
+    #[inline]
+    fn slot(&mut self, place: usize) -> &mut Key {
+        let slot = place + BEFORE_ROOT;
+        &mut self.families[slot / CHILDREN].0[slot % CHILDREN]
+    }
+
+    #[inline]
+    fn is_before(&self, a: Key, b: Key) -> bool {
+        if a.seconds == b.seconds { self.breaks_tie(a, b) } else { a.seconds < b.seconds }
+    }
+
+    /// The same of times whose first numbers are equal, which is rare.
+    #[cold]
+    fn breaks_tie(&self, a: Key, b: Key) -> bool {
+        let of =
+            |key: Key| (self.rests.get(key.source as usize).copied().unwrap_or(f64::INFINITY), key.source);
+        let ((rest_a, source_a), (rest_b, source_b)) = (of(a), of(b));
+        rest_a < rest_b || (rest_a == rest_b && source_a < source_b)
+    }
+
+    /// Puts an entry at a place, or as far towards the root as it is earlier than what lies there.
+    fn rise(&mut self, mut place: usize, key: Key) {
         while place > 0 {
             let parent = (place - 1) / CHILDREN;
-            if !entry.is_before(&self.heap[parent]) {
+            let above = self.key(parent);
+            if !self.is_before(key, above) {
                 break;
             }
-            self.put(place, self.heap[parent]);
+            self.put(place, above);
             place = parent;
         }
-        self.put(place, entry);
+        self.put(place, key);
     }
 
-    fn sink(&mut self, mut place: usize) {
-        let entry = self.heap[place];
-        while let Some(child) = self.earliest_child(place) {
-            if !self.heap[child].is_before(&entry) {
+    /// Puts an entry at a place, or as far from the root as what lies there is earlier.
+    fn sink(&mut self, mut place: usize, key: Key) {
+        while let Some((child, least)) = self.earliest_child(place) {
+            if !self.is_before(least, key) {
                 break;
             }
-            self.put(place, self.heap[child]);
+            self.put(place, least);
             place = child;
         }
-        self.put(place, entry);
+        self.put(place, key);
     }
 
-    /// Place of the earliest child of a place, if it has any.
+    /// The earliest child of a place and where it lies, if there is a family.
     #[inline]
-    fn earliest_child(&self, place: usize) -> Option<usize> {
-        let first = CHILDREN * place + 1;
-        let last = (first + CHILDREN).min(self.heap.len());
-        let children = self.heap.get(first..last)?;
-        // Which child it is cannot be foretold: no branches.
-        let earlier = |a: usize, b: usize| if children[b].is_before(&children[a]) { b } else { a };
-        match children.len() {
-            0 => None,
-            CHILDREN => Some(first + earlier(earlier(0, 1), earlier(2, 3))),
-            few => Some(first + (1..few).fold(0, earlier)),
-        }
+    fn earliest_child(&self, place: usize) -> Option<(usize, Key)> {
+        let Family(family) = self.families.get(place + 1)?;
+        let earlier = |a: usize, b: usize| if self.is_before(family[b], family[a]) { b } else { a };
+        let least = earlier(earlier(0, 1), earlier(2, 3));
+        Some((CHILDREN * place + 1 + least, family[least]))
     }
 
     #[inline]
-    fn put(&mut self, place: usize, entry: Scheduled) {
-        self.heap[place] = entry;
-        self.places[entry.source.0 as usize] =
+    fn put(&mut self, place: usize, key: Key) {
+        *self.slot(place) = key;
+        self.places[key.source as usize] =
             u32::try_from(place).expect("sources are counted in 32 bits, and each has at most one place");
     }
 }
@@ -158,27 +211,52 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
+    /// Less than the first number of a time of some seconds can tell [s].
+    const LITTLE: f64 = 1e-20;
+
+    fn time((seconds, rest): (u8, u8)) -> Time {
+        Time::from_seconds(f64::from(seconds)).plus(LITTLE * f64::from(rest))
+    }
+
     proptest! {
         #[test]
-        fn the_queue_is_a_sorted_map(changes in prop::collection::vec((0u32..40, prop::option::of(0u8..20)), 1..400)) {
+        fn the_queue_is_a_sorted_map(
+            changes in prop::collection::vec((0u32..40, prop::option::of((1u8..12, 0u8..3))), 1..400),
+        ) {
             let mut queue = EventQueue::new();
             let mut model = BTreeMap::new();
-            for (source, time) in changes {
-                match time {
-                    Some(time) => {
-                        queue.set(SourceId(source), Time::from_seconds(f64::from(time)));
-                        model.insert(source, time);
+            for (source, at) in changes {
+                match at {
+                    Some(at) => {
+                        queue.set(SourceId(source), time(at));
+                        model.insert(source, at);
                     }
                     None => {
                         queue.clear(SourceId(source));
                         model.remove(&source);
                     }
                 }
-                let first = model.iter().map(|(&source, &time)| (time, source)).min();
-                let found = queue.first().map(|entry| (entry.time.seconds() as u8, entry.source.0));
-                prop_assert_eq!(found, first);
+                let first = model.iter().map(|(&source, &at)| (at, source)).min();
+                let found = queue.first().map(|entry| (entry.time, entry.source.0));
+                prop_assert_eq!(found, first.map(|(at, source)| (time(at), source)));
                 prop_assert_eq!(queue.len(), model.len());
+                prop_assert_eq!(queue.time_of(SourceId(source)), at.map(time));
             }
         }
+    }
+
+    #[test]
+    fn what_never_happens_comes_last() {
+        let mut queue = EventQueue::new();
+        (0..9).for_each(|source| queue.set(SourceId(source), Time::NEVER));
+        queue.set(SourceId(9), Time::from_seconds(1.0));
+        assert_eq!(queue.first().map(|entry| entry.source), Some(SourceId(9)));
+        queue.clear(SourceId(9));
+        assert_eq!(queue.first(), Some(Scheduled { time: Time::NEVER, source: SourceId(0) }));
+    }
+
+    #[test]
+    fn a_family_fills_a_line_of_the_cache() {
+        assert_eq!((size_of::<Family>(), align_of::<Family>()), (64, 64));
     }
 }

@@ -25,6 +25,18 @@ impl Time {
         Self { seconds, rest: 0.0 }
     }
 
+    /// Both numbers; the first alone decides between times whose first differ.
+    #[inline]
+    pub(crate) fn parts(self) -> (f64, f64) {
+        (self.seconds, self.rest)
+    }
+
+    /// The time of these numbers.
+    #[inline]
+    pub(crate) fn from_parts(seconds: f64, rest: f64) -> Self {
+        Self { seconds, rest }
+    }
+
     /// The time as one number [s].
     #[must_use]
     #[inline]
