@@ -1,0 +1,62 @@
+//! Heaps: many bodies come to rest on each other, in many impacts that each concern most of them.
+
+use halfgap::geometry::DVec2;
+use halfgap::{BodyState, World};
+use halfgap_tests::mechanism::{Workshop, block, disc};
+
+const RADIUS: f64 = 0.25;
+const ELASTICITY: f64 = 0.2;
+const ACROSS: usize = 10;
+/// Distance of two discs of a row [m].
+const APART: f64 = 2.2 * RADIUS;
+
+/// Rows of discs above the floor of a box, every second row a little to the left, the others to the right.
+fn falling_discs(count: usize, tolerance: f64) -> World {
+    let mut shop = Workshop::new(tolerance);
+    let width = APART * ACROSS as f64;
+    shop.fixed("floor", block(width + 4.0, 1.0), DVec2::new(0.5 * width, -0.5));
+    shop.fixed("left", block(1.0, 30.0), DVec2::new(-0.5, 15.0));
+    shop.fixed("right", block(1.0, 30.0), DVec2::new(width + 0.5, 15.0));
+    for index in 0..count {
+        let (column, row) = ((index % ACROSS) as f64, index / ACROSS);
+        let aside = if row % 2 == 0 { -0.01 } else { 0.01 };
+        let position = DVec2::new((column + 0.5) * APART + aside, (row as f64 + 0.5) * 2.4 * RADIUS);
+        let state = BodyState { position, ..BodyState::default() };
+        shop.settler(&format!("disc {index}"), disc(RADIUS), 1.0, state, ELASTICITY);
+    }
+    shop.build()
+}
+
+/// Least gap [m] of any two discs, and of any disc and a wall or the floor.
+fn least_gap(world: &World) -> f64 {
+    let width = APART * ACROSS as f64;
+    let discs = world.bodies().filter(|&body| world.name(body).starts_with("disc"));
+    let places: Vec<DVec2> = discs.map(|body| world.state(body).position).collect();
+    let mut least = f64::INFINITY;
+    for (index, place) in places.iter().enumerate() {
+        least = least.min(place.x - RADIUS).min(width - RADIUS - place.x).min(place.y - RADIUS);
+        for other in &places[..index] {
+            least = least.min(place.distance(*other) - 2.0 * RADIUS);
+        }
+    }
+    least
+}
+
+#[test]
+fn a_hundred_discs_pile_up_without_harm() {
+    let mut world = falling_discs(100, 1e-2);
+    let start = world.energy().total();
+    for piece in 1..=10 {
+        world.advance_to(0.08 * f64::from(piece), &mut |_| {}).expect("they fall");
+        assert!(least_gap(&world) > 0.0, "an overlap of {} m", -least_gap(&world));
+    }
+    let (ledger, statistics) = (world.ledger(), world.statistics());
+    println!("{statistics:?} {ledger:?} of {start} J");
+    assert!(statistics.impacts > 500, "{statistics:?}");
+    // What projections and steps change of the energy is nothing beside what the impacts take.
+    let lost = -(ledger.impacts + ledger.captures);
+    assert!(lost > 0.1 * start, "{ledger:?}");
+    assert!(ledger.projections.abs() + ledger.integration_error().abs() < 1e-6 * start, "{ledger:?}");
+    // Forces are not evaluated where the next impact cuts a step before they are needed.
+    assert!(statistics.evaluations < 12 * statistics.impacts, "{statistics:?}");
+}
