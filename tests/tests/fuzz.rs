@@ -108,6 +108,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (1321352, "the same of a body in contact"),
     (429158, "a run that went on without an event for more than 20 s"),
     (1_502_633, "a contact without any force was to be looked at again at a time that was no number"),
+    (1_502_516, "a disc on a pin turned ever faster, and was off the pin between the ends of long steps"),
 ];
 
 #[test]

@@ -11,6 +11,10 @@ use std::convert::Infallible;
 /// at equal estimates a pendulum errs by ten times as much.
 const SHARE: f64 = 0.25;
 
+/// A body that turns ever faster is followed as well as one that turns by the same angle steadily, and by the square root of
+/// its angular acceleration times this, in radians, for each second of a step.
+const UNSTEADY: f64 = 1.6;
+
 /// A group whose state is that of its tree.
 struct Hanging<'a, 'b>(&'a mut Dynamics<'b>);
 
@@ -139,8 +143,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The longest step [s] over which no body of the tree turns by more than it may, and would not if it always turned as fast
-    /// as it does at last.
+    /// The longest step [s] over which no body of the tree turns by more than it may. Dense output of what turns unsteadily errs
+    /// as if it turned by more: high derivatives of its points are of angles and of angular accelerations.
     pub(crate) fn longest_turning_step(&self) -> f64 {
         let Group { tree, state, rates, .. } = &*self.group;
         let velocities = self.group.velocities();
@@ -150,7 +154,8 @@ impl Dynamics<'_> {
             if spin == 0.0 && angular == 0.0 {
                 return f64::INFINITY;
             }
-            2.0 * link.most_turn / (spin + (spin * spin + 4.0 * angular * link.most_turn).sqrt())
+            let spin = spin + UNSTEADY * angular.sqrt();
+            2.0 * link.most_turn / (spin + (spin * spin + 2.0 * angular * link.most_turn).sqrt())
         });
         steps.fold(f64::INFINITY, f64::min)
     }
