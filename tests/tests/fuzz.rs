@@ -109,6 +109,8 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (429158, "a run that went on without an event for more than 20 s"),
     (1_502_633, "a contact without any force was to be looked at again at a time that was no number"),
     (1_502_516, "a disc on a pin turned ever faster, and was off the pin between the ends of long steps"),
+    (1_500_914, "energy was lost where a light lever went through the dead point of its slot"),
+    (421_625, "the same of a loop of pins, nearer to its dead point"),
 ];
 
 #[test]
