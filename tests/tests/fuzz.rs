@@ -111,6 +111,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (1_502_516, "a disc on a pin turned ever faster, and was off the pin between the ends of long steps"),
     (1_500_914, "energy was lost where a light lever went through the dead point of its slot"),
     (421_625, "the same of a loop of pins, nearer to its dead point"),
+    (
+        1_350_042,
+        "a corner fired again and again: far from the origin it lay just beyond the reach of its body",
+    ),
 ];
 
 #[test]

@@ -113,7 +113,9 @@ impl RigidSystem {
             let lanes = [&self.lanes[body.index()], &self.lanes[other.index()]];
             let reach = lanes[0].reach + lanes[1].reach + self.settings.tolerances.distance_tol();
             let offset = moving.pose.position - self.position_of(other, time);
-            if offset.length_squared() > reach * reach {
+            // What has fired may be farther away by rounding.
+            let has_fired = region.fired.is_some_and(|fired| fired.bodies == sorted(body, other));
+            if offset.length_squared() > reach * reach && !has_fired {
                 continue;
             }
             let (flyer, other_flyer) = (self.flyer(body), self.flyer(other));
@@ -214,6 +216,11 @@ impl RigidSystem {
             self.remeasure_record(record, time);
         }
     }
+}
+
+/// Two bodies, the lesser first.
+fn sorted(a: BodyId, b: BodyId) -> [BodyId; 2] {
+    if a <= b { [a, b] } else { [b, a] }
 }
 
 fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Option<Touch> {
