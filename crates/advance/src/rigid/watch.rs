@@ -88,9 +88,10 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Finds the first contact that loses its force on the segment, if that comes before what ends it otherwise.
+    /// Finds the first contact that loses its force on the segment, if that comes before what ends it otherwise; not before
+    /// the time of the look.
     pub(crate) fn look_for_release(&mut self) {
-        self.group.look = None;
+        let from = self.group.look.take().unwrap_or(0.0);
         self.find_least_forces();
         let mut forces = std::mem::take(&mut self.stage.samples.forces);
         fill(&mut forces, self.group.rows.len());
@@ -102,7 +103,7 @@ impl Dynamics<'_> {
         }
         let mut earliest = self.group.event;
         self.find_first(&mut earliest, &forces, &RELEASES);
-        self.group.event = earliest;
+        self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
     }
 
@@ -474,5 +475,11 @@ mod tests {
         let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
         assert!(offset > 0.75 * group.span, "{offset} s");
         assert_eq!(system.queue.time_of(system.group_source(leader)), Some(group.start.plus(offset)));
+        // What is found for a time that has gone by happens now.
+        let mut group = system.groups.take(leader).expect("it goes on");
+        let late = 2.0 * group.span;
+        (group.event, group.look) = (None, Some(late));
+        system.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
+        assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
     }
 }
