@@ -308,8 +308,9 @@ impl RigidSystem {
         let now = self.now;
         work.before.clear();
         work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
-        let trial = Manner::Trial;
-        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, trial);
+        // What may as well be left is not worth long trying.
+        let manner = Manner::Trial;
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner);
         if outcome.is_ok() {
             self.remeasure(&mut work.region, now);
         }

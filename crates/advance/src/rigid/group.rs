@@ -104,7 +104,7 @@ pub(crate) struct Group {
     pub(crate) largest_error: f64,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
-    /// Offset [s] up to which it is certain that no contact loses its force, where that has not been looked at further.
+    /// Offset [s] up to which no contact can lose its force, as the stages of the step tell, while nobody has looked further.
     pub(crate) look: Option<f64>,
 }
 

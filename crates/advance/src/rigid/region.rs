@@ -205,9 +205,8 @@ impl RigidSystem {
     /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does what is held; of
     /// others nothing is known.
     pub(crate) fn is_likely(&self, record: &Collision) -> Option<bool> {
-        let bodies = [record.parties.primary.body, record.parties.normal.body];
-        let sides = if bodies[0] <= bodies[1] { bodies } else { [bodies[1], bodies[0]] };
-        self.is_held_contact(record, sides).then_some(true)
+        let [a, b] = [record.parties.primary.body, record.parties.normal.body];
+        self.is_held_contact(record, sorted(a, b)).then_some(true)
     }
 
     /// Brings the records to the bodies' present motion at a time.

@@ -1,7 +1,8 @@
 //! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features or, touched
 //! without force, sinks, a stop that closes, a force law that changes branch.
 //!
-//! Each is a function along the dense output whose first fall below zero is an event.
+//! Each is a function along the dense output whose first fall below zero is an event. Places are read at once, forces only
+//! when the time comes up to which none can vanish.
 
 use super::brief::Stepping;
 use super::crossing::{EARLY, NODES, early_fall, early_node, first_fall, first_fall_before, node};
