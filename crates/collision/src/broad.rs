@@ -12,6 +12,8 @@ use halfgap_geometry::Aabb;
 const NONE: u32 = u32::MAX;
 /// Heights of two children may differ by so much: small boxes matter more than perfect balance.
 const LOPSIDED: u32 = 4;
+/// Nodes and bodies for which a search has room to begin with.
+const FIRST_ROOM: usize = 16;
 
 /// A line of the cache.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +33,8 @@ pub struct BroadPhase {
     nodes: Vec<Node>,
     root: Option<u32>,
     free: Vec<u32>,
-    /// Nodes that a search has still to go to.
-    stack: Vec<u32>,
+    /// Nodes whose children a search looks at, one level after another.
+    frontier: Vec<u32>,
     /// Leaf of each body, by index.
     leaves: Vec<Option<u32>>,
 }
@@ -97,7 +99,7 @@ impl BroadPhase {
         }
     }
 
-    /// Finds every body whose box overlaps the given one, in the order in which the tree has them.
+    /// Finds every body whose box overlaps the given one, the higher in the tree the earlier.
     pub fn find_overlapping(&mut self, bounds: &Aabb, found: &mut Vec<BodyId>) {
         found.clear();
         let Some(root) = self.root else { return };
@@ -106,26 +108,27 @@ impl BroadPhase {
             found.extend(root_node.bounds.overlaps(bounds).then_some(root_node.body));
             return;
         }
-        // What overlaps cannot be foretold: everything is written down, and kept if it does. Depth first, no more than one
-        // node of each level waits, and the two that come last.
-        let (mut waiting, mut count) = (1, 0);
-        let deepest = root_node.height as usize + 2;
-        self.stack.resize(self.stack.len().max(deepest), NONE);
-        let stack = &mut self.stack[..];
-        stack[0] = root;
-        while waiting > 0 {
-            waiting -= 1;
-            let children = self.nodes[stack[waiting] as usize].children;
+        // Level by level: which nodes come next is known long before their boxes have come from memory. What overlaps cannot
+        // be foretold: everything is written down, and kept if it does.
+        let (mut next, mut end, mut count) = (0, 1, 0);
+        self.frontier.resize(self.frontier.len().max(FIRST_ROOM), NONE);
+        self.frontier[0] = root;
+        while next < end {
+            let children = self.nodes[self.frontier[next] as usize].children;
+            next += 1;
+            if self.frontier.len() < end + 2 {
+                self.frontier.resize(2 * end, NONE);
+            }
             if found.len() < count + 2 {
-                found.resize(2 * count + 16, BodyId(NONE));
+                found.resize(2 * count + FIRST_ROOM, BodyId(NONE));
             }
             for child in children {
                 let node = &self.nodes[child as usize];
                 let (overlaps, is_leaf) = (node.bounds.overlaps(bounds), node.height == 0);
                 found[count] = node.body;
                 count += usize::from(overlaps & is_leaf);
-                stack[waiting] = child;
-                waiting += usize::from(overlaps & !is_leaf);
+                self.frontier[end] = child;
+                end += usize::from(overlaps & !is_leaf);
             }
         }
         found.truncate(count);

@@ -102,6 +102,12 @@ impl Pairs {
         &mut self.pairs[id.0 as usize]
     }
 
+    /// True of a body that nothing moves.
+    #[inline]
+    pub(crate) fn is_fixed(&self, body: BodyId) -> bool {
+        self.is_fixed[body.index()]
+    }
+
     /// Rules for single pairs of features.
     pub(crate) fn rules(&self, id: PairId) -> &[FeatureRule] {
         &self.pasts[id.0 as usize].rules
@@ -147,12 +153,19 @@ impl Pairs {
         }
     }
 
-    /// Puts a pair into the present batch; `None` if it is there already.
+    /// Puts the pairs of a body into the present batch, all of them or those that are quiet; those that were not there.
+    ///
+    /// A loop of its own, for the pairs lie anywhere in memory: it asks for the next before the last has come.
     #[inline]
-    pub(crate) fn enter_batch(&mut self, id: PairId) -> Option<&mut Pair> {
-        let batch = self.batch;
-        let pair = self.get_mut(id);
-        (std::mem::replace(&mut pair.batch, batch) != batch).then_some(pair)
+    pub(crate) fn enter_batch(&mut self, body: BodyId, only_quiet: bool, entered: &mut Vec<Link>) {
+        entered.clear();
+        for &link in &self.of_body[body.index()] {
+            let pair = &mut self.pairs[link.pair.0 as usize];
+            let is_new = std::mem::replace(&mut pair.batch, self.batch) != self.batch;
+            if is_new && (!only_quiet || pair.prediction == Prediction::Quiet) {
+                entered.push(link);
+            }
+        }
     }
 
     /// Feature pairs that have touched lately.

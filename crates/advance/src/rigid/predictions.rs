@@ -241,12 +241,12 @@ impl RigidSystem {
         let now = self.now;
         for &body in bodies {
             let disc = self.disc_at(body, now);
-            for index in 0..self.pairs.of_body(body).len() {
-                let link = self.pairs.of_body(body)[index];
-                let Some(entry) = self.pairs.enter_batch(link.pair) else { continue };
+            self.pairs.enter_batch(body, !changed, &mut self.links);
+            for index in 0..self.links.len() {
+                let link = self.links[index];
                 if changed {
                     self.predict_from(now, disc.as_ref(), link);
-                } else if entry.prediction == Prediction::Quiet {
+                } else {
                     self.predict(link.pair);
                 }
             }

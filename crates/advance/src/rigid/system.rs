@@ -309,7 +309,7 @@ impl RigidSystem {
     }
 
     pub(crate) fn is_movable(&self, body: BodyId) -> bool {
-        !body.is_world() && !self.flyer(body).body().is_fixed()
+        !body.is_world() && !self.pairs.is_fixed(body)
     }
 
     /// Laws that act on a body.
