@@ -92,6 +92,9 @@ pub(crate) struct Group {
     /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
     pub(crate) has_kinks: bool,
     pub(crate) stiffness: Stiffness,
+    /// By how much [1/s^2] the acceleration of each body varied last where the bodies were moved by a little; empty where
+    /// nobody had to look.
+    pub(crate) roughness: Vec<f64>,
     /// The last step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
@@ -124,6 +127,7 @@ impl Group {
         (self.next_step, self.full_step) = (None, None);
         (self.is_brief, self.has_kinks, self.is_unwatched) = (false, false, false);
         self.stiffness = Stiffness::default();
+        self.roughness.clear();
         self.accepted = None;
         (self.event, self.look) = (None, None);
     }

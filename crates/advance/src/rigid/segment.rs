@@ -301,24 +301,27 @@ impl Dynamics<'_> {
             let linear = or_infinite(control.local_error * size * share);
             clearance.map_or(linear, |clearance| linear.min(clearance * size / length)).max(least)
         });
+        let rounding = self.rounding();
         if self.group.tree.is_used() {
-            return self.scale_tree(linear, scales);
+            let places = 0..self.group.bodies.len();
+            let roughest = places.map(|place| self.group.rough_velocity(place, rounding)).fold(0.0, f64::max);
+            return self.scale_tree([linear[0], linear[1].max(roughest)], scales);
         }
-        for linear in linear {
-            for &body in &self.group.bodies {
+        for (linear, is_velocity) in linear.into_iter().zip([false, true]) {
+            for (place, &body) in self.group.bodies.iter().enumerate() {
+                let rough = if is_velocity { self.group.rough_velocity(place, rounding) } else { 0.0 };
+                let linear = linear.max(rough);
                 scales.extend([linear, linear, linear / self.reach(body)]);
             }
         }
     }
 
-    /// Errors of positions and velocities that are no errors of a step: what rounding of positions makes of them. What is fast
-    /// has velocities of that rounding times its rate. An explicit step is short for such a rate, so that what is slow does not
-    /// err by as much; an implicit one knows what is rounding itself.
+    /// Errors of positions and velocities that are no errors of a step: what rounding of positions makes of them where the
+    /// group is fast because forces are steep. What else it makes of velocities is a matter of each body.
     fn least_errors(&self, share: f64, speed: f64) -> [f64; 2] {
-        let (rounding, group) = (self.rounding(), &*self.group);
-        let rate = if group.stepping() == Stepping::Stiff { 0.0 } else { group.stiffness.of_rounding() };
-        let steep = if share < 1.0 { group.free_acceleration / speed } else { 0.0 };
-        [rounding, rounding * f64::max(rate, steep)]
+        let rounding = self.rounding();
+        let steep = if share < 1.0 { self.group.free_acceleration / speed } else { 0.0 };
+        [rounding, rounding * steep]
     }
 
     /// Lets connectors share what they hold, if some depend on others at the end.

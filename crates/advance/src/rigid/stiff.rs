@@ -1,6 +1,7 @@
 //! Groups parts of which decay so fast that an explicit method is held up: their steps are implicit, as long as that costs
 //! less. Which steps are made otherwise is in `brief`.
 
+use super::brief::Stepping;
 use super::dynamics::Dynamics;
 use super::extending::Tools;
 use super::group::Group;
@@ -68,11 +69,6 @@ impl Stiffness {
         Self { in_vain: self.in_vain.max(other.in_vain), ..told }
     }
 
-    /// The fastest rate [1/s] of what rounding moves.
-    pub(crate) fn of_rounding(&self) -> f64 {
-        self.rate.max(self.steep)
-    }
-
     /// True if what is fast lets an explicit method go so long a step [s].
     pub(crate) fn allows(&self, step: f64) -> bool {
         self.rate * step < 1.0
@@ -135,6 +131,7 @@ impl Dynamics<'_> {
         // What is steeper than this would have ended the step.
         if limit * limit * rounding < scale * span {
             self.group.stiffness.steep = 0.0;
+            self.group.roughness.clear();
             return;
         }
         let moved = PROBE * rounding;
@@ -156,14 +153,18 @@ impl Dynamics<'_> {
         self.stage.gap_error = gap_error;
         self.stage.load(&self.group.bodies, &self.group.end_state);
         let velocities = self.group.velocities();
+        let Group { bodies, end_rates, roughness, .. } = &mut *self.group;
+        roughness.resize(bodies.len(), 0.0);
         let mut most: f64 = 0.0;
-        for (place, &body) in self.group.bodies.iter().enumerate() {
+        for (place, (&body, rough)) in bodies.iter().zip(roughness).enumerate() {
             let reach = self.physics.mechanism.flyers[body.index()].reach();
             let change = |k: usize| {
                 let at = velocities + 3 * place + k;
-                (rates[at] - self.group.end_rates[at]).abs()
+                (rates[at] - end_rates[at]).abs()
             };
-            most = most.max(change(0)).max(change(1)).max(change(2) * reach);
+            let changed = change(0).max(change(1)).max(change(2) * reach);
+            *rough = (changed / moved).max(FADING * FADING * *rough);
+            most = most.max(changed);
         }
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
         let found = (most / moved).sqrt();
@@ -173,6 +174,18 @@ impl Dynamics<'_> {
 }
 
 impl Group {
+    /// What rounding of places [m] makes of the velocity [m/s] of a body, by its place, in a step as short as the fastest
+    /// part of the group asks for. An implicit method knows what is rounding itself.
+    pub(crate) fn rough_velocity(&self, place: usize, rounding: f64) -> f64 {
+        let Stiffness { rate, steep, .. } = self.stiffness;
+        if steep == 0.0 || self.stepping() == Stepping::Stiff {
+            return 0.0;
+        }
+        // Of bodies that have come together since nobody knows which are the light ones.
+        let roughness = self.roughness.get(place).copied().unwrap_or(steep * steep);
+        rounding * roughness / rate.max(steep)
+    }
+
     /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are
     /// short enough for explicit ones: as something begins to decay, a higher order serves better.
     pub(crate) fn choose_stiffness(&mut self, asked: Method) {
