@@ -29,7 +29,7 @@ pub enum FeatureKind {
 }
 
 /// Which part of the outline a feature is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FeatureSource {
     /// Index of the path.
     pub path: u32,

@@ -147,6 +147,21 @@ impl Shape {
         self.sources[id.0 as usize]
     }
 
+    /// The corners at the two ends of an edge; `None` where the outline goes on smoothly or turns inwards, and for a vertex.
+    #[must_use]
+    pub fn ends_of(&self, feature: FeatureId) -> [Option<FeatureId>; 2] {
+        let Some(EdgeId { path, edge }) = self.whole_edge(feature) else { return [None; 2] };
+        let count = self.paths[path as usize].edges().len();
+        let after = if edge as usize + 1 == count { 0 } else { edge + 1 };
+        [edge, after].map(|edge| {
+            let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
+            // Features are in the order of their edges, a vertex before the edge that starts at it.
+            let place = self.sources.partition_point(|source| source < &corner);
+            (self.sources.get(place) == Some(&corner))
+                .then(|| FeatureId(u32::try_from(place).unwrap_or(u32::MAX)))
+        })
+    }
+
     /// The bounding tree over the features.
     #[must_use]
     pub fn tree(&self) -> &FeatureTree {

@@ -14,6 +14,7 @@ mod linkages;
 mod narrow;
 mod reversal;
 mod ropes;
+mod run_off;
 mod scaling;
 mod simultaneous;
 mod stiff;

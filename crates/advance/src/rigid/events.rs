@@ -194,6 +194,11 @@ impl RigidSystem {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         self.cut_groups(&mut work.region);
         self.remeasure(&mut work.region, self.now);
+        if self.neighbour_closes(&work.region) {
+            // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again. It takes over only
+            // if it is what is nearest now.
+            self.collect_region(&mut work.region, &work.seeds, self.now);
+        }
         self.hand_over(work);
         let rest = self.rest_speed();
         if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
@@ -202,19 +207,31 @@ impl RigidSystem {
         self.go_on(work).map(|()| false)
     }
 
+    /// True if another place closes where the bodies of the contact touch that has run off its features.
+    fn neighbour_closes(&self, region: &Region) -> bool {
+        let Some(run_off) = region.run_off else { return false };
+        let rest = self.rest_speed();
+        let mut closing = region.records.iter().filter(|record| record.motion.normal_velocity < -rest);
+        closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
+    }
+
     /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour closes or opens
-    /// by is only the angle up to which joints are smooth.
+    /// by is only the angle up to which joints are smooth. What meets at the same moment is an impact, which does without.
     fn hand_over(&mut self, work: &mut EventWork) {
         let Some(run_off) = work.region.run_off else { return };
-        let mut any = false;
-        for record in &mut work.region.records {
+        let is_neighbour = |record: &Collision| {
             let bodies = [record.parties.primary.body, record.parties.normal.body];
             let (rate, speed) = (record.motion.normal_velocity, record.motion.center_velocity.length());
-            let is_neighbour = Touch::new(bodies, run_off.features).bodies == run_off.bodies;
-            if is_neighbour && rate.abs() <= SEAM_ANGLE * speed {
-                record.parties.bilateral = true;
-                any = true;
-            }
+            Touch::new(bodies, run_off.features).bodies == run_off.bodies && rate.abs() <= SEAM_ANGLE * speed
+        };
+        let records = &mut work.region.records;
+        if records.iter().any(|record| closes_fast(record) && !is_neighbour(record)) {
+            return;
+        }
+        let mut any = false;
+        for record in records.iter_mut().filter(|record| is_neighbour(record)) {
+            record.parties.bilateral = true;
+            any = true;
         }
         if any {
             self.stop_bilaterally(work);

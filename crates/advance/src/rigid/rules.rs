@@ -1,6 +1,7 @@
 //! What the search is told about features that touch: which to leave alone, and how far others may sink before they fire.
 
 use super::events::EventWork;
+use super::pairs::PairId;
 use super::region::{Region, Touch};
 use super::system::RigidSystem;
 use halfgap_collision::FeatureRule;
@@ -29,7 +30,8 @@ impl RigidSystem {
         self.set_halos(region);
         for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-            let rule: FeatureRule = if settling.holds_touch(*touch) || self.is_watched(*touch) {
+            let is_held = settling.holds_touch(*touch);
+            let rule: FeatureRule = if is_held || self.is_watched(*touch) {
                 touch.skipped()
             } else {
                 // What opens comes back to where any pair fires, however low the halos of its bodies.
@@ -39,10 +41,28 @@ impl RigidSystem {
                 let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
                 touch.lowered_to(target)
             };
+            if is_held {
+                self.leave_ends_alone(pair, touch);
+            }
             if !self.is_idle(touch, &rule) {
                 self.pairs.change_rules(pair, |rules| rules.push(rule));
             }
         }
+    }
+
+    /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they would meet the other
+    /// of its features: they are no nearer than the contact, until that has run off its features and they take over.
+    fn leave_ends_alone(&mut self, pair: PairId, touch: &Touch) {
+        let ends = [0, 1].map(|side: usize| {
+            self.flyers[touch.bodies[side].index()].body().shape.ends_of(touch.features[side])
+        });
+        let [a, b] = touch.features;
+        let firsts = ends[0].into_iter().flatten().map(|end| [end, b]);
+        let seconds = ends[1].into_iter().flatten().map(|end| [a, end]);
+        self.pairs.change_rules(pair, |rules| {
+            // What is said of a pair of features first counts.
+            rules.extend(firsts.chain(seconds).map(|features| FeatureRule { features, target: None }));
+        });
     }
 
     /// Lowers the contacts that fired again and again without time going by, and their neighbours, by so much more each

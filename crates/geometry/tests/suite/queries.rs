@@ -3,7 +3,8 @@
 use crate::sampling::{SAMPLES, coarseness, outline_points, sampled_contains};
 use crate::shapes::{any_angle, any_pose, any_shape, any_vector, map_spec, specs_of};
 use halfgap_geometry::{
-    Aabb, DVec2, Edge, MotionBound, Pose, Ray, Relation, Rotation, Shape, ShapeError, edge_distance,
+    Aabb, DVec2, Edge, FeatureId, FeatureKind, MotionBound, Pose, Ray, Relation, Rotation, Shape, ShapeError,
+    edge_distance,
 };
 use proptest::prelude::*;
 
@@ -297,5 +298,26 @@ proptest! {
         prop_assert!(swept.grown(rounding).contains(&sampled), "{swept:?} {sampled:?}");
         let coarse = shape.reach() * (turn / f64::from(steps)).powi(2);
         prop_assert!(sampled.grown(coarse + rounding).contains(&swept), "{swept:?} {sampled:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_ends_of_an_edge_are_the_corners_where_it_starts_and_ends(shape in any_shape()) {
+        let ids = || (0..shape.features().len()).map(|index| FeatureId(index as u32));
+        let is_corner = |id: FeatureId| shape.source(id).kind == FeatureKind::Vertex;
+        for id in ids() {
+            let path = shape.source(id).path;
+            let corner_at = |place: DVec2| {
+                ids().find(|&corner| {
+                    is_corner(corner)
+                        && shape.source(corner).path == path
+                        && shape.edge_of(corner).from() == place
+                })
+            };
+            let edge = shape.edge_of(id);
+            let ends = if is_corner(id) { [None; 2] } else { [edge.from(), edge.to()].map(corner_at) };
+            prop_assert_eq!(shape.ends_of(id), ends);
+        }
     }
 }

@@ -1,0 +1,105 @@
+//! The moment in which a contact runs off its features: what else happens then, and what takes over.
+
+use super::{impacts, within};
+use halfgap::geometry::{DVec2, Shape};
+use halfgap::scene::Scene;
+use halfgap::{BodyState, World};
+use halfgap_tests::mechanism::{Workshop, at_rest, block};
+use halfgap_tests::world_of;
+use std::path::Path;
+
+#[test]
+fn a_block_that_slides_off_a_wedge_bounces_off_the_floor() {
+    // Its lower corner comes to the floor where the wedge ends: the contact of the two runs off at the moment of the blow.
+    // Nothing takes energy.
+    for angle in [1.0_f64, 1.1, 1.3] {
+        let mut shop = Workshop::new(1e-8);
+        shop.fixed("floor", block(8.0, 0.2), DVec2::new(0.0, -0.1));
+        let corners = [DVec2::new(0.0, 0.0), DVec2::new(-2.0, 2.0 * angle.tan()), DVec2::new(-2.0, 0.0)];
+        let wedge = Shape::polygon(&corners).expect("a fine wedge");
+        shop.body("wedge", wedge, 5.0, at_rest(-4.0 / 3.0, 2.0 / 3.0 * angle.tan()));
+        let (along, off) = (DVec2::new(-angle.cos(), angle.sin()), DVec2::new(angle.sin(), angle.cos()));
+        let state = BodyState { position: along + 0.1 * off, angle: -angle, ..BodyState::default() };
+        shop.body("block", block(0.3, 0.2), 1.0, state);
+        let mut world = shop.build();
+        let energy = world.energy().total();
+        assert!(impacts(&mut world, 0.8) > 0, "it comes to the floor");
+        within("block off a wedge: energy, relative", world.energy().total() / energy - 1.0, 1e-9);
+    }
+}
+
+/// A sharp tip of a swinging body rests on an arc about the pivot of another, which swings away under it.
+fn tip_on_sector(tolerance: f64) -> World {
+    world_of(&format!(
+        r#"
+format = "halfgap-scene-1"
+title = "A tip on a sector"
+run = {{ duration = 1.0, tolerance = {tolerance:e} }}
+
+[[body]]
+name = "sector"
+position = [0.0, -1.0]
+center_of_mass = [0.0, -1.0]
+mass = 1.0
+moment = 0.2
+velocity = [-0.3, 0.0]
+angular_velocity = -0.3
+elasticity = 0.0
+[[body.shape.outline.paths]]
+start = [0.45, 0.7794228634059948]
+edges = [
+    {{ line = [0.5, 0.8660254037844386] }},
+    {{ arc = {{ to = [-0.08, 0.9967948635501690], center = [0.0, 0.0] }} }},
+    {{ line = [-0.072, 0.8971153771951521] }},
+    {{ arc = {{ to = [0.45, 0.7794228634059948], center = [0.0, 0.0], clockwise = true }} }},
+]
+
+[[body]]
+name = "tip"
+shape = {{ polygon = {{ vertices = [[0.0, 1.0], [0.05, 1.2], [-0.05, 1.2]] }} }}
+position = [0.0, 1.0]
+center_of_mass = [0.0, 1.0]
+mass = 1.0
+moment = 0.1
+elasticity = 0.0
+
+[[connector]]
+pin = {{ a = {{ body = "world", point = [0.0, 0.0] }}, b = {{ body = "sector", point = [0.0, 0.0] }} }}
+
+[[connector]]
+pin = {{ a = {{ body = "world", point = [-1.0, 1.0] }}, b = {{ body = "tip", point = [-1.0, 1.0] }} }}
+
+[[force]]
+gravity = {{ acceleration = [0.0, -9.81] }}
+"#
+    ))
+}
+
+#[test]
+fn a_tip_slides_off_the_end_of_an_arc_without_a_blow() {
+    for power in 6..13 {
+        let mut world = tip_on_sector(10.0_f64.powi(-power));
+        assert_eq!(impacts(&mut world, 0.4), 0, "at a tolerance of 1e-{power}");
+        // It has fallen behind the end.
+        let tip = world.find("tip").expect("it is there");
+        assert!(world.state(tip).angle < -0.03, "{:?}", world.state(tip));
+    }
+}
+
+#[test]
+fn an_escapement_ticks_alike_at_all_tolerances() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/graham_escapement.toml");
+    let scene = Scene::read(path).expect("a fine scene");
+    let angle = |tolerance: f64| {
+        let mut scene = scene.clone();
+        scene.set_tolerance(tolerance, "tolerance").expect("a fine tolerance");
+        let mut world = World::from_scene(&scene).expect("a world that can be built");
+        assert_eq!(impacts(&mut world, scene.run.duration), 22, "at a tolerance of {tolerance:e}");
+        world.state(world.find("pendulum").expect("it is there")).angle
+    };
+    let fine = angle(1e-12);
+    for power in 7..12 {
+        let tolerance = 10.0_f64.powi(-power);
+        within("Graham's escapement, 20 s: pendulum's angle [rad]", angle(tolerance) - fine, 0.1 * tolerance);
+    }
+}
