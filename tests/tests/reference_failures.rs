@@ -113,3 +113,26 @@ fn a_ball_comes_to_rest_by_impulses_alone() {
     let gap = world.state(ball).position.y - 0.5;
     assert!(gap > 0.0 && gap < 0.01, "{gap} m over the floor");
 }
+
+/// A driven bar that presses on another, both pinned, by impulses alone: one a step, not one each time that it has sunk by a
+/// little.
+#[test]
+fn a_bar_presses_on_another_by_impulses_alone() {
+    let bar = |name: &str, place: &str, pivot: &str, end: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ block = {{ width = 1.0, height = 0.1 }} }}\nposition = {place}\nmass = 1.0\n\
+             elasticity = 0.0\n[[connector]]\npin = {{ a = {{ body = \"world\", point = {pivot} }}, b = {{ body = \"{name}\", \
+             point = {end} }} }}\n"
+        )
+    };
+    let scene = format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"bars\"\nrun = {{ duration = 1.0, contacts = false }}\n{}{}\
+         [[force]]\nconstant = {{ body = \"driver\", point = [0.0, 0.0], force = [0.0, 0.0], torque = 2.0 }}\n",
+        bar("driver", "[0.5, 0.0]", "[0.0, 0.0]", "[-0.5, 0.0]"),
+        bar("driven", "[1.3, 0.1]", "[1.8, 0.1]", "[0.5, 0.0]"),
+    );
+    let mut world = halfgap_tests::world_of(&scene);
+    advance(&mut world, 1.0);
+    let impacts = world.statistics().impacts;
+    assert!(impacts > 0 && impacts < 100, "{impacts} impacts in 40 steps");
+}

@@ -8,10 +8,11 @@
 //! would go on with that for ever, hundreds of thousands of times a second. The energy of that is what the gap itself is
 //! worth: after very many such bounces in a row it is let go as well.
 
-use super::pairs::Seen;
+use super::pairs::{PairId, Seen};
 use super::region::Region;
 use super::system::RigidSystem;
-use halfgap_collision::Collision;
+use halfgap_collision::{Collision, Tolerances};
+use halfgap_geometry::FeatureId;
 
 /// So many feature pairs are remembered of a pair of bodies.
 const MOST_SEEN: usize = 16;
@@ -57,13 +58,18 @@ impl RigidSystem {
         let (Some(p), Some(n)) = (primary.feature(), normal.feature()) else { return false };
         let Some(pair) = self.pairs.between(primary.body, normal.body) else { return false };
         let features = if primary.body < normal.body { [p, n] } else { [n, p] };
+        self.has_stayed_low(pair, features, -record.motion.normal_velocity)
+    }
+
+    /// True if two features that close at a rate [m/s] were seen within the target zone before and have not left it since.
+    pub(crate) fn has_stayed_low(&self, pair: PairId, features: [FeatureId; 2], down: f64) -> bool {
         let Some(seen) = self.pairs.seen(pair).iter().find(|seen| seen.features == features) else {
             return false;
         };
-        let (up, down) = (seen.rate.max(0.0), -record.motion.normal_velocity);
+        let up = seen.rate.max(0.0);
         let rise = 0.5 * up * up * self.now.since(seen.time) / (up + down);
-        let gap = record.tolerances.target_gap;
-        let most = if seen.low >= MOST_LOW { LOW_GAPS * gap } else { gap + record.tolerances.accuracy };
+        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
+        let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
         seen.gap + rise <= most
     }
 }

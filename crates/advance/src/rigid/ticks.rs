@@ -1,7 +1,8 @@
 //! Without contact forces: slow contacts sink, and are put back once a step.
 //!
-//! A pair that closes more slowly than `velocity_tol` does not fire. At the next tick of the step its velocity is stopped by
-//! an impulse and it is moved back to its target gap, by the least displacement in the metric of the masses.
+//! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was seen last, does not fire.
+//! At the next tick of the step its velocity is stopped by an impulse and it is moved back to its target gap, by the least
+//! displacement in the metric of the masses. What is pressed so hard that it sinks deep meanwhile is stopped there, too.
 
 use super::events::EventWork;
 use super::pairs::PairId;
@@ -15,6 +16,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 
 /// Rounds of putting back: gaps are not linear in the displacement, but nearly.
 const ROUNDS: usize = 3;
+/// Part of the reach of the smaller body by which a pair may sink before it fires again.
+const SUNK_SHARE: f64 = 1e-2;
 
 /// The pairs that wait for the next tick.
 #[derive(Clone, Debug, Default)]
@@ -35,13 +38,18 @@ impl RigidSystem {
         let Some(sample) = sample else { return false };
         let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
         let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
-        if -rate > self.settings.tolerances.velocity_tol {
+        let is_fast = -rate > self.settings.tolerances.velocity_tol;
+        let reach = bodies.map(|body| self.flyer(body).reach());
+        let room = SUNK_SHARE * reach[0].min(reach[1]);
+        let seen = self.pairs.seen(pair).iter().find(|seen| seen.features == features);
+        let is_deep = seen.is_some_and(|seen| seen.gap - sample.gap > 0.5 * room);
+        if is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate)) {
             return false;
         }
         let tick = self.next_tick(step);
         self.pairs.change_rules(pair, |rules| {
             rules.retain(|rule| rule.features != features);
-            rules.push(FeatureRule { features, target: None });
+            rules.push(FeatureRule { features, target: Some(sample.gap - room) });
         });
         // The search goes on for the other features of the two bodies.
         self.predict(pair);
