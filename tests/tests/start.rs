@@ -20,7 +20,7 @@ fn build_error(toml: &str) -> String {
 #[test]
 fn an_overlap_at_the_start_names_both_bodies_and_its_depth() {
     let message = build_error(&on_floor("shape = { disc = { radius = 0.5 } }\nposition = [0.0, 0.4]"));
-    for part in ["\"floor\"", "\"body\"", "overlap by 0.0999"] {
+    for part in ["\"floor\"", "\"body\"", "overlap by 0.1 m"] {
         assert!(message.contains(part), "{message}");
     }
 }

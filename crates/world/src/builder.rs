@@ -3,10 +3,11 @@
 use crate::connector::{ConnectorSpec, kind_name};
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::rigid_settings::rigid_settings;
+use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
-use crate::start::{StartParts, StartRules, correct_start};
+use crate::start::{Corrected, StartParts, StartRules, correct_start};
 use crate::world::{BACKGROUND, Inertia, Named, Start, World, energy_of, name_among};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
@@ -161,7 +162,7 @@ impl WorldBuilder {
         let scales = self.scales(&self.wrenches()?);
         self.check_resolution(&scales)?;
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
-        let warnings = self.gap_warning(&scales).into_iter().collect();
+        let mut warnings: Vec<String> = self.gap_warning(&scales).into_iter().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
@@ -179,7 +180,13 @@ impl WorldBuilder {
             energy_of(&named, &self.forces, self.settings.start_time, state).total()
         };
         let given = total(&bodies);
-        let displacement = correct_start(&mut bodies, &named, &connectors, &rules)?;
+        let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
+        if let Some((connector, rate)) = apart.filter(|&(_, rate)| rate > tolerances.velocity_tol) {
+            warnings.push(format!(
+                "{connector} comes apart at {} m/s by the velocities at the start; they were changed to fit",
+                Rounded(rate)
+            ));
+        }
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
@@ -203,9 +210,11 @@ impl WorldBuilder {
         let is_too_small = self.settings.overrides.target_gap.is_none() && wanted < smallest;
         is_too_small.then(|| {
             format!(
-                "tolerance {tolerance} asks for a target gap of {wanted:e} m, but coordinates of {} m allow no less than \
-                 {smallest:e} m",
-                scales.coordinate
+                "tolerance {} asks for a target gap of {} m, but coordinates of {} m allow no less than {} m",
+                Rounded(tolerance),
+                Rounded(wanted),
+                Rounded(scales.coordinate),
+                Rounded(smallest)
             )
         })
     }

@@ -46,6 +46,7 @@ mod recording;
 #[cfg(feature = "scene")]
 mod result;
 mod rigid_settings;
+mod rounded;
 #[cfg(feature = "scene")]
 mod run;
 mod run_error;

@@ -1,5 +1,6 @@
 //! Why a world could not be built.
 
+use crate::rounded::Rounded;
 use crate::run_error::RunError;
 
 /// Why a world could not be built.
@@ -58,7 +59,7 @@ pub enum WorldError {
         bodies: usize,
     },
     /// A connector is off at the start by more than is allowed.
-    #[error("{connector} is off by {error} m at the start; at most {allowed} m are allowed")]
+    #[error("{connector} is off by {} m at the start; at most {} m are allowed", Rounded(*error), Rounded(*allowed))]
     ConnectorError {
         /// Which connector.
         connector: ConnectorName,
@@ -103,7 +104,9 @@ pub enum WorldError {
     },
     /// Two bodies overlap at the start by more than is allowed.
     #[error(
-        "bodies \"{first}\" and \"{second}\" overlap by {depth} m at the start; at most {allowed} m are allowed"
+        "bodies \"{first}\" and \"{second}\" overlap by {} m at the start; at most {} m are allowed",
+        Rounded(*depth),
+        Rounded(*allowed)
     )]
     Overlap {
         /// Name of one body.
@@ -117,7 +120,8 @@ pub enum WorldError {
     },
     /// Gaps at the start cannot all be lifted to the target gap.
     #[error(
-        "bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {gap} m remain between them"
+        "bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {} m remain between them",
+        Rounded(*gap)
     )]
     CannotLift {
         /// Name of one body.

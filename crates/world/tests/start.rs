@@ -74,7 +74,7 @@ fn larger_errors_are_refused_by_name() {
     let error = builder.clone().build().expect_err("an eighth of a metre is too much");
     assert_eq!(
         error.to_string(),
-        "connector 1 (rod of \"world\" and \"bob\") is off by 0.125 m at the start; at most 0.0000005 m are allowed"
+        "connector 1 (rod of \"world\" and \"bob\") is off by 0.125 m at the start; at most 5e-7 m are allowed"
     );
     let error = {
         let mut builder =
@@ -85,6 +85,29 @@ fn larger_errors_are_refused_by_name() {
         builder.build().expect_err("two rods cannot span 4 m with 3.875 m")
     };
     assert!(matches!(error, WorldError::CannotConnect { .. }), "{error}");
+}
+
+#[test]
+fn velocities_that_pull_a_rod_apart_are_changed_and_told_of() {
+    let warnings = |speed: f64| {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let (position, velocity) = (DVec2::new(0.0, 2.0), DVec2::new(1.0, speed));
+        let state = BodyState { position, velocity, ..BodyState::default() };
+        let shape = Shape::disc(0.5).expect("a fine radius");
+        let bob = builder.add(BodySpec::movable("bob", shape, 1.0, state));
+        builder.add_connector(rod(at(0.0, 0.0), center(bob), 2.0));
+        let world = build(builder);
+        assert!((world.state(bob).velocity - DVec2::X).length() < 1e-12, "{:?}", world.state(bob));
+        world.warnings().to_vec()
+    };
+    assert_eq!(warnings(0.0), Vec::<String>::new());
+    assert_eq!(
+        warnings(0.25),
+        [
+            "connector 0 (rod of \"world\" and \"bob\") comes apart at 0.25 m/s by the velocities at the start; they were \
+          changed to fit"
+        ]
+    );
 }
 
 #[test]

@@ -298,7 +298,7 @@ mod tests {
         assert_eq!(
             message(pin),
             "connector[0].pin: connector 0 (pin of \"bob\" and \"world\") is off by 0.25 m at the start; at most \
-             0.00000075 m are allowed"
+             7.5e-7 m are allowed"
         );
         let path = "path = { start = [0, 0], edges = [{ line = [2, 0] }] }";
         let stop = format!(

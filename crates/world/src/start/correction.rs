@@ -3,7 +3,7 @@
 use super::StartParts;
 use super::joined::{name_of, rows};
 use crate::world::Named;
-use crate::world_error::WorldError;
+use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Connector};
 use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Settings, Solution, Solver};
@@ -66,12 +66,12 @@ fn join<'a>(
     })
 }
 
-/// Changes the velocities so that no bilateral connector comes apart.
+/// Changes the velocities so that no bilateral connector comes apart; which did most, and how fast [m/s].
 pub(super) fn correct_velocities(
     bodies: &mut [StartParts],
     named: &[Named],
     connectors: &[Connector],
-) -> Result<(), WorldError> {
+) -> Result<Option<(ConnectorName, f64)>, WorldError> {
     let bilateral = rows(bodies, connectors).filter(|(_, connector, _)| connector.is_bilateral());
     let (mut corrections, mut worst) = (Vec::new(), None::<(usize, f64)>);
     for (index, connector, sample) in bilateral {
@@ -84,7 +84,7 @@ pub(super) fn correct_velocities(
         }
         corrections.push(Correction { bodies: ends, jacobian, offset: rate, bilateral: true });
     }
-    let Some((index, rate)) = worst else { return Ok(()) };
+    let Some((index, rate)) = worst else { return Ok(None) };
     let changes = least_changes(bodies, &corrections).ok_or_else(|| {
         let connector = name_of(index, named, connectors);
         WorldError::ConnectorComesApart { connector, rate }
@@ -93,7 +93,7 @@ pub(super) fn correct_velocities(
         state.velocity += DVec2::new(change[0], change[1]);
         state.angular_velocity += change[2];
     }
-    Ok(())
+    Ok(Some((name_of(index, named, connectors), rate)))
 }
 
 /// The sum of the sizes of the terms that make up a rate [m/s].

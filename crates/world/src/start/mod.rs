@@ -14,7 +14,7 @@ mod tight;
 mod touching;
 
 use crate::world::Named;
-use crate::world_error::WorldError;
+use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
 use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
@@ -47,13 +47,22 @@ pub(crate) struct StartRules<'a> {
     pub(crate) rounding: f64,
 }
 
-/// Corrects positions and velocities at the start; returns the largest displacement [m].
+/// What was corrected at the start.
+#[derive(Debug)]
+pub(crate) struct Corrected {
+    /// Largest displacement [m].
+    pub(crate) displacement: f64,
+    /// The connector that came apart fastest by the velocities given, and how fast [m/s].
+    pub(crate) apart: Option<(ConnectorName, f64)>,
+}
+
+/// Corrects positions and velocities at the start.
 pub(crate) fn correct_start(
     bodies: &mut [StartParts],
     named: &[Named],
     connectors: &[Connector],
     rules: &StartRules<'_>,
-) -> Result<f64, WorldError> {
+) -> Result<Corrected, WorldError> {
     let pairs = if rules.collisions {
         near_pairs(bodies, rules.excluded, rules.tolerances.distance_tol())
     } else {
@@ -87,8 +96,8 @@ pub(crate) fn correct_start(
         }
         last_error = error;
     }
-    correct_velocities(bodies, named, connectors)?;
-    Ok(largest_move(bodies, &given))
+    let apart = correct_velocities(bodies, named, connectors)?;
+    Ok(Corrected { displacement: largest_move(bodies, &given), apart })
 }
 
 /// True if the connectors are together: to rounding, or as near as they come if that is near enough.
