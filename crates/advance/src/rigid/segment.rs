@@ -40,6 +40,9 @@ const STEADY_GROWTH: f64 = 2.0;
 /// Part of the accuracy by which rounding may move a body along a step.
 const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 
+/// Dense output makes so much of the rounding of the accelerations along a step.
+const DENSE_ROUNDING: f64 = 40.0;
+
 /// Part of the accuracy by which a step of bodies in contact may err, lest what they fly by is hit too late.
 const CLEAR_SHARE: f64 = 0.5;
 
@@ -188,8 +191,22 @@ impl Dynamics<'_> {
     /// The longest step [s] over which the rounding of accelerations, which grows with its square, does not matter: no
     /// error estimate ends the steps of a group at rest.
     fn longest_sound_step(&self) -> f64 {
-        let rounding = f64::EPSILON * self.group.free_acceleration;
+        let rounding = f64::EPSILON * self.group.free_acceleration.max(DENSE_ROUNDING * self.pressed());
         (2.0 * ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / rounding).sqrt()
+    }
+
+    /// The largest acceleration [m/s^2] that the contacts of a body would give it if they did not cancel each other: what is
+    /// light and pressed by heavy bodies has accelerations of that rounding.
+    fn pressed(&self) -> f64 {
+        let Group { bodies, rows, sides, forces, .. } = &*self.group;
+        let contacts = rows.iter().zip(sides).zip(forces).filter(|((row, _), _)| !row.bilateral);
+        let of_side = |force: f64, place: u32| {
+            force.abs() * self.physics.mechanism.flyers[bodies[place as usize].index()].body().inverse_mass
+        };
+        let of_row = |((_, sides), force): ((_, &[Option<u32>; 2]), &f64)| {
+            sides.iter().flatten().map(|&place| of_side(*force, place)).fold(0.0, f64::max)
+        };
+        contacts.map(of_row).fold(0.0, f64::max)
     }
 
     /// The longest step [s] along which contacts are surely sampled well: their forces, which no error estimate sees where
