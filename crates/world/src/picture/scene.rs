@@ -10,7 +10,6 @@ use crate::recording::{Frame, Recording, body_ids};
 use crate::world::World;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{Aabb, Pose};
-use std::fmt::Write;
 
 /// Fixed bodies that reach no farther than this beyond what moves are shown whole, as part of the size of that.
 const NEAR: f64 = 1.5;
@@ -82,11 +81,16 @@ fn draw_trails(svg: &mut Svg, recording: &Recording, view: &View) {
     for (place, &body) in recording.movable.iter().enumerate() {
         let points = trail(recording, place, body);
         let every = points.len().div_ceil(LONGEST_TRAIL).max(1);
-        let mut data = String::new();
+        let (mut data, mut last) = (String::new(), String::new());
         for &(_, position) in points.iter().step_by(every).chain(points.last()) {
             let point = view.to_page(position);
-            let command = if data.is_empty() { 'M' } else { 'L' };
-            let _ = write!(data, "{command}{} {}", number(point.0), number(point.1));
+            let shown = format!("{} {}", number(point.0), number(point.1));
+            // What stands still leaves one point, not one for each output.
+            if shown != last {
+                data.push(if data.is_empty() { 'M' } else { 'L' });
+                data.push_str(&shown);
+                last = shown;
+            }
         }
         let attributes =
             [("fill", "none"), ("stroke", color(place)), ("stroke-width", "1"), ("stroke-opacity", "0.45")];
