@@ -17,6 +17,8 @@ const ROUGH_HELD_UP: f64 = 0.1;
 const FAR: f64 = 0.5;
 /// Explicit steps over which nobody looks again after one that was far from held up.
 const UNTOLD_STEPS: u32 = 15;
+/// Somebody looks sooner where steps have shrunk to this part: what ends them may be new.
+const SHRUNK: f64 = 0.5;
 /// So many more steps are held up than are not before implicit ones are tried; twice as many after each time in vain, and
 /// one where implicit ones have served before.
 const TELLING_STEPS: u32 = 8;
@@ -55,6 +57,8 @@ pub(crate) struct Stiffness {
     held_up: u32,
     /// Steps until somebody looks again.
     wait: u32,
+    /// Length of the step [s] at which somebody looked last.
+    looked: f64,
     /// Explicit steps that implicit ones have saved so far, less what they cost.
     saved: f64,
     /// How often implicit steps cost more.
@@ -87,10 +91,12 @@ impl Dynamics<'_> {
         if !tools.settings.method.is_adaptive() || self.group.is_brief {
             return;
         }
-        if self.group.stiffness.wait > 0 {
+        let Stiffness { wait, looked, .. } = self.group.stiffness;
+        if wait > 0 && self.group.span >= SHRUNK * looked {
             self.group.stiffness.wait -= 1;
             return;
         }
+        self.group.stiffness.looked = self.group.span;
         let told = if self.group.tree.is_used() {
             self.stiffness_of_tree(tools.stepper, tools.scales)
         } else {
