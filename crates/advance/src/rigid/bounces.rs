@@ -58,17 +58,22 @@ impl RigidSystem {
         let (Some(p), Some(n)) = (primary.feature(), normal.feature()) else { return false };
         let Some(pair) = self.pairs.between(primary.body, normal.body) else { return false };
         let features = if primary.body < normal.body { [p, n] } else { [n, p] };
-        self.has_stayed_low(pair, features, -record.motion.normal_velocity)
+        self.has_stayed_low(pair, features, -record.motion.normal_velocity, &record.tolerances)
     }
 
     /// True if two features that close at a rate [m/s] were seen within the target zone before and have not left it since.
-    pub(crate) fn has_stayed_low(&self, pair: PairId, features: [FeatureId; 2], down: f64) -> bool {
+    pub(crate) fn has_stayed_low(
+        &self,
+        pair: PairId,
+        features: [FeatureId; 2],
+        down: f64,
+        &Tolerances { target_gap, accuracy, .. }: &Tolerances,
+    ) -> bool {
         let Some(seen) = self.pairs.seen(pair).iter().find(|seen| seen.features == features) else {
             return false;
         };
         let up = seen.rate.max(0.0);
         let rise = 0.5 * up * up * self.now.since(seen.time) / (up + down);
-        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
         let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
         seen.gap + rise <= most
     }

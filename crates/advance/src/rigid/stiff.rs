@@ -169,6 +169,7 @@ impl Dynamics<'_> {
                 (rates[at] - end_rates[at]).abs()
             };
             let changed = change(0).max(change(1)).max(change(2) * reach);
+            // The square of a rate: it fades twice.
             *rough = (changed / moved).max(FADING * FADING * *rough);
             most = most.max(changed);
         }

@@ -38,12 +38,13 @@ impl RigidSystem {
         let Some(sample) = sample else { return false };
         let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
         let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
-        let is_fast = -rate > self.settings.tolerances.velocity_tol;
+        let tolerances = &self.settings.tolerances;
+        let is_fast = -rate > tolerances.velocity_tol;
         let reach = bodies.map(|body| self.flyer(body).reach());
         let room = SUNK_SHARE * reach[0].min(reach[1]);
         let seen = self.pairs.seen(pair).iter().find(|seen| seen.features == features);
         let is_deep = seen.is_some_and(|seen| seen.gap - sample.gap > 0.5 * room);
-        if is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate)) {
+        if is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
             return false;
         }
         let tick = self.next_tick(step);
