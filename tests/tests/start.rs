@@ -176,3 +176,17 @@ fn a_block_that_just_fits_between_two_walls_slides_along_them() {
         "{state:?}"
     );
 }
+
+#[test]
+fn a_ball_bounces_before_time_zero_as_it_does_after() {
+    for start in [0.0, -500.0] {
+        let text = on_floor("shape = { disc = { radius = 0.5 } }\nposition = [0.0, 1.0]");
+        let mut scene = Scene::parse(&text, SceneFormat::Toml).expect("a fine scene");
+        scene.run.start_time = start;
+        let mut world = World::from_scene(&scene).expect("a world that can be built");
+        let energy = world.energy().total();
+        advance(&mut world, start + 40.0);
+        assert!(world.statistics().impacts > 50, "{:?}", world.statistics());
+        assert!((world.energy().total() - energy).abs() < 1e-9, "{:?}", world.ledger());
+    }
+}

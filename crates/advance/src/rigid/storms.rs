@@ -14,8 +14,8 @@ const CALM_EVENTS_PER_ROW: usize = 10;
 /// Recent events of one body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Recent {
-    /// When counting began.
-    since: Time,
+    /// When counting began, if it has.
+    since: Option<Time>,
     /// Events since then.
     events: usize,
 }
@@ -27,8 +27,8 @@ impl RigidSystem {
         let mut most = 0;
         for &body in &region.bodies {
             let recent = &mut self.recent[body.index()];
-            if now.since(recent.since) > window {
-                *recent = Recent { since: now, events: 0 };
+            if recent.since.is_none_or(|since| now.since(since) > window) {
+                *recent = Recent { since: Some(now), events: 0 };
             }
             recent.events += 1;
             most = most.max(recent.events);
