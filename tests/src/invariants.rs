@@ -21,6 +21,9 @@ const STOPS: u32 = 40;
 /// over.
 const ENERGY_TOLERANCES: f64 = 1e4;
 const ENERGY_ROUNDING: f64 = 1e-9;
+/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin slowly. More
+/// is a blow that was taken for one.
+const CAPTURED: f64 = 5e-2;
 /// How far a connector may be off, in tolerances and in roundings of the coordinates.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
@@ -290,6 +293,10 @@ impl Inspector {
         let gained = ledger.now.total() - ledger.start - work;
         if gained > allowed {
             return Err(("energy gained", format!("{gained:e} J, {allowed:e} J allowed: {ledger:?}")));
+        }
+        if ledger.captures < -(CAPTURED * self.turned_over + allowed) {
+            let captures = ledger.captures;
+            return Err(("captures", format!("{captures:e} J, {:e} J turned over", self.turned_over)));
         }
         let error = ledger.integration_error();
         if error.is_nan() || error.abs() > allowed {
