@@ -40,9 +40,6 @@ const STEADY_GROWTH: f64 = 2.0;
 /// Part of the accuracy by which rounding may move a body along a step.
 const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 
-/// Dense output makes so much of the rounding of the accelerations along a step.
-const DENSE_ROUNDING: f64 = 40.0;
-
 /// Part of the accuracy by which a step of bodies in contact may err, lest what they fly by is hit too late.
 const CLEAR_SHARE: f64 = 0.5;
 
@@ -191,22 +188,8 @@ impl Dynamics<'_> {
     /// The longest step [s] over which the rounding of accelerations, which grows with its square, does not matter: no
     /// error estimate ends the steps of a group at rest.
     fn longest_sound_step(&self) -> f64 {
-        let rounding = f64::EPSILON * self.group.free_acceleration.max(DENSE_ROUNDING * self.pressed());
+        let rounding = f64::EPSILON * self.group.free_acceleration;
         (2.0 * ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / rounding).sqrt()
-    }
-
-    /// The largest acceleration [m/s^2] that the contacts of a body would give it if they did not cancel each other: what is
-    /// light and pressed by heavy bodies has accelerations of that rounding.
-    fn pressed(&self) -> f64 {
-        let Group { bodies, rows, sides, forces, .. } = &*self.group;
-        let contacts = rows.iter().zip(sides).zip(forces).filter(|((row, _), _)| !row.bilateral);
-        let of_side = |force: f64, place: u32| {
-            force.abs() * self.physics.mechanism.flyers[bodies[place as usize].index()].body().inverse_mass
-        };
-        let of_row = |((_, sides), force): ((_, &[Option<u32>; 2]), &f64)| {
-            sides.iter().flatten().map(|&place| of_side(*force, place)).fold(0.0, f64::max)
-        };
-        contacts.map(of_row).fold(0.0, f64::max)
     }
 
     /// The longest step [s] along which contacts are surely sampled well: their forces, which no error estimate sees where
@@ -281,15 +264,19 @@ impl Dynamics<'_> {
 
     /// The same of a state.
     fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
-        let count = self.group.bodies.len();
-        let mut speed = (self.group.free_acceleration * self.length(control)).sqrt();
-        for (place, &body) in self.group.bodies.iter().enumerate() {
-            let at = 3 * (count + place);
-            let of_points =
-                DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body);
-            speed = speed.max(of_points);
-        }
+        let forced = (self.group.free_acceleration * self.length(control)).sqrt();
+        let speed = forced.max(self.top_speed(state));
         if speed > 0.0 { speed } else { control.speed }
+    }
+
+    /// Speed [m/s] of the fastest point of the group in a state.
+    fn top_speed(&self, state: &[f64]) -> f64 {
+        let count = self.group.bodies.len();
+        let speeds = self.group.bodies.iter().enumerate().map(|(place, &body)| {
+            let at = 3 * (count + place);
+            DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body)
+        });
+        speeds.fold(0.0, f64::max)
     }
 
     /// Error of a velocity [m/s] that is just acceptable.

@@ -182,15 +182,15 @@ impl Dynamics<'_> {
 
 impl Group {
     /// What rounding of places [m] makes of the velocity [m/s] of a body, by its place, in a step as short as the fastest
-    /// part of the group asks for. An implicit method knows what is rounding itself.
+    /// part of the group asks for. Where nobody has looked, and among contacts, whose forces have a rounding of their own, the
+    /// body may be of that part. An implicit method knows what is rounding itself.
     pub(crate) fn rough_velocity(&self, place: usize, rounding: f64) -> f64 {
-        let Stiffness { rate, steep, .. } = self.stiffness;
-        if steep == 0.0 || self.stepping() == Stepping::Stiff {
+        let rate = self.stiffness.rate.max(self.stiffness.steep);
+        if rate == 0.0 || self.stepping() == Stepping::Stiff {
             return 0.0;
         }
-        // Of bodies that have come together since nobody knows which are the light ones.
-        let roughness = self.roughness.get(place).copied().unwrap_or(steep * steep);
-        rounding * roughness / rate.max(steep)
+        let known = self.roughness.get(place).filter(|_| self.rows.iter().all(|row| row.bilateral));
+        rounding * known.map_or(rate, |roughness| roughness / rate)
     }
 
     /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are
