@@ -14,8 +14,6 @@ use super::system::RigidSystem;
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
 
-/// Forces may press bodies together by so many times the acceleration of the scene.
-const FORCED: f64 = 1e3;
 /// So many feature pairs are remembered of a pair of bodies.
 const MOST_SEEN: usize = 16;
 /// Bounces no higher than so many target gaps are low, and end after so many in a row.
@@ -77,9 +75,7 @@ impl RigidSystem {
         let up = seen.rate.max(0.0);
         let rise = 0.5 * up * up * self.now.since(seen.time) / (up + down);
         let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
-        // What is faster than forces make it within the zone was lifted in between, or struck.
-        let forced = FORCED * self.settings.tolerances.velocity_tol / self.settings.resolution_time;
-        seen.gap + rise <= most && down * down <= 2.0 * forced * most
+        seen.gap + rise <= most
     }
 }
 
