@@ -116,7 +116,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a corner fired again and again: far from the origin it lay just beyond the reach of its body",
     ),
     (1_602_173, "damping counted as if it were a force that varies with places: steps were as rough as that"),
-    (2_022_473, "the same of a body of a microgram"),
+    (2_022_473, "the same of a body of a milligram"),
     (1_331_049, "a target gap near the rounding of coordinates"),
 ];
 

@@ -93,7 +93,7 @@ pub(crate) struct Group {
     pub(crate) has_kinks: bool,
     pub(crate) stiffness: Stiffness,
     /// By how much [1/s^2] the acceleration of each body varied last where the bodies were moved by a little; empty where
-    /// nobody had to look.
+    /// nobody had to look, and among contacts.
     pub(crate) roughness: Vec<f64>,
     /// The last step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,

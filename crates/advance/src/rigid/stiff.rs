@@ -173,6 +173,10 @@ impl Dynamics<'_> {
             *rough = (changed / moved).max(FADING * FADING * *rough);
             most = most.max(changed);
         }
+        if self.group.rows.iter().any(|row| !row.bilateral) {
+            // Forces of contacts have a rounding of their own, which places do not tell.
+            self.group.roughness.clear();
+        }
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
         let found = (most / moved).sqrt();
         let known = &mut self.group.stiffness.steep;
@@ -182,15 +186,14 @@ impl Dynamics<'_> {
 
 impl Group {
     /// What rounding of places [m] makes of the velocity [m/s] of a body, by its place, in a step as short as the fastest
-    /// part of the group asks for. Where nobody has looked, and among contacts, whose forces have a rounding of their own, the
-    /// body may be of that part. An implicit method knows what is rounding itself.
+    /// part of the group asks for. Where it is not known how rough each body is, it may be of that part. An implicit method knows
+    /// what is rounding itself.
     pub(crate) fn rough_velocity(&self, place: usize, rounding: f64) -> f64 {
         let rate = self.stiffness.rate.max(self.stiffness.steep);
         if rate == 0.0 || self.stepping() == Stepping::Stiff {
             return 0.0;
         }
-        let known = self.roughness.get(place).filter(|_| self.rows.iter().all(|row| row.bilateral));
-        rounding * known.map_or(rate, |roughness| roughness / rate)
+        rounding * self.roughness.get(place).map_or(rate, |roughness| roughness / rate)
     }
 
     /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are

@@ -18,6 +18,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 const ROUNDS: usize = 3;
 /// Part of the reach of the smaller body by which a pair may sink before it fires again.
 const SUNK_SHARE: f64 = 1e-2;
+/// Of that, what tells a pair that has sunk from one that has just been seen.
+const DEEP_SHARE: f64 = 0.5;
 
 /// The pairs that wait for the next tick.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +45,7 @@ impl RigidSystem {
         let reach = bodies.map(|body| self.flyer(body).reach());
         let room = SUNK_SHARE * reach[0].min(reach[1]);
         let seen = self.pairs.seen(pair).iter().find(|seen| seen.features == features);
-        let is_deep = seen.is_some_and(|seen| seen.gap - sample.gap > 0.5 * room);
+        let is_deep = seen.is_some_and(|seen| seen.gap - sample.gap > DEEP_SHARE * room);
         if is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
             return false;
         }
