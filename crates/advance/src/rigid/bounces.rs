@@ -14,6 +14,8 @@ use super::system::RigidSystem;
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
 
+/// Forces may press bodies together by so many times the acceleration of the scene.
+const FORCED: f64 = 1e3;
 /// So many feature pairs are remembered of a pair of bodies.
 const MOST_SEEN: usize = 16;
 /// Bounces no higher than so many target gaps are low, and end after so many in a row.
@@ -73,9 +75,14 @@ impl RigidSystem {
             return false;
         };
         let up = seen.rate.max(0.0);
-        let rise = 0.5 * up * up * self.now.since(seen.time) / (up + down);
+        let lasted = self.now.since(seen.time);
+        let rise = 0.5 * up * up * lasted / (up + down);
         let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
-        seen.gap + rise <= most
+        // What moved so under a constant acceleration is where it was. Else, as when something has lifted it in between, it has
+        // stayed only if it is no faster than forces make it within the zone.
+        let went = 0.5 * (up - down).abs() * lasted;
+        let forced = FORCED * self.settings.tolerances.velocity_tol / self.settings.resolution_time;
+        seen.gap + rise <= most && (went <= most || down * down <= 2.0 * forced * most)
     }
 }
 
