@@ -44,6 +44,7 @@ pub struct Auto {
 
 #[derive(Debug, Default)]
 struct Methods {
+    settings: Settings,
     dual: DualActiveSet,
     proximal: ProximalNewton,
     #[cfg(feature = "qp")]
@@ -129,6 +130,7 @@ impl Auto {
 impl Methods {
     fn new(settings: Settings) -> Result<Self, SettingsError> {
         Ok(Methods {
+            settings,
             dual: DualActiveSet::new(settings)?,
             proximal: ProximalNewton::new(settings)?,
             #[cfg(feature = "qp")]
@@ -180,7 +182,7 @@ impl Methods {
         solution: &mut Solution,
         error: SolveError,
     ) -> Result<(), SolveError> {
-        if matches!(error, SolveError::Infeasible(_)) {
+        if self.settings.is_proven(&error, problem) {
             return Err(error);
         }
         if self.proximal.solve(problem, solution).is_ok() {
@@ -190,8 +192,12 @@ impl Methods {
         if self.qp.solve(problem, solution).is_ok() {
             return Ok(());
         }
-        if problem.len() <= LAST_RESORT_ROWS && self.lemke.solve(problem, solution).is_ok() {
-            return Ok(());
+        if problem.len() <= LAST_RESORT_ROWS {
+            match self.lemke.solve(problem, solution) {
+                Ok(()) => return Ok(()),
+                Err(proof) if self.settings.is_proven(&proof, problem) => return Err(proof),
+                Err(_) => {}
+            }
         }
         Err(error)
     }

@@ -10,10 +10,24 @@ use crate::closed_rows::ClosedRows;
 use crate::error::Infeasibility;
 use crate::problem::Problem;
 
+/// What came of a null direction.
+pub(crate) enum Reconciled {
+    /// What contradicted was rounding; b̂ is changed by it.
+    Shifted,
+    /// It proves that there is no solution.
+    Infeasible(Box<Infeasibility>),
+    /// It is too rough to prove anything.
+    Unproven,
+}
+
 /// What was taken off b̂, row by row; empty until there is something.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shift {
     taken: Vec<f64>,
+    /// Null directions of the bilateral rows, orthogonal to each other, along which b̂ is zero now.
+    basis: Vec<Vec<f64>>,
+    /// Largest |â| of a bilateral row that nearly depends on others and is left to them.
+    rest: f64,
     /// Whether bilateral rows contradicted each other.
     pub(crate) connectors: bool,
 }
@@ -21,24 +35,41 @@ pub(crate) struct Shift {
 impl Shift {
     pub(crate) fn reset(&mut self) {
         self.taken.clear();
+        self.basis.clear();
+        self.rest = 0.0;
         self.connectors = false;
     }
 
-    /// Largest change of a row's b̂, in units of the scale.
+    /// Largest change of a row's b̂, or what is left of a bilateral one, in units of the scale.
     pub(crate) fn inconsistency(&self, scale: f64) -> f64 {
-        self.taken.iter().fold(0.0, |m: f64, t| m.max(t.abs())) / scale
+        self.taken.iter().fold(self.rest, |m: f64, t| m.max(t.abs())) / scale
+    }
+
+    /// Counts what the closed rows leave of bilateral ones, which they may contradict although these depend on them but nearly.
+    pub(crate) fn count_rest(&mut self, closed: &ClosedRows) {
+        let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
+        let taken = |row: usize| self.taken.get(row).copied().unwrap_or(0.0);
+        self.rest = open.fold(0.0, |m: f64, row| m.max((closed.acceleration[row] + taken(row)).abs()));
     }
 
     /// Settles the contradiction that `row`, last considered and found dependent, is violated while no closed force
-    /// blocks the null direction. Returns the proof if the contradiction exceeds `limit`.
+    /// blocks the null direction; it proves something beyond `limit` if any solution had at least `least_growth`.
     pub(crate) fn reconcile(
         &mut self,
         closed: &mut ClosedRows,
         row: usize,
         limit: f64,
-    ) -> Option<Box<Infeasibility>> {
-        let direction = null_direction(closed, row);
-        self.remove(closed, &direction, row, limit)
+        least_growth: f64,
+    ) -> Reconciled {
+        let mut direction = null_direction(closed, row);
+        // What the bilateral rows were made to agree on stays so.
+        make_orthogonal(&mut direction, &self.basis);
+        let violated = dot(&direction, &closed.system.b) < 0.0;
+        match self.remove(closed, &direction, row, limit) {
+            None => Reconciled::Shifted,
+            Some(proof) if violated && proof.least_growth() >= least_growth => Reconciled::Infeasible(proof),
+            Some(_) => Reconciled::Unproven,
+        }
     }
 
     /// Makes dependent bilateral rows agree with the closed ones, all at once in the sense of least squares.
@@ -54,7 +85,6 @@ impl Shift {
             return None;
         }
         self.connectors = true;
-        let mut basis: Vec<Vec<f64>> = Vec::new();
         for row in 0..problem.len() {
             if !problem.bilateral[row] || closed.is_closed(row) {
                 continue;
@@ -62,16 +92,13 @@ impl Shift {
             closed.consider(row);
             closed.find_response();
             let mut direction = null_direction(closed, row);
-            // Orthogonal directions can be settled one by one; twice is enough (Kahan and Parlett).
-            for other in basis.iter().chain(&basis) {
-                let overlap = dot(&direction, other) / dot(other, other);
-                direction.iter_mut().zip(other).for_each(|(d, o)| *d -= overlap * o);
-            }
+            // Orthogonal directions can be settled one by one.
+            make_orthogonal(&mut direction, &self.basis);
             let proof = self.remove(closed, &direction, row, limit.max(noise));
             if proof.is_some() {
                 return proof;
             }
-            basis.push(direction);
+            self.basis.push(direction);
         }
         None
     }
@@ -99,6 +126,14 @@ impl Shift {
     }
 }
 
+/// Takes the parts out of a direction that it has in orthogonal others; twice is enough (Kahan and Parlett).
+fn make_orthogonal(direction: &mut [f64], basis: &[Vec<f64>]) {
+    for other in basis.iter().chain(basis) {
+        let overlap = dot(direction, other) / dot(other, other);
+        direction.iter_mut().zip(other).for_each(|(d, o)| *d -= overlap * o);
+    }
+}
+
 /// The direction in which `row`, last considered, and the closed rows cancel each other. Bilateral rows may be taken
 /// with either sign.
 fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
@@ -111,6 +146,7 @@ fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
     direction
 }
 
+/// The proof by a null direction, which counts with either sign where all of its rows are bilateral.
 fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize, size: f64) -> Infeasibility {
     let scale = closed.system.scale;
     let sign = if dot(direction, &closed.system.b) > 0.0 { -1.0 } else { 1.0 };

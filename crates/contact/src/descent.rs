@@ -42,7 +42,8 @@ impl DualActiveSet {
         is_plain && closed.force.len() >= FEWEST_ROWS && !closed.free.contains(&true)
     }
 
-    /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other afterwards.
+    /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other afterwards. A closed
+    /// force may pull, if only by rounding.
     pub(crate) fn descend(&mut self) {
         let mut force = std::mem::take(&mut self.admissible);
         self.start.fill(false);
@@ -61,6 +62,16 @@ impl DualActiveSet {
         self.move_to_basis(&mut force);
         self.closed.force.copy_from_slice(&force);
         self.closed.accelerate();
+        // What depends too nearly on others for a pass, or was left when the passes ended, was closed as it was.
+        if self.closed.closed_error() > self.noise() {
+            self.go_to_face(&mut force);
+            self.closed.force.copy_from_slice(&force);
+            self.closed.accelerate();
+        }
+        if self.closed.closed_error() > self.noise() {
+            self.closed.solve_closed();
+            self.closed.accelerate();
+        }
         self.admissible = force;
     }
 

@@ -14,7 +14,7 @@
 
 use crate::check::Checker;
 use crate::closed_rows::ClosedRows;
-use crate::dependent::Shift;
+use crate::dependent::{Reconciled, Shift};
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::problem::Problem;
 use crate::settings::{Contradiction, ForceSelection, Settings};
@@ -65,12 +65,16 @@ pub(crate) struct Attempt {
     pub(crate) dependence: f64,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     pub(crate) contradiction: f64,
+    /// Whether what is left of bilateral rows that nearly depend on others counts as a contradiction, too.
+    pub(crate) is_last: bool,
 }
 
 /// How the pivoting ended.
 pub(crate) enum End {
     Done,
     Stopped,
+    /// At rows that seem to contradict each other, by too little to prove it: the forces mean nothing.
+    Unproven,
     Infeasible(Box<Infeasibility>),
 }
 
@@ -108,8 +112,7 @@ impl DualActiveSet {
                 Err(error) if self.handed_over => return Err(error),
                 Err(error) => error,
             };
-            let proven = matches!(&error, SolveError::Infeasible(proof)
-                if proof.least_growth() >= self.settings.greatest_growth);
+            let proven = self.settings.is_proven(&error, problem);
             // A certificate outweighs an attempt that came to nothing.
             if proven || failure.is_none() || matches!(error, SolveError::Infeasible(_)) {
                 failure = Some(error);
@@ -129,7 +132,7 @@ impl DualActiveSet {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let Settings { dependence, inconsistency, .. } = self.settings;
-        let attempt = Attempt { dependence, contradiction: inconsistency };
+        let attempt = Attempt { dependence, contradiction: inconsistency, is_last: false };
         self.attempt(problem, start, solution, attempt)
     }
 
@@ -164,12 +167,13 @@ impl DualActiveSet {
     fn attempts(&self) -> [Attempt; 3] {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
-        let usual = Attempt { dependence, contradiction: as_given };
-        let strict = Attempt { dependence: least_dependence, contradiction: as_given };
-        let least_squares = Attempt { dependence, contradiction: inconsistency };
+        let usual = Attempt { dependence, contradiction: as_given, is_last: false };
+        let strict = Attempt { dependence: least_dependence, ..usual };
+        let least_squares = Attempt { contradiction: inconsistency, ..usual };
+        let last = Attempt { is_last: true, ..least_squares };
         match self.settings.contradiction {
-            Contradiction::SolveExactly => [usual, strict, least_squares],
-            Contradiction::LeastSquares => [least_squares, strict, least_squares],
+            Contradiction::SolveExactly => [usual, strict, last],
+            Contradiction::LeastSquares => [least_squares, strict, last],
         }
     }
 
@@ -196,6 +200,9 @@ impl DualActiveSet {
                 self.pivot(problem, attempt)
             }
         };
+        if attempt.is_last {
+            self.shift.count_rest(&self.closed);
+        }
         let result = self.finish(problem, solution, end);
         if result.is_ok() && self.settings.selection == ForceSelection::LeastNorm {
             self.select_least_norm(problem, solution, attempt);
@@ -361,9 +368,10 @@ impl DualActiveSet {
     /// The rows contradict each other along the null direction just found: by rounding, or for good.
     fn resolve_contradiction(&mut self, row: usize, attempt: Attempt) -> End {
         let limit = attempt.contradiction * self.closed.system.scale;
-        match self.shift.reconcile(&mut self.closed, row, limit) {
-            Some(certificate) => End::Infeasible(certificate),
-            None => {
+        match self.shift.reconcile(&mut self.closed, row, limit, self.settings.least_growth) {
+            Reconciled::Infeasible(certificate) => End::Infeasible(certificate),
+            Reconciled::Unproven => End::Unproven,
+            Reconciled::Shifted => {
                 self.contacts_contradict = true;
                 self.closed.force[row] = 0.0;
                 self.closed.solve_closed();
@@ -387,9 +395,11 @@ impl DualActiveSet {
         solution: &mut Solution,
         end: End,
     ) -> Result<(), SolveError> {
-        if let End::Infeasible(certificate) = end {
-            return Err(SolveError::Infeasible(certificate));
-        }
+        let is_answer = match end {
+            End::Infeasible(certificate) => return Err(SolveError::Infeasible(certificate)),
+            End::Done | End::Stopped => true,
+            End::Unproven => false,
+        };
         let closed = &self.closed;
         for (row, out) in solution.force.iter_mut().enumerate() {
             *out = closed.force[row] / closed.system.row_scale[row];
@@ -401,7 +411,7 @@ impl DualActiveSet {
         let Solution { force, acceleration, .. } = solution;
         solution.residuals =
             self.checker.check_with(&self.closed.system.entries, problem, force, acceleration);
-        if solution.residuals.accepted(&self.settings, solution.inconsistency) {
+        if is_answer && solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
         }
         Err(SolveError::Unsolved {

@@ -78,6 +78,28 @@ pub enum ProblemError {
         /// Difference between the entry and the one across the diagonal, in units of A.
         difference: f64,
     },
+    /// An entry of a symmetric matrix is larger than its diagonal allows, so that it is no contact matrix.
+    #[error(
+        "row {row}: A is not positive semidefinite, its entry {value} in column {column} is larger than its diagonal allows"
+    )]
+    NotSemidefinite {
+        /// The row.
+        row: usize,
+        /// The column.
+        column: usize,
+        /// The entry, whose square exceeds the product of the two diagonal entries.
+        value: f64,
+    },
+    /// The square of a row, its diagonal entry of A, is beyond what numbers hold.
+    #[error(
+        "row {row}: its diagonal entry of A is {value:e}, which is too large or too small to compute with"
+    )]
+    OutOfRange {
+        /// The row.
+        row: usize,
+        /// The diagonal entry.
+        value: f64,
+    },
     /// A diagonal entry of a symmetric matrix is negative, so that it is no contact matrix.
     #[error("row {row}: the diagonal entry of a symmetric A must not be negative, got {value}")]
     NegativeDiagonal {

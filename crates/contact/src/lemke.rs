@@ -160,6 +160,11 @@ impl Lemke {
         if let Some(entering) = self.dictionary.entering(column).checked_sub(n).filter(|&i| i < n) {
             direction[entering] = 1.0;
         }
+        // What rounding has made negative is nothing; if it was more, the image tells.
+        for (z, _) in direction.iter_mut().zip(&problem.bilateral).filter(|(_, is_bilateral)| !**is_bilateral)
+        {
+            *z = z.max(0.0);
+        }
         let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
         let mut image = vec![0.0; n];
         let (mut worth, mut square, mut scale) = (0.0, 0.0, 0.0_f64);
@@ -174,7 +179,7 @@ impl Lemke {
             scale = scale.max(b.abs());
         }
         let violates = |i: usize| {
-            let outside = if problem.bilateral[i] { image[i].abs() } else { image[i].max(-direction[i]) };
+            let outside = if problem.bilateral[i] { image[i].abs() } else { image[i] };
             outside > RAY * largest
         };
         if worth >= -RAY * scale * largest || (0..n).any(violates) {

@@ -47,6 +47,14 @@ impl SparseMatrix {
         (&self.column[range.clone()], &self.value[range])
     }
 
+    /// Takes the last row off.
+    pub(crate) fn pop_row(&mut self) {
+        self.start.pop();
+        let end = self.start.last().copied().unwrap_or(0);
+        self.column.truncate(end);
+        self.value.truncate(end);
+    }
+
     /// The entry at one place, zero where none is stored.
     pub(crate) fn entry(&self, row: usize, column: usize) -> f64 {
         let (columns, values) = self.row(row);
@@ -90,6 +98,9 @@ impl SparseMatrix {
         while matrix.rows() < rows {
             matrix.start.push(matrix.column.len());
         }
+        for row in 0..rows {
+            matrix.row(row).1.iter().try_for_each(|&sum| check_finite(row, "a sum of coefficients", sum))?;
+        }
         Ok(matrix)
     }
 
@@ -106,6 +117,9 @@ impl SparseMatrix {
                 let size = (diagonal[row] * diagonal[column]).sqrt();
                 if difference.abs() > SYMMETRY * size {
                     return Err(ProblemError::NotSymmetric { row, column, difference });
+                }
+                if value.abs() > (1.0 + SYMMETRY) * size {
+                    return Err(ProblemError::NotSemidefinite { row, column, value });
                 }
             }
         }
@@ -124,6 +138,21 @@ pub(crate) struct BodyRows {
 impl BodyRows {
     pub(crate) fn new() -> Self {
         BodyRows { rows: SparseMatrix::new(), inverse_mass: Vec::new() }
+    }
+
+    /// Refuses a row whose square J M⁻¹ Jᵀ over- or underflows.
+    pub(crate) fn check_square(&self, row: usize) -> Result<(), ProblemError> {
+        let (columns, values) = self.rows.row(row);
+        let (mut square, mut moves) = (0.0, false);
+        for (&column, &value) in columns.iter().zip(values) {
+            let scaled = value * self.inverse_mass[column].sqrt();
+            square += scaled * scaled;
+            moves |= value != 0.0 && self.inverse_mass[column] != 0.0;
+        }
+        if moves && !f64::is_normal(square) {
+            return Err(ProblemError::OutOfRange { row, value: square });
+        }
+        Ok(())
     }
 
     /// A = J M⁻¹ Jᵀ, its entries.

@@ -50,9 +50,14 @@ pub struct BodyId(pub u32);
 
 /// Identity of a contact, kept from one problem to the next, by which a warm start finds it again.
 ///
-/// Any number the caller likes; two rows of one problem should not share it.
+/// Any number the caller likes but that of [`NONE`](Self::NONE); two rows of one problem should not share it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContactKey(pub u64);
+
+impl ContactKey {
+    /// Stands for no identity. Where not all rows have one, a warm start finds all of them by their place.
+    pub const NONE: Self = Self(u64::MAX);
+}
 
 /// Inverse masses of a body; zero for a body that nothing moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +130,9 @@ impl Problem {
             check_inverse_mass(column, value)?;
         }
         let rows = SparseMatrix::from_triplets(offset.len(), inverse_mass.len(), triplets)?;
-        Self::checked(Matrix::Bodies(BodyRows { rows, inverse_mass: inverse_mass.to_vec() }), offset)
+        let bodies = BodyRows { rows, inverse_mass: inverse_mass.to_vec() };
+        (0..offset.len()).try_for_each(|row| bodies.check_square(row))?;
+        Self::checked(Matrix::Bodies(bodies), offset)
     }
 
     /// From the entries (row, column, value) of a symmetric, positive semidefinite A; entries at one place add up.
@@ -229,11 +236,14 @@ impl Problem {
             coefficients.iter().try_for_each(|&value| check_finite(index, "a coefficient", value))?;
         }
         push_coefficients(&mut bodies.rows, row);
+        if let Err(error) = bodies.check_square(index) {
+            bodies.rows.pop_row();
+            return Err(error);
+        }
         self.offset.push(row.offset);
         self.bilateral.push(row.bilateral);
         if let Some(key) = row.key {
-            // Rows without a key get one that no other row has, so that the lists stay parallel.
-            self.keys.resize(index, ContactKey(u64::MAX));
+            self.keys.resize(index, ContactKey::NONE);
             self.keys.push(key);
         }
         Ok(index)
@@ -296,7 +306,8 @@ impl Problem {
         &self.bilateral
     }
 
-    /// Identities of the rows for warm starts; empty or shorter than the rows when not all have one.
+    /// Identities of the rows for warm starts: [`ContactKey::NONE`] for a row without one, and none at all for the rows after the
+    /// last that has one.
     pub fn keys(&self) -> &[ContactKey] {
         &self.keys
     }

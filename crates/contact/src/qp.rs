@@ -118,7 +118,7 @@ impl Solver for Qp {
             return Err(SolveError::NotApplicable { method: Method::Qp, reason });
         }
         self.system.load(problem);
-        let interior = self.interior(problem);
+        let interior = if problem.is_empty() { None } else { self.interior(problem) };
         self.closed.clear();
         let start = match &interior {
             Some(interior) => {

@@ -35,8 +35,11 @@ impl DualActiveSet {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let raise = self.settings.raise;
-        let attempt =
-            Attempt { dependence: LOST * raise, contradiction: self.settings.natural_residual / 2.0 };
+        let attempt = Attempt {
+            dependence: LOST * raise,
+            contradiction: self.settings.natural_residual / 2.0,
+            is_last: false,
+        };
         self.prepare(problem, warm, solution, attempt);
         self.closed.proximal = raise;
         let end = match self.find_start(problem) {

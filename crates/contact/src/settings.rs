@@ -1,6 +1,10 @@
 //! The numbers every solver decides by, in one place.
 
-use crate::error::SettingsError;
+use crate::error::{SettingsError, SolveError};
+use crate::problem::Problem;
+
+/// Leakage of a certificate whose rows depend on each other to the last digit.
+const SAME: f64 = 2.0 * f64::EPSILON;
 
 /// Thresholds and caps of the solvers. Each threshold is relative, so that none depends on the units of a problem.
 ///
@@ -144,6 +148,15 @@ impl Settings {
             Some(&(field, value)) => Err(SettingsError { field, value }),
             None => Ok(()),
         }
+    }
+
+    /// Whether an error is a certificate that leaves no doubt: every solution would have forces beyond all bounds, or it is
+    /// bilateral rows, dependent to the last digit, that contradict each other by more than may be settled.
+    pub(crate) fn is_proven(&self, error: &SolveError, problem: &Problem) -> bool {
+        let SolveError::Infeasible(proof) = error else { return false };
+        let is_bilateral = || proof.direction.iter().zip(problem.bilateral()).all(|(z, is)| *is || *z == 0.0);
+        let is_exact = proof.leakage <= SAME && proof.contradiction > self.inconsistency;
+        proof.least_growth() >= self.greatest_growth || (is_exact && is_bilateral())
     }
 
     /// Cap on pivots for a problem of `rows` rows: small problems get a little more per row.

@@ -132,5 +132,5 @@ impl Lookup<'_> {
 }
 
 fn has_keys(problem: &Problem) -> bool {
-    problem.keys.len() == problem.len() && problem.keys.iter().all(|&key| key != ContactKey(u64::MAX))
+    problem.keys.len() == problem.len() && problem.keys.iter().all(|&key| key != ContactKey::NONE)
 }

@@ -6,6 +6,7 @@ use super::serial::Grouping;
 use super::shuffle::Shuffle;
 use super::{Impact, NOISE};
 use crate::check::Residuals;
+use crate::row::CollisionRow;
 
 /// Which rows are solved together, and what happens after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +41,14 @@ pub enum ImpactOrder {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
+    /// A row has numbers that no row can have.
+    #[error("row {row}: {rule}")]
+    BadRow {
+        /// Index of the row.
+        row: usize,
+        /// What its numbers must be.
+        rule: &'static str,
+    },
     /// A closing row moves nothing.
     #[error("row {row} closes at {closing} m/s, but neither of its bodies can move")]
     Immovable {
@@ -93,7 +102,7 @@ impl ImpactLaw {
     /// After it no unilateral row closes faster than [`Impact::bound`], and no bilateral row has a greater rate.
     ///
     /// # Errors
-    /// [`ImpactError`] names the row that moves nothing, or that no impulses can keep from closing.
+    /// [`ImpactError`] names the row that has numbers out of range, that moves nothing, or that no impulses can keep from closing.
     pub fn resolve(self, impact: &mut Impact, order: ImpactOrder, random: u64) -> Result<(), ImpactError> {
         let small = impact.begin()?;
         if impact.rows.len() == 1 {
@@ -161,6 +170,9 @@ impl Impact {
 
     /// Finds which rates are rounding, and whether a row is violated that moves nothing.
     fn begin(&mut self) -> Result<f64, ImpactError> {
+        if let Some((row, rule)) = self.find_bad_row() {
+            return Err(ImpactError::BadRow { row, rule });
+        }
         self.fastest = (0..self.rows.len()).fold(0.0f64, |most, row| most.max(self.violation(row)));
         let small = RICOCHET * self.fastest;
         self.bound = small;
@@ -169,6 +181,22 @@ impl Impact {
             None => Ok(small),
             Some(row) => Err(ImpactError::Immovable { row, closing: self.violation(row) }),
         }
+    }
+
+    /// The first row with numbers that no row can have, and what they must be.
+    fn find_bad_row(&self) -> Option<(usize, &'static str)> {
+        let rule = |row: &CollisionRow| {
+            let sum = row.rate + row.velocity_tol + row.response.iter().sum::<f64>();
+            let is_finite = (sum + row.jacobian.iter().sum::<f64>()).is_finite();
+            if !is_finite {
+                Some("rate, velocity_tol, jacobian and response must be finite")
+            } else if !(0.0..=1.0).contains(&row.elasticity) {
+                Some("elasticity must be between 0 and 1")
+            } else {
+                None
+            }
+        };
+        self.rows.iter().enumerate().find_map(|(index, row)| Some((index, rule(row)?)))
     }
 
     /// The only row: if it is bilateral it comes to rest.
@@ -218,7 +246,6 @@ impl Impact {
 mod tests {
     use super::*;
     use crate::problem::Inertia;
-    use crate::row::CollisionRow;
     use halfgap_collision::BodyId;
 
     /// Ends an impact of a row that nothing moves and that closes, where rates up to `noise` [m/s] are rounding.
@@ -230,6 +257,28 @@ mod tests {
         impact.set_rows([CollisionRow::new(bodies, jacobian, [fixed; 2], -closing, 0.0, 1e-3, false)]);
         (impact.noise, impact.largest_change) = (noise, largest_change);
         impact.finish(0.0)
+    }
+
+    #[test]
+    fn rows_with_numbers_that_no_row_can_have_are_named() {
+        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 1.0 };
+        let row = |rate: f64, arm: f64, elasticity: f64| {
+            let jacobian = [0.0, 1.0, arm, 0.0, -1.0, 0.0];
+            CollisionRow::new([BodyId(0), BodyId(1)], jacobian, [disc; 2], rate, elasticity, 1e-3, false)
+        };
+        for bad in [row(f64::NAN, 0.0, 0.5), row(-1.0, f64::INFINITY, 0.5), row(-1.0, 0.0, 2.0)] {
+            for rows in [vec![bad], vec![row(-1.0, 0.0, 0.5), bad]] {
+                let last = rows.len() - 1;
+                let mut impact = Impact::new();
+                impact.set_rows(rows);
+                let outcome = ImpactLaw::Hybrid.resolve(&mut impact, ImpactOrder::Fastest, 0);
+                assert!(
+                    matches!(outcome, Err(ImpactError::BadRow { row, .. }) if row == last),
+                    "{outcome:?}"
+                );
+                assert!(matches!(impact.resolve_inelastic(), Err(ImpactError::BadRow { .. })));
+            }
+        }
     }
 
     #[test]

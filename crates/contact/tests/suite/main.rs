@@ -5,6 +5,7 @@ mod collected;
 mod data;
 mod extremes;
 mod files;
+mod found;
 mod least_norm;
 mod perturbed;
 mod properties;

@@ -1,0 +1,117 @@
+//! Problems that went wrong once: found by trying many of a family.
+
+use halfgap_contact::{Auto, Inertia, Problem, Row, Solution, SolveError, Solver};
+
+use crate::data::{Case, disproof, judge};
+
+#[test]
+fn solvable_problems_that_were_called_infeasible_are_solved() {
+    for name in ["crowded_bodies_64", "struck_wall", "bodies_with_joints_141", "stack_of_mass_ratio_1e12"] {
+        let case = Case::found(name);
+        let mut solution = Solution::new();
+        Auto::default().solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let judged = judge(&case.problem, &solution.force);
+        assert!(judged.good(), "{name}: {judged:?}");
+    }
+}
+
+#[test]
+fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
+    for name in ["contact_on_contradicting_joints", "nearly_dependent_truss", "nearly_dependent_bridge"] {
+        let case = Case::found(name);
+        let mut solution = Solution::new();
+        Auto::default().solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let judged = judge(&case.problem, &solution.force);
+        assert!(solution.inconsistency <= 1e-8, "{name}: {:e}", solution.inconsistency);
+        assert!(
+            judged.growth < 1e3 && judged.natural - solution.inconsistency <= 1e-12,
+            "{name}: {judged:?}"
+        );
+    }
+}
+
+#[test]
+fn what_has_no_solution_is_proven() {
+    for name in ["doubled_joint_off_by_1e-4", "contradicting_matrix_35"] {
+        let case = Case::found(name);
+        let mut solution = Solution::new();
+        match Auto::default().solve(&case.problem, &mut solution) {
+            Err(SolveError::Infeasible(proof)) => {
+                assert_eq!(disproof(&case.problem, &proof.direction), None, "{name}");
+            }
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}
+
+/// The next of a sequence of numbers from 0 to 1, the same for the same seed: Weyl's, mixed.
+fn next(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mixed = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Contacts in all directions among few bodies, with offsets that some forces f ≥ 0 just undo where they act.
+fn crowd(seed: u64) -> Problem {
+    let mut state = seed;
+    let mut random = || next(&mut state);
+    let rows = 64 + (random() * 100.0) as usize;
+    let count = 1 + (random() * rows as f64) as usize;
+    let mut problem = Problem::new();
+    let bodies: Vec<_> = (0..count)
+        .map(|_| Inertia { inverse_mass: 0.1 + random(), inverse_moment: 0.1 + 6.0 * random() })
+        .map(|inertia| problem.add_body(inertia).unwrap())
+        .collect();
+    for _ in 0..rows {
+        let angle = std::f64::consts::TAU * random();
+        let [a, b] = [0, 1].map(|_| (random() * count as f64) as usize);
+        let row = Row::new(bodies[a], [angle.cos(), angle.sin(), random() - 0.5], 0.0);
+        let other = [-angle.cos(), -angle.sin(), random() - 0.5];
+        problem.add_row(&if a == b { row } else { row.against(bodies[b], other) }).unwrap();
+    }
+    let share = random();
+    let force: Vec<f64> = (0..rows).map(|_| if random() < share { random() } else { 0.0 }).collect();
+    let offset: Vec<f64> = problem
+        .dense()
+        .iter()
+        .zip(&force)
+        .map(|(row, own)| {
+            let pushed: f64 = row.iter().zip(&force).map(|(a, f)| a * f).sum();
+            if *own > 0.0 { -pushed } else { random() - pushed }
+        })
+        .collect();
+    problem.set_offset(&offset).unwrap();
+    problem
+}
+
+#[test]
+fn crowds_of_bodies_are_solved() {
+    let (mut solver, mut solution) = (Auto::default(), Solution::new());
+    for seed in 0..300 {
+        let problem = crowd(seed);
+        solver.solve(&problem, &mut solution).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let judged = judge(&problem, &solution.force);
+        assert!(judged.good(), "seed {seed}, {} rows: {judged:?}", problem.len());
+    }
+}
+
+#[test]
+fn numbers_beyond_what_can_be_computed_with_are_refused_by_row() {
+    let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 1.0 };
+    for size in [1e-170, 1e170] {
+        let mut problem = Problem::new();
+        let body = problem.add_body(inertia).unwrap();
+        problem.add_row(&Row::new(body, [1.0, 0.0, 0.0], -1.0)).unwrap();
+        let error = problem.add_row(&Row::new(body, [size, 0.0, 0.0], -1.0)).unwrap_err();
+        assert!(error.to_string().starts_with("row 1: its diagonal entry of A is"), "{error}");
+        assert_eq!(problem.len(), 1);
+        Auto::default().solve(&problem, &mut Solution::new()).unwrap();
+        let error = Problem::from_rows(&[(0, 0, size)], &[1.0], &[-1.0]).unwrap_err();
+        assert!(error.to_string().starts_with("row 0: its diagonal entry of A is"), "{error}");
+    }
+    let error = Problem::from_dense(&[vec![0.0, 1.0], vec![1.0, 0.0]], &[-1.0, -1.0]).unwrap_err();
+    assert!(error.to_string().contains("not positive semidefinite"), "{error}");
+    let error = Problem::from_dense(&[vec![1.0, 2.0], vec![2.0, 1.0]], &[-1.0, -1.0]).unwrap_err();
+    assert!(error.to_string().contains("not positive semidefinite"), "{error}");
+}
