@@ -23,7 +23,7 @@ pub trait EventDriven {
     fn arrive(&mut self) {}
 }
 
-/// Handles all events up to and including `until`, in order, telling `on_report` of each.
+/// Handles all events up to and including `until`, in order, telling `on_report` of each; none if `until` is no number.
 ///
 /// # Errors
 /// The first event that cannot be handled; what was told before stands.
@@ -32,7 +32,7 @@ pub fn advance_until<S: EventDriven>(
     until: Time,
     mut on_report: impl FnMut(&S, &S::Report),
 ) -> Result<(), S::Error> {
-    while system.next_event().is_some_and(|time| time <= until) {
+    while system.next_event().is_some_and(|time| time < until || time == until) {
         if let Some(report) = system.handle_next()? {
             on_report(system, &report);
         }

@@ -1,6 +1,6 @@
 //! Two detectors can find one spot twice; the more exact record stays.
 
-use crate::record::{Collision, Detector};
+use crate::record::Collision;
 use std::cmp::Ordering;
 
 /// Two normals are one when their directions agree to this sine [-] at least: far more than rounding, far less than a
@@ -20,8 +20,7 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
         let (p, n) = (c.parties.primary.body, c.parties.normal.body);
         (p.min(n), p.max(n))
     };
-    let is_connector = |c: &Collision| matches!(c.parties.detector, Detector::Connector { .. });
-    if is_connector(a) || is_connector(b) {
+    if a.connector().is_some() || b.connector().is_some() {
         return false;
     }
     if bodies(a) != bodies(b) || a.parties.bilateral != b.parties.bilateral {

@@ -208,6 +208,15 @@ pub struct Collision {
 }
 
 impl Collision {
+    /// The connector that the record is a row of; `None` for bodies that touch.
+    #[must_use]
+    pub fn connector(&self) -> Option<ConnectorId> {
+        match self.parties.detector {
+            Detector::Connector { id, .. } => Some(id),
+            _ => None,
+        }
+    }
+
     /// The record of a measured gap at a time [s].
     #[must_use]
     pub fn new(

@@ -35,6 +35,47 @@ fn the_energy_books_close_to_the_tolerance() {
     }
 }
 
+#[test]
+fn the_work_of_a_constant_force_is_booked_between_impacts_that_follow_soon() {
+    // The motion is simple and the method exact for it, however long the step; the power is not.
+    for tolerance in [1e-6, 1e-9, 1e-12] {
+        let mut world = world_of(&format!(
+            r#"
+format = "halfgap-scene-1"
+title = "A pushed disc in a corner"
+run = {{ duration = 1.0, tolerance = {tolerance:e} }}
+force = [
+    {{ gravity = {{ acceleration = [0.0, -12.0] }} }},
+    {{ constant = {{ body = "disc", point = [0.0, 0.05], force = [0.1, 0.1], torque = 0.02 }} }},
+]
+[[body]]
+name = "floor"
+fixed = true
+elasticity = 0.9
+shape = {{ block = {{ width = 4.0, height = 0.2 }} }}
+position = [0.0, -0.2]
+[[body]]
+name = "wall"
+fixed = true
+elasticity = 0.9
+shape = {{ block = {{ width = 0.2, height = 2.0 }} }}
+position = [-0.2, 1.0]
+[[body]]
+name = "disc"
+mass = 0.4
+elasticity = 0.9
+shape = {{ disc = {{ radius = 0.1 }} }}
+position = [0.403, 1.0]
+velocity = [-1.0, 0.0]
+angular_velocity = 1.0
+"#
+        ));
+        advance(&mut world, 1.0);
+        let what = format!("books of a disc that is pushed in a corner, tolerance {tolerance:.0e}: J");
+        within(&what, world.ledger().integration_error(), tolerance);
+    }
+}
+
 /// Momentum [N s] and angular momentum [N m s] about the origin.
 fn momenta(world: &World) -> (DVec2, f64) {
     let (mut linear, mut angular) = (DVec2::ZERO, 0.0);

@@ -16,6 +16,7 @@ mod reversal;
 mod ropes;
 mod run_off;
 mod scaling;
+mod seams;
 mod simultaneous;
 mod stiff;
 mod unsolvable;

@@ -70,15 +70,15 @@ impl Explicit {
         Ok(())
     }
 
-    /// See [`Stepper::error_norm`](super::Stepper::error_norm). DOP853 has two estimates, which are combined as in HNW
-    /// II.10.
-    pub(super) fn error_norm(&self, scales: &[f64]) -> f64 {
+    /// See [`Stepper::error_norm`](super::Stepper::error_norm), of the components from `first` on. DOP853 has two estimates,
+    /// which are combined as in HNW II.10.
+    pub(super) fn error_norm(&self, first: usize, scales: &[f64]) -> f64 {
+        let mean = |row: usize| mean_square(&self.error(row)[first..], scales);
         match self.tableau.errors.len() {
             0 => 0.0,
-            1 => mean_square(self.error(0), scales).sqrt(),
+            1 => mean(0).sqrt(),
             _ => {
-                let fifth = mean_square(self.error(0), scales);
-                let third = mean_square(self.error(1), scales);
+                let (fifth, third) = (mean(0), mean(1));
                 if fifth == 0.0 { 0.0 } else { fifth / (fifth + THIRD_ORDER_SHARE * third).sqrt() }
             }
         }

@@ -17,6 +17,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
 const SEAM_ANGLE: f64 = 4e-9;
+/// To stop contacts changes the velocities of their bodies' points by no more than so many times what they closed or opened by.
+const MODEST: f64 = 100.0;
 /// Cap on the rounds in which the low hops of one event are stilled.
 const HOP_ROUNDS: u32 = 4;
 
@@ -331,7 +333,9 @@ impl RigidSystem {
         if outcome.is_ok() {
             self.remeasure(&mut work.region, now);
         }
-        let is_stopped = outcome.is_ok() && self.has_stopped(&work.region);
+        let is_stopped = outcome.is_ok()
+            && self.has_stopped(&work.region)
+            && self.is_modest(&report, &work.region, &work.before);
         for record in &mut work.region.records {
             record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
         }
@@ -344,6 +348,18 @@ impl RigidSystem {
             self.remeasure(&mut work.region, now);
         }
         is_stopped
+    }
+
+    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped. Two contacts whose
+    /// normals hardly differ hold all of a body, and to stop what is left between them by their angle would stop it altogether.
+    fn is_modest(&self, report: &ImpactReport, region: &Region, before: &[BodyState]) -> bool {
+        let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
+        region.bodies.iter().zip(before).all(|(&body, before)| {
+            let flyer = self.flyer(body);
+            let after = flyer.state_at(self.now);
+            let turned = (after.angular_velocity - before.angular_velocity).abs() * flyer.reach();
+            after.velocity.distance(before.velocity) + turned <= MODEST * stopped
+        })
     }
 
     /// True if the contacts of a region that are marked as bilateral rest, and no other closes.

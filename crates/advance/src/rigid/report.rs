@@ -9,7 +9,7 @@ use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Detector, Moving};
+use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Moving};
 use halfgap_geometry::FeatureId;
 
 /// The force of one row: a contact, or one direction of a connector.
@@ -199,17 +199,13 @@ impl Ledger {
 }
 
 fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
-    let connector = match record.parties.detector {
-        Detector::Connector { id, .. } => Some(id),
-        _ => None,
-    };
     let features = match row.source {
         RowSource::Contact(features) => Some(features),
         RowSource::Connector(..) => None,
     };
     RowForce {
         bodies: row.bodies,
-        connector,
+        connector: record.connector(),
         features,
         point: record.geometry.point_primary,
         normal: record.geometry.normal,

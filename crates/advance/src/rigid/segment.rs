@@ -96,13 +96,17 @@ impl Dynamics<'_> {
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
+        let work_scale = self.work_scale(control);
         let mut rejected = false;
         let outcome = loop {
             if step.is_nan() || step <= shortest {
                 break Err(StepFailure::Collapsed(step));
             }
             self.step(stepper, step);
-            let error = stepper.error_norm(scales);
+            let mut error = stepper.error_norm(scales);
+            if error <= 1.0 {
+                error = error.max(self.work_error(stepper, scales.len(), work_scale));
+            }
             if !error.is_finite() {
                 (step, rejected) = (step * RETREAT, true);
                 continue;
@@ -291,7 +295,25 @@ impl Dynamics<'_> {
         time * control.local_error.powf(FIRST_STEP_POWER)
     }
 
-    /// Errors that are just acceptable, of positions and velocities; works follow them.
+    /// Error [J] of a work that is just acceptable: what errors of velocities, just acceptable too, make of the energy. Works
+    /// mostly err by far less, but where the motion is simple, as under a constant force, nothing else may err at all.
+    fn work_scale(&self, control: &StepControl) -> f64 {
+        let flyers = self.physics.mechanism.flyers;
+        let masses = self.group.bodies.iter().map(|body| 1.0 / flyers[body.index()].body().inverse_mass);
+        let speed = self.speed(control);
+        control.local_error * speed * speed * masses.sum::<f64>()
+    }
+
+    /// The error norm of the works, which follow so many components, by the scale [J] of each; 0 where nothing moves.
+    fn work_error(&self, stepper: &Stepper, first: usize, scale: f64) -> f64 {
+        if scale.is_nan() || scale <= 0.0 {
+            return 0.0;
+        }
+        let error_of = |work: usize| stepper.error_norm_from(first + work, &[scale]);
+        (0..self.group.works.len()).map(error_of).fold(0.0, f64::max)
+    }
+
+    /// Errors that are just acceptable, of positions and velocities.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
         let share = self.depth_share(control);

@@ -1,0 +1,88 @@
+//! Seams between surfaces that are nearly level with each other: what slides over them goes on, for two contacts whose normals
+//! hardly differ hold a body altogether if both are stopped.
+
+use super::within;
+use halfgap::geometry::DVec2;
+use halfgap::{BodySpec, BodyState};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
+
+/// How far along and how high the corners of a floor of tiles are [m].
+type Corner = (f64, f64);
+
+/// Adds tiles 0.2 m thick whose upper sides join the corners.
+fn tiles(shop: &mut Workshop, corners: &[Corner]) {
+    for (index, pair) in corners.windows(2).enumerate() {
+        let [from, to] = [pair[0], pair[1]].map(|(x, y)| DVec2::new(x, y));
+        let along = to - from;
+        let middle = 0.5 * (from + to) - 0.1 * along.normalize().perp();
+        let name = format!("tile {index}");
+        let mut tile = BodySpec::fixed(&name, block(along.length(), 0.2), middle);
+        tile.state.angle = along.to_angle();
+        shop.builder.add(tile);
+    }
+}
+
+fn sliding(position: DVec2, speed: f64) -> BodyState {
+    BodyState { position, velocity: DVec2::new(speed, 0.0), ..BodyState::default() }
+}
+
+#[test]
+fn a_disc_slides_over_the_seam_of_two_tiles_that_hardly_differ_in_slope() {
+    // A hollow of this angle closes at the speed times it, and takes the square of that from the energy.
+    for tolerance in [1e-6, 1e-8, 1e-10] {
+        for angle in [1e-9, 1.8e-7, 1e-6, 1e-5, -1e-6, 1e-4] {
+            for speed in [0.1, 1.0, 5.0] {
+                let mut shop = Workshop::new(tolerance);
+                tiles(&mut shop, &[(-4.0, 0.0), (0.0, 0.0), (4.0, 4.0 * angle)]);
+                let ball = shop.body("ball", disc(0.1), 1.0, sliding(DVec2::new(-0.5 * speed, 0.1), speed));
+                let mut world = shop.build();
+                advance(&mut world, 0.75);
+                let reached = world.state(ball).velocity.x;
+                let slowed = GRAVITY * angle * 0.25 + speed * angle * angle;
+                assert!(
+                    (reached - speed + slowed).abs() < 1e-3 * angle.abs() + 1e-9,
+                    "{angle} rad, {speed} m/s: {reached} m/s"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ramp_of_tiles_with_rounded_places_is_as_fast_as_a_smooth_one() {
+    let slope = 0.0314;
+    for digits in [5, 6, 7] {
+        let unit = 10_f64.powi(digits);
+        let corners: Vec<Corner> = (0..6)
+            .map(|k| 0.7 * f64::from(k) - 0.1)
+            .map(|x| (x, (-slope * x * unit).round() / unit))
+            .collect();
+        let mut shop = Workshop::new(1e-8);
+        tiles(&mut shop, &corners);
+        let normal = DVec2::new(slope, 1.0).normalize();
+        let ball = shop.body("ball", disc(0.1), 1.0, at_rest(0.1 * normal.x, 0.1 * normal.y));
+        let mut world = shop.build();
+        advance(&mut world, 4.0);
+        let reached = world.state(ball).position.x - 0.1 * normal.x;
+        let expected = 0.5 * GRAVITY * slope / (1.0 + slope * slope) * 16.0;
+        // The places of the corners are off by half a unit of their last digit, the slopes by that over a tile.
+        within(&format!("ramp of tiles of {digits} digits: place"), reached - expected, 8.0 / unit);
+        let ledger = world.ledger();
+        within(&format!("ramp of tiles of {digits} digits: captures"), ledger.captures, 10.0 / (unit * unit));
+    }
+}
+
+#[test]
+fn a_disc_slides_from_a_table_to_a_crate_of_the_same_height() {
+    for tolerance in [1e-7, 1e-8, 1e-9, 1e-10] {
+        let mut shop = Workshop::new(tolerance);
+        shop.fixed("floor", block(6.0, 0.2), DVec2::new(0.0, -0.1));
+        shop.fixed("table", block(0.8, 0.2), DVec2::new(-0.4, 0.1));
+        shop.body("crate", block(0.8, 0.2), 20.0, at_rest(0.4, 0.1));
+        let ball = shop.body("ball", disc(0.1), 0.3, sliding(DVec2::new(-0.4, 0.3), 0.5));
+        let mut world = shop.build();
+        advance(&mut world, 1.0);
+        let lost = 0.5 - world.state(ball).velocity.x;
+        within(&format!("disc from table to crate, tolerance {tolerance:e}: speed"), lost, 10.0 * tolerance);
+    }
+}
