@@ -55,6 +55,9 @@ fn check_file(path: &Path, tolerance: Option<f64>) -> Result<CheckReport, SceneE
         scene.set_tolerance(tolerance, "--tolerance")?;
     }
     let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
+    for warning in world.warnings() {
+        eprintln!("warning: {}: {warning}", path.display());
+    }
     Ok(check_world(&mut world, &scene))
 }
 

@@ -13,9 +13,9 @@ pub(crate) enum End {
     Done,
     /// A check failed.
     CheckFailed,
-    /// A scene among several could not be read; the others were checked.
+    /// A scene among several could not be read, and the others were checked; a contact problem could not be read.
     BadInput,
-    /// The simulation stopped early.
+    /// The simulation stopped early, or a contact problem has no answer.
     Stopped,
 }
 

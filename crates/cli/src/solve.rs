@@ -2,19 +2,16 @@
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::Instant;
 
+use crate::failure::End;
+use crate::output;
 use clap::{Args, ValueEnum};
 use halfgap_contact::{
     Auto, ContactFile, DualActiveSet, FileError, Lemke, Problem, ProximalNewton, Qp, Residuals, Settings,
     Solution, SolutionFile, SolveError, Solver, WarmStart,
 };
 
-/// The problem has no answer: infeasible, or the method failed.
-const NO_ANSWER: u8 = 3;
-/// The input is wrong.
-const WRONG_INPUT: u8 = 2;
 /// Rows printed in full; of larger problems those that carry most force.
 const SHOWN_ROWS: usize = 40;
 /// Repetitions of a solve, of which the fastest counts.
@@ -65,21 +62,21 @@ struct Outcome {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &SolveArgs) -> ExitCode {
+pub(crate) fn run(args: &SolveArgs) -> End {
     let (file, problem, next) = match read(args) {
         Ok(read) => read,
         Err(message) => {
-            eprintln!("{}: {message}", args.problem.display());
-            return ExitCode::from(WRONG_INPUT);
+            eprintln!("error: {}: {message}", args.problem.display());
+            return End::BadInput;
         }
     };
     let outcome = solve(args.method, &problem, next.as_ref());
     if args.json {
-        println!("{}", json(args.method, &problem, &outcome));
+        output::print(&format!("{}\n", json(args.method, &problem, &outcome)));
     } else {
-        print!("{}", explain(&file, &problem, &outcome));
+        output::print(&explain(&file, &problem, &outcome));
     }
-    if outcome.result.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(NO_ANSWER) }
+    if outcome.result.is_ok() { End::Done } else { End::Stopped }
 }
 
 /// The file, its problem and that of the next step.

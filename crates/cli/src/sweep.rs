@@ -11,7 +11,9 @@ use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One run of the sweep.
@@ -19,6 +21,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 struct SweepRun {
     value: f64,
     result: RunResult,
+    /// Why it stopped early, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    #[serde(skip)]
+    warnings: Vec<String>,
 }
 
 /// All runs, in the order of their values.
@@ -41,6 +48,7 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     let runs = run_all(&scenes, &source, options, &progress)?;
     progress.finish();
     let sweep = Sweep { format: "halfgap-sweep-1", field: varied.field().to_string(), runs };
+    tell_on_stderr(&sweep, &options.scene);
     if let Some(file) = &options.out {
         std::fs::write(file, csv(&sweep)).map_err(|error| Failure::Write(file.clone(), error))?;
     }
@@ -64,19 +72,35 @@ fn run_all(
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::Threads)?;
     let done = AtomicUsize::new(0);
     let run_one = |(value, scene): &(f64, Scene)| {
-        let result = run_scene(scene).map_err(|error| source.locate(error))?;
+        let run = run_scene(*value, scene).map_err(|error| source.locate(error))?;
         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
         progress.set(count as f64 / scenes.len() as f64);
-        Ok(SweepRun { value: *value, result })
+        Ok(run)
     };
     let runs: Result<Vec<_>, SceneError> = pool.install(|| scenes.par_iter().map(run_one).collect());
     Ok(runs?)
 }
 
-fn run_scene(scene: &Scene) -> Result<RunResult, SceneError> {
+fn run_scene(value: f64, scene: &Scene) -> Result<SweepRun, SceneError> {
     let mut world = World::from_scene(scene)?;
     let report = run(&mut world, &RunPlan::of_scene(scene, Record::Ends), &mut |_| {});
-    Ok(RunResult::new(&world, &report))
+    let result = RunResult::new(&world, &report);
+    let error = report.error.map(|error| error.to_string());
+    Ok(SweepRun { value, result, error, warnings: world.warnings().to_vec() })
+}
+
+/// Warnings, each where it comes first, and why runs stopped early, with the value of the run.
+fn tell_on_stderr(sweep: &Sweep, scene: &Path) {
+    let mut told = BTreeSet::new();
+    for SweepRun { value, result, error, warnings } in &sweep.runs {
+        let at = format!("{} with {} = {}", scene.display(), sweep.field, table::number(*value));
+        for warning in warnings.iter().filter(|warning| told.insert(warning.as_str())) {
+            eprintln!("warning: {at}: {warning}");
+        }
+        if let Some(error) = error {
+            eprintln!("error: {at}: stopped early at t = {} s: {error}", result.time);
+        }
+    }
 }
 
 /// What a person wants to see of each run.
@@ -85,7 +109,7 @@ fn lines(sweep: &Sweep) -> String {
     let mut text = format!("{:>20}", sweep.field);
     heads.iter().for_each(|head| text.push_str(&format!(" {head:>18}")));
     text.push('\n');
-    for SweepRun { value, result } in &sweep.runs {
+    for SweepRun { value, result, .. } in &sweep.runs {
         let statistics = &result.statistics.world;
         let _ = writeln!(
             text,
@@ -111,7 +135,7 @@ fn csv(sweep: &Sweep) -> String {
         }
     }
     text.push('\n');
-    for SweepRun { value, result } in &sweep.runs {
+    for SweepRun { value, result, .. } in &sweep.runs {
         let (energy, statistics) = (&result.energy, &result.statistics.world);
         let _ = write!(
             text,
@@ -136,7 +160,7 @@ fn csv(sweep: &Sweep) -> String {
 
 /// A field of CSV, in quotes where it needs them.
 fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n']) {
+    if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()

@@ -87,9 +87,11 @@ impl Arc {
         let beyond_half = clockwise == (height > 0.0);
         let moved = (exact_center - center).length();
         let off = (from_radius - to_radius).abs();
-        if off > fit_tol || (beyond_half && moved > fit_tol) {
-            let off = if off > fit_tol { off } else { moved };
+        if off > fit_tol {
             return Err(ArcError::RadiusMismatch { from_radius, to_radius, off });
+        }
+        if beyond_half && moved > fit_tol {
+            return Err(ArcError::CenterOff { off: moved });
         }
         let radius = (from - exact_center).length();
         check_radius(radius)?;

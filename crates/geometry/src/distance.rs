@@ -10,7 +10,7 @@ use crate::edge::Edge;
 use crate::edge_distance::{ClosestPair, edge_distance};
 use crate::feature::EdgeId;
 use crate::path::Path;
-use crate::pose::{Pose, Rotation};
+use crate::pose::Pose;
 use crate::shape::Shape;
 use crate::tree::{Below, FeatureTree};
 use glam::DVec2;
@@ -73,7 +73,7 @@ impl Shape {
     /// If a number of a pose is not finite.
     #[must_use]
     pub fn distance(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> ShapeDistance {
-        let relative = relative_pose(pose, other_pose);
+        let relative = pose.seen_from(other_pose);
         let mut search = Search { a: self, b: other, relative, best: f64::INFINITY, found: None };
         search.improve(0, 0, 0.0);
         let (pair, edge_a, edge_b) =
@@ -87,13 +87,6 @@ impl Shape {
             edge_b,
         }
     }
-}
-
-/// The pose of one body in the coordinates of another.
-fn relative_pose(pose: &Pose, other: &Pose) -> Pose {
-    let (a, b) = (pose.rotation, other.rotation);
-    let rotation = Rotation { cos: a.cos * b.cos + a.sin * b.sin, sin: a.sin * b.cos - a.cos * b.sin };
-    Pose { position: other.point_to_body(pose.position), rotation }
 }
 
 struct Search<'a> {

@@ -35,6 +35,14 @@ pub enum ArcError {
         /// Difference of the two [m].
         off: f64,
     },
+    /// The center of an arc of more than half a turn lies off the line of the points as far from both ends.
+    #[error(
+        "arc center is {off} m off the line of all points that are as far from its start as from its end"
+    )]
+    CenterOff {
+        /// How far [m].
+        off: f64,
+    },
 }
 
 /// Why a shape could not be built. Paths and edges are counted from 0.
@@ -120,6 +128,12 @@ pub enum ShapeError {
         edge: usize,
         /// What is wrong with it.
         source: ArcError,
+    },
+    /// The shape is so small or so large that its area and moments are no numbers.
+    #[error("a shape that reaches {reach:e} m from its origin has moments beyond what numbers hold")]
+    NoMoments {
+        /// How far it reaches [m].
+        reach: f64,
     },
     /// Two edges cross or touch.
     #[error("path {path_a}, edge {edge_a} meets path {path_b}, edge {edge_b} at ({x}, {y}) m")]

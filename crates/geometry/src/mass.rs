@@ -54,6 +54,11 @@ impl MassProperties {
             moment_per_mass: sum.polar / sum.area - offset.length_squared(),
         }
     }
+
+    /// True if all of them are numbers, to full precision.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.area.is_normal() && self.centroid.is_finite() && self.moment_per_mass.is_normal()
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -38,9 +38,10 @@ impl Shape {
     /// End points and arc radii may be off by 1e-6 of the shape's size, and are then made exact.
     ///
     /// # Errors
-    /// Open, empty, crossing or degenerate paths; the error names path and edge.
+    /// Open, empty, crossing or degenerate paths: the error names path and edge. Sizes whose fourth powers are no numbers.
     pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
-        Ok(Self::from_oriented(build_outline(specs)?))
+        let shape = Self::from_oriented(build_outline(specs)?);
+        if shape.mass.is_sound() { Ok(shape) } else { Err(ShapeError::NoMoments { reach: shape.reach }) }
     }
 
     /// The shape moved by `shift` [m] in body coordinates.

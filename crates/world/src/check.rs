@@ -1,6 +1,6 @@
 //! Compares a run with the states that its scene expects.
 
-use crate::recording::{Frame, Recording, body_ids};
+use crate::recording::{Frame, Recording};
 use crate::run::{Record, RunPlan, run};
 use crate::scene::{ExpectedData, ExpectedState, Scene};
 use crate::world::World;
@@ -138,7 +138,7 @@ impl<'a> Comparison<'a> {
 
     /// The state of a body in a frame; a fixed one is where it always is.
     fn find_state(&self, frame: &Frame, name: &str) -> Option<BodyState> {
-        let body = body_ids(self.world).find(|&body| self.world.name(body) == name)?;
+        let body = self.world.find(name)?;
         let place = self.recording.place(body);
         Some(place.map_or_else(|| self.world.state(body), |place| frame.states[place]))
     }

@@ -1,7 +1,7 @@
 //! What a world tells while it advances: impacts, and contacts that begin and end.
 
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState};
+use halfgap_collision::{BodyId, BodyState, ConnectorId};
 
 /// Something that happened at one moment.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,8 @@ pub struct ImpactRow {
     pub primary: BodyId,
     /// The body that the normal points out of.
     pub normal_body: BodyId,
+    /// The connector that the row is of; `None` for bodies that touch.
+    pub connector: Option<ConnectorId>,
     /// Where [m].
     pub point: DVec2,
     /// Unit normal, from the normal body to the primary one.
@@ -74,8 +76,8 @@ pub struct Impact {
 pub struct ContactForce {
     /// The body that the normal points to, and the one that it points out of; [`BodyId::WORLD`] for the background.
     pub bodies: [BodyId; 2],
-    /// Index of the connector; `None` for bodies that touch.
-    pub connector: Option<u32>,
+    /// The connector; `None` for bodies that touch.
+    pub connector: Option<ConnectorId>,
     /// Where [m].
     pub point: DVec2,
     /// Unit normal.

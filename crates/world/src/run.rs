@@ -53,6 +53,27 @@ impl RunPlan {
         }
     }
 
+    /// Says why the plan cannot be followed, if so.
+    fn check(&self) -> Result<(), RunError> {
+        let bad = |field, rule, value| Err(RunError::BadPlan { field, rule, value });
+        for (field, value) in [("start_time", self.start_time), ("end_time", self.end_time)] {
+            if !value.is_finite() {
+                return bad(field, "finite", value);
+            }
+        }
+        if !(self.output_step > 0.0) {
+            return bad("output_step", "positive", self.output_step);
+        }
+        let mut last = self.start_time;
+        for &stop in &self.stops {
+            if !(last..=self.end_time).contains(&stop) {
+                return bad("stops", "ascending, between start and end", stop);
+            }
+            last = stop;
+        }
+        Ok(())
+    }
+
     /// Output time `index` [s]: the end once there is no other left.
     fn output_time(&self, index: u64) -> f64 {
         let step = match self.record {
@@ -82,14 +103,15 @@ pub struct RunReport {
 
 /// Runs a world as planned; `progress` is called now and then with the part that is done, 0 to 1.
 ///
-/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped.
+/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped. A plan with an output
+/// step that is not positive, or stops out of order, is reported as an error before anything moves.
 pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> RunReport {
     let mut recording = Recording::new(plan.title.clone(), world);
     recording.frames.push(recording.frame_of(world));
     let start_energy = world.energy();
     let mut stepper = Stepper::new(plan.record);
     let mut stops = Vec::new();
-    let mut error = None;
+    let mut error = plan.check().err();
     let mut output = 1;
     // Not the world's own time, which is free to differ from the target by rounding.
     let mut now = plan.start_time;

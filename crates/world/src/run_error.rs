@@ -81,6 +81,19 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// The time to advance to is not a number.
+    #[error("cannot advance to a time that is not a number")]
+    NotATime,
+    /// A plan cannot be followed; nothing was run.
+    #[error("the plan's {field} must be {rule}, got {value} s")]
+    BadPlan {
+        /// Which of its numbers.
+        field: &'static str,
+        /// What it must be.
+        rule: &'static str,
+        /// What it is [s].
+        value: f64,
+    },
     /// The advance stopped for a reason that has no name here.
     #[error(transparent)]
     Advance(AdvanceError),
@@ -108,7 +121,7 @@ impl RunError {
             | Self::StepCollapsed { time, .. }
             | Self::Unresolved { time, .. }
             | Self::Stuck { time, .. } => Some(*time),
-            Self::Advance(_) => None,
+            Self::NotATime | Self::BadPlan { .. } | Self::Advance(_) => None,
         }
     }
 

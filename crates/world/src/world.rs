@@ -272,8 +272,11 @@ impl World {
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
     ///
     /// # Errors
-    /// Something that cannot be simulated happens; the world stays at the time of that event.
+    /// Something that cannot be simulated happens; the world stays at the time of that event. The time is not a number.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
+        if time.is_nan() {
+            return Err(RunError::NotATime);
+        }
         let until = Time::from_seconds(time);
         let (system, told) = (&mut self.system, &mut self.told);
         let outcome = advance_until(system, until, |system, handled| {
@@ -306,7 +309,7 @@ impl World {
 fn contact_force(row: &RowForce) -> ContactForce {
     ContactForce {
         bodies: row.bodies,
-        connector: row.connector.map(|id| id.0),
+        connector: row.connector,
         point: row.point,
         normal: row.normal,
         force: row.force,
@@ -346,6 +349,7 @@ fn write_impact(told: &mut Event, report: &ImpactReport) {
     impact.rows.extend(report.rows.iter().map(|row| ImpactRow {
         primary: row.collision.parties.primary.body,
         normal_body: row.collision.parties.normal.body,
+        connector: row.collision.connector(),
         point: row.collision.geometry.point_primary,
         normal: row.collision.geometry.normal,
         gap: row.collision.geometry.distance,

@@ -13,6 +13,12 @@ pub enum WorldError {
         /// The name.
         name: String,
     },
+    /// A body has no name, or that of the background.
+    #[error("a body cannot be named \"{name}\"")]
+    BadName {
+        /// The name.
+        name: String,
+    },
     /// A number is out of range.
     #[error("body \"{body}\": {quantity} must be {rule}, got {value}")]
     BadNumber {
@@ -79,7 +85,7 @@ pub enum WorldError {
         value: f64,
     },
     /// Connectors cannot all be put together at the start.
-    #[error("{connector} cannot be put together at the start: {error} m remain")]
+    #[error("{connector} cannot be put together at the start: {} m remain", Rounded(*error))]
     CannotConnect {
         /// The connector that is off most.
         connector: ConnectorName,
@@ -87,7 +93,7 @@ pub enum WorldError {
         error: f64,
     },
     /// Velocities at the start cannot be made to fit the connectors.
-    #[error("{connector} comes apart at {rate} m/s at the start, and cannot be kept from it")]
+    #[error("{connector} comes apart at {} m/s at the start, and cannot be kept from it", Rounded(*rate))]
     ConnectorComesApart {
         /// The connector that comes apart fastest.
         connector: ConnectorName,

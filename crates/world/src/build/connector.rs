@@ -101,6 +101,11 @@ impl<'a> Paths<'a> {
         }
         let path = rail_path(data, closed);
         let path = path.map_err(|error| SceneError::new(field.field("path"), error.to_string()))?;
+        if closed && !path.is_closed() {
+            let message =
+                "the rail is said to be closed, but its last edge does not end where the first starts";
+            return Err(SceneError::new(field.field("path"), message));
+        }
         let path = Arc::new(path);
         self.made.push((data, closed, path.clone()));
         Ok(path)

@@ -15,8 +15,10 @@ impl World {
     /// Builds the world of a scene.
     ///
     /// # Errors
-    /// What is not simulated yet, shapes that cannot be, and bodies that overlap at the start; the error names the field.
+    /// Values that break a rule, what is not simulated yet, shapes that cannot be, and bodies that overlap at the start; the
+    /// error names the field.
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
+        scene.validate_world()?;
         scene.check_supported()?;
         collect(scene)?.build().map_err(|error| located(error, scene))
     }
@@ -36,10 +38,8 @@ fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
     }
     connector::add_all(&mut builder, scene)?;
     for (index, body) in scene.bodies.iter().enumerate() {
-        for other in
-            scene.bodies.iter().enumerate().filter(|(_, other)| body.passes_through.contains(&other.name))
-        {
-            builder.let_pass(body_id(index), body_id(other.0));
+        for other in &body.passes_through {
+            builder.let_pass(body_id(index), find_body(scene, other));
         }
     }
     Ok(builder)
@@ -115,30 +115,51 @@ fn find_body(scene: &Scene, name: &str) -> BodyId {
     index.map_or(BodyId::WORLD, body_id)
 }
 
-/// Points the error at the body or the connector that it names.
+/// Points the error at the field that it is about.
 fn located(error: WorldError, scene: &Scene) -> SceneError {
-    let body = |name: &String, field: &str| {
+    let top = FieldPath::top();
+    let body = |name: &String, field: &dyn Fn(&BodyData) -> &'static str| {
         let index = scene.bodies.iter().position(|body| body.name == *name)?;
-        Some(FieldPath::top().field("body").element(index).field(field))
+        Some(top.field("body").element(index).field(field(&scene.bodies[index])))
     };
     let place = match &error {
-        WorldError::DoubleName { name } => body(name, "name"),
-        WorldError::BadNumber { body: name, .. } | WorldError::TooLarge { body: name, .. } => {
-            body(name, "name")
-        }
+        WorldError::DoubleName { name } | WorldError::BadName { name } => body(name, &|_| "name"),
+        WorldError::BadNumber { body: name, quantity, .. }
+        | WorldError::TooLarge { body: name, quantity, .. } => body(name, &|body| field_of(body, quantity)),
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
-            body(second, "position")
+            body(second, &|_| "position")
         }
-        WorldError::BadForce { body: name, .. } => body(name, "position"),
+        // Laws are named after their fields.
+        WorldError::BadForce { law, .. } => law.parse().ok(),
         WorldError::ConnectorError { connector, .. }
         | WorldError::CannotConnect { connector, .. }
         | WorldError::FarConnector { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {
-            Some(FieldPath::top().field("connector").element(connector.index).field(connector.kind))
+            Some(top.field("connector").element(connector.index).field(connector.kind))
         }
-        WorldError::BadSetting { .. } | WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
+        WorldError::BadSetting { setting, .. } => Some(top.field("run").field(*setting)),
+        WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
     };
-    SceneError::new(place.unwrap_or_else(|| FieldPath::top().field("run")), error.to_string())
+    SceneError::new(place.unwrap_or_else(|| top.field("run")), error.to_string())
+}
+
+/// The field of a body that gives a quantity.
+fn field_of(body: &BodyData, quantity: &str) -> &'static str {
+    match quantity {
+        "mass" | "moment" if body.mass.is_none() => "density",
+        "mass" => "mass",
+        "moment" if body.moment.is_none() => "mass",
+        "moment" => "moment",
+        "elasticity" => "elasticity",
+        "position" => "position",
+        "angle" => "angle",
+        "velocity" => "velocity",
+        "angular velocity" => "angular_velocity",
+        "centre of mass" => "center_of_mass",
+        "coordinates of the shape" => "shape",
+        "coordinates" => "position",
+        _ => "name",
+    }
 }
 
 #[cfg(test)]

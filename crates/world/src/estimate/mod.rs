@@ -17,7 +17,7 @@ pub use difference::{Difference, TimedDifference};
 
 use crate::recording::Recording;
 use crate::run::{Record, RunPlan, RunReport, run};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{FieldPath, Scene, SceneError};
 use crate::world::World;
 use difference::Comparison;
 use event_times::EventTimes;
@@ -61,16 +61,21 @@ pub struct ErrorEstimate {
 /// and a tenth of the step); thresholds that the scene gives itself shrink alike.
 ///
 /// # Errors
-/// The scene cannot be built at the tighter tolerance, as when its bodies overlap by more than that allows.
+/// The scene cannot be built at the tighter tolerance, as when its bodies overlap by more than that allows; the run did not
+/// record everything.
 pub fn estimate_error(
     scene: &Scene,
     plan: &RunPlan,
     world: &World,
     report: &RunReport,
 ) -> Result<ErrorEstimate, SceneError> {
+    if plan.record != Record::Everything {
+        let message = "the error can be estimated of a run that recorded everything only";
+        return Err(SceneError::new(FieldPath::top().field("run"), message));
+    }
     let tighter = tighter::tightened(scene, world)?;
     let mut other = World::from_scene(&tighter)?;
-    let other_plan = RunPlan { record: Record::Everything, stops: Vec::new(), ..plan.clone() };
+    let other_plan = RunPlan { stops: Vec::new(), ..plan.clone() };
     let other_report = run(&mut other, &other_plan, &mut |_| {});
     let mut estimate = compare(world, &report.recording, &other_report.recording, scene.run.tolerance);
     estimate.tighter_tolerance = tighter.run.tolerance;

@@ -6,7 +6,7 @@ use super::outline::path_data;
 use super::svg::{Svg, TextStyle, number};
 use super::ticks::{label, round_step};
 use super::view::{FOOT, View};
-use crate::recording::{Frame, Recording, body_ids};
+use crate::recording::{Frame, Recording};
 use crate::world::World;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{Aabb, Pose};
@@ -28,7 +28,7 @@ pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> Str
     let mut svg = Svg::new(view.page_width(), view.page_height());
     draw_title(&mut svg, recording, frame);
     svg.open_group(&[("stroke-linejoin", "round"), ("stroke-linecap", "round"), ("fill-rule", "evenodd")]);
-    for body in body_ids(world).filter(|&body| world.is_fixed(body)) {
+    for body in world.bodies().filter(|&body| world.is_fixed(body)) {
         let data = path_data(world.shape(body), &pose(&world.state(body)), &view);
         svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
     }
@@ -55,7 +55,7 @@ fn shown_box(world: &World, recording: &Recording) -> Option<Aabb> {
     let frames = recording.frames.iter().step_by(every).chain(recording.frames.last());
     let posed = frames.flat_map(|frame| recording.movable.iter().zip(&frame.states));
     let moving = posed.map(|(&body, state)| world.shape(body).bounds_at(&pose(state))).reduce(Aabb::union);
-    let fixed = body_ids(world).filter(|&body| world.is_fixed(body));
+    let fixed = world.bodies().filter(|&body| world.is_fixed(body));
     let fixed = fixed.map(|body| world.shape(body).bounds_at(&pose(&world.state(body))));
     let Some(moving) = moving else { return fixed.reduce(Aabb::union) };
     let size = moving.size().max_element();

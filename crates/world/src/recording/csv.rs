@@ -28,7 +28,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Writes a line for each row of each impact.
+    /// Writes a line for each row of each impact; the connector's column is empty where bodies touch.
     ///
     /// # Errors
     /// Whatever the writer fails with.
@@ -36,14 +36,16 @@ impl Recording {
         write!(out, "impact,time [s],primary,normal_body,x [m],y [m],normal_x,normal_y,gap [m],")?;
         writeln!(
             out,
-            "velocity_before [m/s],velocity_after [m/s],impulse [N s],energy_change_of_impact [J]"
+            "velocity_before [m/s],velocity_after [m/s],impulse [N s],energy_change_of_impact [J],connector"
         )?;
         for (index, impact) in self.impacts.iter().enumerate() {
             for row in &impact.rows {
                 let (primary, normal) = (quoted(self.name(row.primary)), quoted(self.name(row.normal_body)));
                 write!(out, "{index},{},{primary},{normal},{},{},", impact.time, row.point.x, row.point.y)?;
                 write!(out, "{},{},{},{},", row.normal.x, row.normal.y, row.gap, row.velocity_before)?;
-                writeln!(out, "{},{},{}", row.velocity_after, row.impulse, impact.energy_change)?;
+                let connector = row.connector.map(|id| id.0.to_string()).unwrap_or_default();
+                write!(out, "{},{},", row.velocity_after, row.impulse)?;
+                writeln!(out, "{},{connector}", impact.energy_change)?;
             }
         }
         Ok(())
@@ -79,7 +81,7 @@ impl Recording {
 
     fn write_force(&self, out: &mut dyn Write, force: &ContactForce) -> io::Result<()> {
         let [primary, normal] = force.bodies.map(|body| quoted(self.name(body)));
-        let connector = force.connector.map(|index| index.to_string()).unwrap_or_default();
+        let connector = force.connector.map(|id| id.0.to_string()).unwrap_or_default();
         let (point, direction) = (force.point, force.normal);
         write!(out, "{primary},{normal},{connector},{},{},", point.x, point.y)?;
         writeln!(out, "{},{},{}", direction.x, direction.y, force.force)

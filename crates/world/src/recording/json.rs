@@ -66,6 +66,8 @@ struct ImpactJson<'a> {
 struct RowJson<'a> {
     primary: &'a str,
     normal_body: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    connector: Option<u32>,
     point: [f64; 2],
     normal: [f64; 2],
     gap: f64,
@@ -105,6 +107,7 @@ impl Recording {
         RowJson {
             primary: self.name(row.primary),
             normal_body: self.name(row.normal_body),
+            connector: row.connector.map(|id| id.0),
             point: row.point.to_array(),
             normal: row.normal.to_array(),
             gap: row.gap,
@@ -119,7 +122,7 @@ impl Recording {
         ForceJson {
             primary,
             normal_body,
-            connector: force.connector,
+            connector: force.connector.map(|id| id.0),
             point: force.point.to_array(),
             normal: force.normal.to_array(),
             force: force.force,

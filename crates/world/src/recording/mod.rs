@@ -83,10 +83,11 @@ impl Recording {
     /// A recording of a world, without frames yet.
     #[must_use]
     pub fn new(title: impl Into<String>, world: &World) -> Self {
-        let bodies: Vec<_> = body_ids(world)
+        let bodies: Vec<_> = world
+            .bodies()
             .map(|body| RecordedBody { name: world.name(body).to_owned(), fixed: world.is_fixed(body) })
             .collect();
-        let movable = body_ids(world).filter(|&body| !world.is_fixed(body)).collect();
+        let movable = world.bodies().filter(|&body| !world.is_fixed(body)).collect();
         Self {
             title: title.into(),
             bodies,
@@ -119,9 +120,4 @@ impl Recording {
     pub fn place(&self, body: BodyId) -> Option<usize> {
         self.movable.binary_search(&body).ok()
     }
-}
-
-/// All bodies of a world.
-pub(crate) fn body_ids(world: &World) -> impl Iterator<Item = BodyId> {
-    (0..u32::try_from(world.body_count()).unwrap_or(u32::MAX)).map(BodyId)
 }

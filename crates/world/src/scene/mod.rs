@@ -116,6 +116,11 @@ impl Scene {
         SceneSource::new(text, format).parse()
     }
 
+    /// Checks what a world is built from.
+    pub(crate) fn validate_world(&self) -> Result<(), SceneError> {
+        validate::validate_world(self)
+    }
+
     /// Checks every value; data from a file have been checked already.
     ///
     /// # Errors

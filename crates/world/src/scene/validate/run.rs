@@ -24,7 +24,7 @@ pub(super) fn validate(run: &RunData, at: &At<'_>) -> Result<(), SceneError> {
     })?;
     tolerance(run.tolerance, &at.field("tolerance"))?;
     optional(run.target_gap, |gap| at.field("target_gap").positive(gap, "m"))?;
-    optional(run.velocity_tol, |velocity| at.field("velocity_tol").not_negative(velocity, "m/s"))?;
+    optional(run.velocity_tol, |velocity| at.field("velocity_tol").positive(velocity, "m/s"))?;
     optional(run.accuracy, |accuracy| {
         at.field("accuracy").positive(accuracy, "m")?;
         optional(run.target_gap, |gap| at.field("accuracy").below(accuracy, gap, "target_gap", "m"))

@@ -1,6 +1,8 @@
-//! Building a world in code: bodies, and what acts on them.
+//! Building a world in code: bodies, and what acts on them. What is refused is in `checks`.
 
-use crate::connector::{ConnectorSpec, kind_name};
+mod checks;
+
+use crate::connector::ConnectorSpec;
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::rigid_settings::rigid_settings;
 use crate::rounded::Rounded;
@@ -8,24 +10,20 @@ use crate::run_error::RunError;
 use crate::scales::Scales;
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
-use crate::world::{BACKGROUND, Inertia, Named, Start, World, energy_of, name_among};
-use crate::world_error::{ConnectorName, WorldError};
+use crate::world::{Inertia, Named, Start, World, energy_of, name_among};
+use crate::world_error::WorldError;
+use checks::{coordinate_of, farthest_of_shape};
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
-use halfgap_geometry::{Aabb, Pose, Shape};
-use std::collections::BTreeSet;
+use halfgap_geometry::{Pose, Shape};
 use std::slice::from_ref;
 use std::sync::Arc;
 
 /// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the start unless said
 /// otherwise.
 const DEFAULT_START_ERROR: f64 = 1e-6;
-
-/// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to fourth powers of
-/// sums of them, which must be numbers.
-const LARGEST: f64 = 1e60;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
 const CENTROID_ROUNDINGS: f64 = 16.0;
@@ -107,12 +105,18 @@ impl WorldBuilder {
     }
 
     /// Lets uniform gravity [m/s^2] act on a body, in addition to what acts already.
+    ///
+    /// # Panics
+    /// If no such body was added.
     pub fn add_gravity(&mut self, body: BodyId, acceleration: DVec2) {
         self.laws[body.index()].acceleration += acceleration;
         self.gravity[body.index()] += acceleration;
     }
 
     /// Lets damping act on a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m].
+    ///
+    /// # Panics
+    /// If no such body was added.
     pub fn add_damping(&mut self, body: BodyId, linear: f64, angular: f64) {
         if let Some(inertia) = self.bodies[body.index()].inertia {
             let law = &mut self.laws[body.index()];
@@ -162,6 +166,7 @@ impl WorldBuilder {
         let scales = self.scales(&self.wrenches()?);
         self.check_resolution(&scales)?;
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
+        self.check_accuracy(&tolerances)?;
         let mut warnings: Vec<String> = self.gap_warning(&scales).into_iter().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
@@ -234,69 +239,6 @@ impl WorldBuilder {
         }
     }
 
-    fn check(&self) -> Result<(), WorldError> {
-        let mut names = BTreeSet::new();
-        for body in &self.bodies {
-            if !names.insert(body.name.as_str()) {
-                return Err(WorldError::DoubleName { name: body.name.clone() });
-            }
-            check_body(body)?;
-        }
-        for (index, spec) in self.connectors.iter().enumerate() {
-            self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
-            self.require_near(index, &spec.connector, LARGEST)?;
-        }
-        for law in &self.forces {
-            self.check_bodies(law.bodies(), || format!("force \"{}\"", law.name()))?;
-        }
-        let positive = [
-            ("tolerance", Some(self.settings.tolerance)),
-            ("target_gap", self.settings.overrides.target_gap),
-            ("accuracy", self.settings.overrides.accuracy),
-            ("velocity_tol", self.settings.overrides.velocity_tol),
-            ("time_step", self.settings.time_step),
-        ];
-        for (setting, value) in positive {
-            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-                return Err(WorldError::BadSetting { setting, rule: "positive and finite", value });
-            }
-        }
-        Ok(())
-    }
-
-    /// Refuses coordinates so large that gaps as small as the smallest movable body cannot be told from rounding.
-    fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
-        let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
-        let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);
-        let mut far = bodies.map(|body| (body, farthest_of_shape(&centered(body), &body.state)));
-        if let Some((body, value)) = far.find(|&(_, value)| value > largest) {
-            return Err(too_large(body, "coordinates", largest, value));
-        }
-        let mut connectors = self.connectors.iter().enumerate();
-        connectors.try_for_each(|(index, spec)| self.require_near(index, &spec.connector, largest))
-    }
-
-    fn require_near(&self, index: usize, connector: &Connector, largest: f64) -> Result<(), WorldError> {
-        let value = farthest(connector);
-        if value <= largest {
-            return Ok(());
-        }
-        let name = |body: BodyId| {
-            self.bodies.get(body.index()).map_or_else(|| BACKGROUND.to_owned(), |body| body.name.clone())
-        };
-        let [first, second] = connector.bodies().map(name);
-        let connector = ConnectorName { index, kind: kind_name(&connector.kind), first, second };
-        Err(WorldError::FarConnector { connector, largest, value })
-    }
-
-    fn check_bodies(&self, bodies: &[BodyId], what: impl Fn() -> String) -> Result<(), WorldError> {
-        let count = self.bodies.len();
-        match bodies.iter().find(|body| !body.is_world() && body.index() >= count) {
-            Some(body) => Err(WorldError::NoSuchBody { what: what(), body: body.0, bodies: count }),
-            None => Ok(()),
-        }
-    }
-
     /// Forces and torques of all laws at the start.
     fn wrenches(&self) -> Result<Vec<Wrench>, WorldError> {
         let count = self.bodies.len();
@@ -332,78 +274,6 @@ impl WorldBuilder {
         }
         scales
     }
-}
-
-/// The largest world coordinate of a body in size [m], given its shape about its centre of mass.
-fn farthest_of_shape(shape: &Shape, state: &BodyState) -> f64 {
-    let bounds: Aabb = shape.bounds_at(&state.pose());
-    bounds.min.abs().max(bounds.max.abs()).max_element()
-}
-
-/// The largest coordinate of a connector in size [m], on a body or in the world.
-fn farthest(connector: &Connector) -> f64 {
-    let (a, b) = connector.anchors();
-    let anchors = [Some(a), b].into_iter().flatten().map(|anchor| anchor.point.abs().max_element());
-    anchors.fold(coordinate_of(connector), f64::max)
-}
-
-/// The largest world coordinate of a connector in size [m], where it has any.
-fn coordinate_of(connector: &Connector) -> f64 {
-    let (a, b) = connector.anchors();
-    let anchors = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
-    let anchor = anchors.map(|anchor| anchor.point.abs().max_element()).fold(0.0, f64::max);
-    let path = connector.path().map(|path| path.bounds());
-    path.map_or(anchor, |bounds| bounds.min.abs().max(bounds.max.abs()).max_element().max(anchor))
-}
-
-fn check_body(body: &BodySpec) -> Result<(), WorldError> {
-    let bad =
-        |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
-    if let Some(Inertia { mass, moment }) = body.inertia {
-        for (quantity, value) in [("mass", mass), ("moment", moment)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return bad(quantity, "positive and finite", value);
-            }
-            if !(1.0 / value).is_normal() {
-                return bad(quantity, "of a size whose inverse is a number", value);
-            }
-        }
-    }
-    if !(0.0..=1.0).contains(&body.elasticity) {
-        return bad("elasticity", "between 0 and 1", body.elasticity);
-    }
-    let state = &body.state;
-    let numbers = [
-        ("position", state.position.x),
-        ("position", state.position.y),
-        ("angle", state.angle),
-        ("velocity", state.velocity.x),
-        ("velocity", state.velocity.y),
-        ("angular velocity", state.angular_velocity),
-    ];
-    if let Some((quantity, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
-        return bad(quantity, "finite", value);
-    }
-    let bounds = body.shape.bounds_at(&Pose::IDENTITY);
-    let corners = [bounds.min, bounds.max].into_iter().flat_map(|corner| [corner.x, corner.y]);
-    let center = body.center_of_mass.unwrap_or(DVec2::ZERO);
-    let sizes = numbers.into_iter().filter(|(quantity, _)| *quantity != "angle");
-    let mut sizes = sizes
-        .chain([center.x, center.y].map(|value| ("centre of mass", value)))
-        .chain(corners.map(|value| ("coordinates of the shape", value)));
-    match sizes.find(|(_, value)| !is_sound(*value)) {
-        Some((quantity, value)) => Err(too_large(body, quantity, LARGEST, value)),
-        None => Ok(()),
-    }
-}
-
-fn too_large(body: &BodySpec, quantity: &'static str, largest: f64, value: f64) -> WorldError {
-    WorldError::TooLarge { body: body.name.clone(), quantity, largest, value }
-}
-
-/// True for a coordinate or velocity that can be computed with.
-fn is_sound(value: f64) -> bool {
-    value.abs() <= LARGEST
 }
 
 fn center_of_mass(body: &BodySpec) -> DVec2 {

@@ -1,0 +1,208 @@
+//! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
+
+use super::{BodySpec, WorldBuilder, centered};
+use crate::connector::kind_name;
+use crate::scales::Scales;
+use crate::world::{BACKGROUND, Inertia};
+use crate::world_error::{ConnectorName, WorldError};
+use glam::DVec2;
+use halfgap_advance::rigid::FlightLaw;
+use halfgap_collision::{BodyId, BodyState, Connector, Tolerances};
+use halfgap_geometry::{Aabb, Pose, Shape};
+use std::collections::BTreeSet;
+
+/// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to fourth powers of
+/// sums of them, which must be numbers.
+const LARGEST: f64 = 1e60;
+
+impl WorldBuilder {
+    /// Checks names, numbers and what names bodies, in the order in which they were added.
+    pub(super) fn check(&self) -> Result<(), WorldError> {
+        let mut names = BTreeSet::new();
+        for body in &self.bodies {
+            if !names.insert(body.name.as_str()) {
+                return Err(WorldError::DoubleName { name: body.name.clone() });
+            }
+            if body.name.is_empty() || body.name == BACKGROUND {
+                return Err(WorldError::BadName { name: body.name.clone() });
+            }
+            check_body(body)?;
+        }
+        for (body, law) in self.bodies.iter().zip(&self.laws) {
+            check_flight(body, law)?;
+        }
+        for (index, spec) in self.connectors.iter().enumerate() {
+            self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
+            self.require_near(index, &spec.connector, LARGEST)?;
+        }
+        for law in &self.forces {
+            self.check_bodies(law.bodies(), || format!("force \"{}\"", law.name()))?;
+        }
+        for &(a, b) in &self.excluded {
+            self.check_bodies(&[a, b], || "let_pass".to_owned())?;
+        }
+        self.check_settings()
+    }
+
+    fn check_settings(&self) -> Result<(), WorldError> {
+        let bad = |setting, rule, value| Err(WorldError::BadSetting { setting, rule, value });
+        let positive = [
+            ("tolerance", Some(self.settings.tolerance)),
+            ("target_gap", self.settings.overrides.target_gap),
+            ("accuracy", self.settings.overrides.accuracy),
+            ("velocity_tol", self.settings.overrides.velocity_tol),
+            ("time_step", self.settings.time_step),
+        ];
+        for (setting, value) in positive {
+            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+                return bad(setting, "positive and finite", value);
+            }
+        }
+        if self.settings.tolerance > 1.0 {
+            return bad("tolerance", "at most 1", self.settings.tolerance);
+        }
+        if !self.settings.start_time.is_finite() {
+            return bad("start_time", "finite", self.settings.start_time);
+        }
+        let not_negative = [
+            ("start_overlap", self.settings.start_overlap),
+            ("start_connector_error", self.settings.start_connector_error),
+        ];
+        for (setting, value) in not_negative {
+            if let Some(value) = value.filter(|value| !(*value >= 0.0 && value.is_finite())) {
+                return bad(setting, "finite, and not negative", value);
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses an accuracy with which gaps of the target zone would not be positive.
+    pub(super) fn check_accuracy(&self, tolerances: &Tolerances) -> Result<(), WorldError> {
+        match self.settings.overrides.accuracy {
+            Some(value) if value >= tolerances.target_gap => {
+                Err(WorldError::BadSetting { setting: "accuracy", rule: "below the target gap", value })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses coordinates so large that gaps as small as the smallest movable body cannot be told from rounding.
+    pub(super) fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
+        let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
+        let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);
+        let mut far = bodies.map(|body| (body, farthest_of_shape(&centered(body), &body.state)));
+        if let Some((body, value)) = far.find(|&(_, value)| value > largest) {
+            return Err(too_large(body, "coordinates", largest, value));
+        }
+        let mut connectors = self.connectors.iter().enumerate();
+        connectors.try_for_each(|(index, spec)| self.require_near(index, &spec.connector, largest))
+    }
+
+    fn require_near(&self, index: usize, connector: &Connector, largest: f64) -> Result<(), WorldError> {
+        let value = farthest(connector);
+        if value <= largest {
+            return Ok(());
+        }
+        let name = |body: BodyId| {
+            self.bodies.get(body.index()).map_or_else(|| BACKGROUND.to_owned(), |body| body.name.clone())
+        };
+        let [first, second] = connector.bodies().map(name);
+        let connector = ConnectorName { index, kind: kind_name(&connector.kind), first, second };
+        Err(WorldError::FarConnector { connector, largest, value })
+    }
+
+    fn check_bodies(&self, bodies: &[BodyId], what: impl Fn() -> String) -> Result<(), WorldError> {
+        let count = self.bodies.len();
+        match bodies.iter().find(|body| !body.is_world() && body.index() >= count) {
+            Some(body) => Err(WorldError::NoSuchBody { what: what(), body: body.0, bodies: count }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses gravity and damping that no body can move under.
+fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
+    let bad =
+        |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
+    if let Some(value) = law.acceleration.to_array().into_iter().find(|value| !value.is_finite()) {
+        return bad("gravity", "finite", value);
+    }
+    for value in [law.linear_rate, law.angular_rate] {
+        if !(value >= 0.0 && value.is_finite()) {
+            return bad("damping", "finite, and not negative", value);
+        }
+    }
+    Ok(())
+}
+
+/// The largest world coordinate of a body in size [m], given its shape about its centre of mass.
+pub(super) fn farthest_of_shape(shape: &Shape, state: &BodyState) -> f64 {
+    let bounds: Aabb = shape.bounds_at(&state.pose());
+    bounds.min.abs().max(bounds.max.abs()).max_element()
+}
+
+/// The largest coordinate of a connector in size [m], on a body or in the world.
+fn farthest(connector: &Connector) -> f64 {
+    let (a, b) = connector.anchors();
+    let anchors = [Some(a), b].into_iter().flatten().map(|anchor| anchor.point.abs().max_element());
+    anchors.fold(coordinate_of(connector), f64::max)
+}
+
+/// The largest world coordinate of a connector in size [m], where it has any.
+pub(super) fn coordinate_of(connector: &Connector) -> f64 {
+    let (a, b) = connector.anchors();
+    let anchors = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
+    let anchor = anchors.map(|anchor| anchor.point.abs().max_element()).fold(0.0, f64::max);
+    let path = connector.path().map(|path| path.bounds());
+    path.map_or(anchor, |bounds| bounds.min.abs().max(bounds.max.abs()).max_element().max(anchor))
+}
+
+fn check_body(body: &BodySpec) -> Result<(), WorldError> {
+    let bad =
+        |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
+    if let Some(Inertia { mass, moment }) = body.inertia {
+        for (quantity, value) in [("mass", mass), ("moment", moment)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return bad(quantity, "positive and finite", value);
+            }
+            if !(1.0 / value).is_normal() {
+                return bad(quantity, "of a size whose inverse is a number", value);
+            }
+        }
+    }
+    if !(0.0..=1.0).contains(&body.elasticity) {
+        return bad("elasticity", "between 0 and 1", body.elasticity);
+    }
+    let state = &body.state;
+    let numbers = [
+        ("position", state.position.x),
+        ("position", state.position.y),
+        ("angle", state.angle),
+        ("velocity", state.velocity.x),
+        ("velocity", state.velocity.y),
+        ("angular velocity", state.angular_velocity),
+    ];
+    if let Some((quantity, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+        return bad(quantity, "finite", value);
+    }
+    let bounds = body.shape.bounds_at(&Pose::IDENTITY);
+    let corners = [bounds.min, bounds.max].into_iter().flat_map(|corner| [corner.x, corner.y]);
+    let center = body.center_of_mass.unwrap_or(DVec2::ZERO);
+    let sizes = numbers.into_iter().filter(|(quantity, _)| *quantity != "angle");
+    let mut sizes = sizes
+        .chain([center.x, center.y].map(|value| ("centre of mass", value)))
+        .chain(corners.map(|value| ("coordinates of the shape", value)));
+    match sizes.find(|(_, value)| !is_sound(*value)) {
+        Some((quantity, value)) => Err(too_large(body, quantity, LARGEST, value)),
+        None => Ok(()),
+    }
+}
+
+fn too_large(body: &BodySpec, quantity: &'static str, largest: f64, value: f64) -> WorldError {
+    WorldError::TooLarge { body: body.name.clone(), quantity, largest, value }
+}
+
+/// True for a coordinate or velocity that can be computed with.
+fn is_sound(value: f64) -> bool {
+    value.abs() <= LARGEST
+}
