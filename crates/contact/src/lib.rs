@@ -5,15 +5,16 @@
 //! they are right, [`Auto`] chooses a method; each method is also a [`Solver`] of its own, and so can yours be.
 //!
 //! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
-//! data before it is returned; every iteration has a cap; the same input gives the same bits; a warm solve of a size
-//! met before allocates nothing.
+//! data before it is returned; every iteration has a cap; the same input gives a new solver the same bits, and one
+//! that has solved other problems before the same answer but for rounding; a warm solve of a size met before allocates nothing.
 //!
 //! | module | what |
 //! |---|---|
 //! | `problem`, `matrix` | rows of bodies, or the entries of A; checked when built |
 //! | `solution`, `check` | the answer and its residuals |
-//! | `system` | the problem scaled to a unit diagonal, which the symmetric methods work on |
-//! | `dual_active_set`, `start`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
+//! | `settings`, `error`, `solver` | the numbers that methods decide by, what can go wrong, what a method is |
+//! | `system`, `entries` | the problem scaled to a unit diagonal, which the symmetric methods work on |
+//! | `dual_active_set`, `start`, `descent`, `spread`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
 //! | `proximal_newton`, `body_factor`, `line_search` | [`ProximalNewton`] |
 //! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |

@@ -69,11 +69,15 @@ impl RigidSystem {
         pair: PairId,
         features: [FeatureId; 2],
         down: f64,
-        &Tolerances { target_gap, accuracy, .. }: &Tolerances,
+        &Tolerances { target_gap, accuracy, velocity_tol }: &Tolerances,
     ) -> bool {
         let Some(seen) = self.pairs.seen(pair).iter().find(|seen| seen.features == features) else {
             return false;
         };
+        // What came fast then has not been stopped since.
+        if seen.rate < -velocity_tol {
+            return false;
+        }
         let up = seen.rate.max(0.0);
         let lasted = self.now.since(seen.time);
         let rise = 0.5 * up * up * lasted / (up + down);

@@ -31,8 +31,9 @@ pub(crate) struct EventWork {
     pub(crate) seeds: Vec<BodyId>,
     /// Records of held contacts that are stopped because one of them opens in a low hop.
     pub(crate) stilled: Vec<usize>,
-    /// States of the region's bodies before contacts were stopped as bilateral ones.
+    /// States of the region's bodies before contacts were stopped as bilateral ones, and what that was.
     before: Vec<BodyState>,
+    stop: ImpactReport,
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
     /// The contact that fired does not close: the search takes its rounding for motion.
@@ -202,11 +203,23 @@ impl RigidSystem {
             self.collect_region(&mut work.region, &work.seeds, self.now);
         }
         self.hand_over(work);
+        // What comes fast but has not fired does so in its own time, if at all: beside a seam a corner may be as near to the next
+        // one, and pass over it.
+        let region = &mut work.region;
+        region.records.retain(|record| !(closes_fast(record) && self.is_still_to_fire(record)));
         let rest = self.rest_speed();
         if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
             return self.collide(work);
         }
         self.go_on(work).map(|()| false)
+    }
+
+    /// True if a contact has not come to where its bodies fire.
+    fn is_still_to_fire(&self, record: &Collision) -> bool {
+        let halo = |body: BodyId| self.lanes[body.index()].halo;
+        let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
+        record.parties.primary.site.is_some()
+            && record.geometry.distance > halos.min(record.tolerances.target_gap)
     }
 
     /// True if another place closes where the bodies of the contact touch that has run off its features.
@@ -323,24 +336,23 @@ impl RigidSystem {
     /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
     /// Where such rows contradict each other, nothing is done, and it says false: as unilateral ones they need not.
     pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
-        let mut report = ImpactReport::default();
         let now = self.now;
         work.before.clear();
         work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
         // What may as well be left is not worth long trying.
         let manner = Manner::Trial;
-        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner);
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut work.stop, now, manner);
         if outcome.is_ok() {
             self.remeasure(&mut work.region, now);
         }
         let is_stopped = outcome.is_ok()
             && self.has_stopped(&work.region)
-            && self.is_modest(&report, &work.region, &work.before);
+            && self.is_modest(&work.stop, &work.region, &work.before);
         for record in &mut work.region.records {
             record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
         }
         if is_stopped {
-            self.book_impact(&report, true);
+            self.book_impact(&work.stop, true);
         } else if outcome.is_ok() {
             for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
                 self.flyer_mut(body).fly_from(now, state);

@@ -3,12 +3,13 @@
 //!
 //! What moves: `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
-//! motion, `tree` the same where they hang together by pins, `segment` one step of them, `brief` which method makes it, `watch` (with `crossing`) what ends it early.
+//! motion, `tree` the same where they hang together by pins, `segment` one step of them, `brief` and `stiff` which method makes it, `kinks` of
+//! splines end it, `extending` adds it to the group, `deferred` puts it off until somebody looks, `watch` (with `crossing`) finds what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact (`marks` tells who is near), `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
-//! collects the bodies that touch, `groups` cuts and makes groups, `impacts` applies impulses, `settle` finds what is held,
-//! `bounces` and `hops` tell those that are too low to count, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
+//! collects the bodies that touch, `cutting` takes them to the event's time, `groups` merges and splits groups, `impacts` applies impulses, `settle` finds what is held,
+//! `rules` tells the search what to leave alone, `bounces` and `hops` tell those that are too low to count, `repeats` what fires again at one time, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
 //! keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod bounces;

@@ -184,23 +184,26 @@ impl Settling {
         }
     }
 
-    /// What the forces of the last solve, one for each record, move the bodies of a region by: M^-1 J^T f.
-    pub(crate) fn shifts(&self, region: &Region, inertia: impl Fn(BodyId) -> Inertia) -> Vec<[f64; 3]> {
-        let mut shifts = vec![[0.0; 3]; region.bodies.len()];
-        for (record, force) in region.records.iter().zip(&self.solution.force) {
+    /// Adds what the forces of the last solve, those of some records of a region, move its bodies by: M^-1 J^T f.
+    pub(crate) fn add_responses(
+        &self,
+        region: &Region,
+        records: &[usize],
+        inertia: impl Fn(BodyId) -> Inertia,
+        sums: &mut [[f64; 3]],
+    ) {
+        for (&index, force) in records.iter().zip(&self.solution.force) {
+            let record = &region.records[index];
             let j = &record.motion.kinematics.jacobian;
-            for (side, body) in
-                [record.parties.primary.body, record.parties.normal.body].into_iter().enumerate()
-            {
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            for (side, body) in sides.into_iter().enumerate() {
                 let Some(place) = region.place(body) else { continue };
                 let Inertia { inverse_mass, inverse_moment } = inertia(body);
-                let weights = [inverse_mass, inverse_mass, inverse_moment];
-                for k in 0..3 {
-                    shifts[place][k] += weights[k] * j[3 * side + k] * force;
+                for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
+                    sums[place][k] += weight * j[3 * side + k] * force;
                 }
             }
         }
-        shifts
     }
 }
 
@@ -307,21 +310,11 @@ impl RigidSystem {
 
     /// Finds the accelerations of a region's bodies under the forces of the candidates.
     fn push_bodies(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
-        let Settling { pushed, candidates, solution, .. } = settling;
+        let mut pushed = std::mem::take(&mut settling.pushed);
         pushed.clear();
         pushed.extend_from_slice(&stage.accelerations);
-        for (&index, force) in candidates.iter().zip(&solution.force) {
-            let record = &region.records[index];
-            let j = &record.motion.kinematics.jacobian;
-            let sides = [record.parties.primary.body, record.parties.normal.body];
-            for (side, body) in sides.into_iter().enumerate() {
-                let Some(place) = region.place(body) else { continue };
-                let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
-                for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
-                    pushed[place][k] += weight * j[3 * side + k] * force;
-                }
-            }
-        }
+        settling.add_responses(region, &settling.candidates, |body| self.inertia(body), &mut pushed);
+        settling.pushed = pushed;
     }
 
     /// True if a unilateral row may carry a force: connectors always do.

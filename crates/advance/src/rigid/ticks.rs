@@ -10,8 +10,8 @@ use super::region::Region;
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyState, FeatureRule, GapKinematics};
-use halfgap_contact::{Problem, Row};
+use halfgap_collision::{BodyId, BodyState, FeatureRule, GapKinematics};
+use halfgap_contact::{BodyId as RowBody, Problem, Row};
 use halfgap_geometry::{FeatureId, GapSample};
 
 /// Rounds of putting back: gaps are not linear in the displacement, but nearly.
@@ -27,6 +27,12 @@ pub(crate) struct Ticks {
     waiting: Vec<PairId>,
     /// Ticks that have gone by.
     count: f64,
+    /// By how much bodies are to be moved apart, and the records of its rows.
+    problem: Problem,
+    rows: Vec<usize>,
+    shifts: Vec<[f64; 3]>,
+    /// The laws of a region's bodies.
+    laws: Vec<usize>,
 }
 
 impl RigidSystem {
@@ -76,9 +82,8 @@ impl RigidSystem {
         self.queue.clear(self.tick_source());
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
-        for pair in std::mem::take(&mut self.ticks.waiting) {
-            work.seeds.extend(self.pairs.get(pair).bodies);
-        }
+        work.seeds.extend(self.ticks.waiting.iter().flat_map(|&pair| self.pairs.get(pair).bodies));
+        self.ticks.waiting.clear();
         work.seeds.sort_unstable();
         work.seeds.dedup();
         self.at_tick = true;
@@ -105,24 +110,45 @@ impl RigidSystem {
 
     /// One round; false if nothing had to move.
     fn move_apart(&mut self, work: &mut EventWork) -> bool {
-        let mut problem = Problem::new();
-        let region = &work.region;
-        let inertias = region.bodies.iter().map(|&body| self.inertia(body));
-        let bodies: Vec<_> = inertias
-            .map(|inertia| problem.add_body(inertia).expect("inertias were checked when the body was made"))
-            .collect();
+        let mut ticks = std::mem::take(&mut self.ticks);
+        let moves = self.is_sunk(&work.region, &mut ticks) && work.settling.solve(&ticks.problem).is_ok();
+        if moves {
+            let Ticks { shifts, rows, .. } = &mut ticks;
+            shifts.clear();
+            shifts.resize(work.region.bodies.len(), [0.0; 3]);
+            work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
+            for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
+                let state = self.flyer(body).state_at(self.now);
+                let position = state.position + DVec2::new(x, y);
+                let moved = BodyState { position, angle: state.angle + turn, ..state };
+                self.flyers[body.index()].fly_from(self.now, moved);
+            }
+        }
+        self.ticks = ticks;
+        moves
+    }
+
+    /// Sets up the least displacement of a region's bodies that leaves no gap less than its target; false if none is.
+    fn is_sunk(&self, region: &Region, Ticks { problem, rows, .. }: &mut Ticks) -> bool {
+        problem.clear();
+        rows.clear();
+        for &body in &region.bodies {
+            problem.add_body(self.inertia(body)).expect("inertias were checked when the body was made");
+        }
+        let place_of = |body: BodyId| Some(RowBody(u32::try_from(region.place(body)?).ok()?));
         let mut any_sunk = false;
-        for record in &region.records {
+        for (index, record) in region.records.iter().enumerate() {
             let bilateral = record.parties.bilateral;
             let target =
                 if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
             let offset = record.geometry.distance - target;
             any_sunk |= offset < 0.0 && !bilateral;
             let j = &record.motion.kinematics.jacobian;
-            let places =
-                [record.parties.primary.body, record.parties.normal.body].map(|body| region.place(body));
-            let sides = [(places[0], [j[0], j[1], j[2]]), (places[1], [j[3], j[4], j[5]])];
-            let mut movable = sides.into_iter().filter_map(|(place, j)| Some((bodies[place?], j)));
+            let sides = [
+                (place_of(record.parties.primary.body), [j[0], j[1], j[2]]),
+                (place_of(record.parties.normal.body), [j[3], j[4], j[5]]),
+            ];
+            let mut movable = sides.into_iter().filter_map(|(place, j)| Some((place?, j)));
             let Some((first, coefficients)) = movable.next() else { continue };
             let mut row = Row::new(first, coefficients, offset);
             if let Some((second, coefficients)) = movable.next() {
@@ -130,22 +156,9 @@ impl RigidSystem {
             }
             let row = if bilateral { row.bilateral() } else { row };
             problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+            rows.push(index);
         }
-        if !any_sunk || work.settling.solve(&problem).is_err() {
-            return false;
-        }
-        let shifts = work.settling.shifts(&work.region, |body| self.inertia(body));
-        for (place, shift) in shifts.into_iter().enumerate() {
-            let body = work.region.bodies[place];
-            let state = self.flyer(body).state_at(self.now);
-            let moved = BodyState {
-                position: state.position + DVec2::new(shift[0], shift[1]),
-                angle: state.angle + shift[2],
-                ..state
-            };
-            self.flyers[body.index()].fly_from(self.now, moved);
-        }
-        true
+        any_sunk
     }
 
     /// Potential energy [J] of the bodies of a region, as far as it has one.
@@ -157,11 +170,14 @@ impl RigidSystem {
             let position = self.stage.movings[body.index()].pose.position;
             energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
         }
-        let now = super::Snapshot::new(self.now.seconds(), &self.stage.movings);
-        let mut laws: Vec<usize> =
-            region.bodies.iter().flat_map(|&body| self.laws_of(body)).copied().collect();
+        let mut laws = std::mem::take(&mut self.ticks.laws);
+        laws.clear();
+        laws.extend(region.bodies.iter().flat_map(|&body| self.laws_of(body)));
         laws.sort_unstable();
         laws.dedup();
-        energy + laws.into_iter().filter_map(|law| self.laws[law].potential(&now)).sum::<f64>()
+        let now = super::Snapshot::new(self.now.seconds(), &self.stage.movings);
+        let of_laws = laws.iter().filter_map(|&law| self.laws[law].potential(&now)).sum::<f64>();
+        self.ticks.laws = laws;
+        energy + of_laws
     }
 }
