@@ -32,7 +32,8 @@ pub fn advance_until<S: EventDriven>(
     until: Time,
     mut on_report: impl FnMut(&S, &S::Report),
 ) -> Result<(), S::Error> {
-    while system.next_event().is_some_and(|time| time < until || time == until) {
+    let is_number = !until.seconds().is_nan();
+    while is_number && system.next_event().is_some_and(|time| time <= until) {
         if let Some(report) = system.handle_next()? {
             on_report(system, &report);
         }

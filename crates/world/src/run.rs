@@ -61,7 +61,7 @@ impl RunPlan {
                 return bad(field, "finite", value);
             }
         }
-        if !(self.output_step > 0.0) {
+        if self.output_step.is_nan() || self.output_step <= 0.0 {
             return bad("output_step", "positive", self.output_step);
         }
         let mut last = self.start_time;
