@@ -11,7 +11,9 @@ use super::rows::{HeldRow, RowSource, has_left};
 use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, GapKinematics, Tolerances, Zone};
+use halfgap_collision::{
+    BodyId, BodyState, Collision, ConnectorId, Detector, GapKinematics, Tolerances, Zone,
+};
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -203,10 +205,9 @@ impl RigidSystem {
             self.collect_region(&mut work.region, &work.seeds, self.now);
         }
         self.hand_over(work);
-        // What comes fast but has not fired does so in its own time, if at all: beside a seam a corner may be as near to the next
-        // one, and pass over it.
+        // Beside a seam a corner may be as near to the next one, and pass over it.
         let region = &mut work.region;
-        region.records.retain(|record| !(closes_fast(record) && self.is_still_to_fire(record)));
+        region.records.retain(|record| !(closes_fast(record) && self.passes_by(record)));
         let rest = self.rest_speed();
         if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
             return self.collide(work);
@@ -214,12 +215,13 @@ impl RigidSystem {
         self.go_on(work).map(|()| false)
     }
 
-    /// True if a contact has not come to where its bodies fire.
-    fn is_still_to_fire(&self, record: &Collision) -> bool {
+    /// True if two corners pass each other before they come to where their bodies fire.
+    fn passes_by(&self, record: &Collision) -> bool {
         let halo = |body: BodyId| self.lanes[body.index()].halo;
         let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
-        record.parties.primary.site.is_some()
-            && record.geometry.distance > halos.min(record.tolerances.target_gap)
+        let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
+        let nearest = record.geometry.distance * across.abs() / along.hypot(across);
+        record.parties.detector == Detector::CornerCorner && nearest > halos.min(record.tolerances.target_gap)
     }
 
     /// True if another place closes where the bodies of the contact touch that has run off its features.
