@@ -217,11 +217,14 @@ impl RigidSystem {
 
     /// True if two corners pass each other before they come to where their bodies fire.
     fn passes_by(&self, record: &Collision) -> bool {
+        if record.parties.detector != Detector::CornerCorner {
+            return false;
+        }
         let halo = |body: BodyId| self.lanes[body.index()].halo;
         let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
         let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
         let nearest = record.geometry.distance * across.abs() / along.hypot(across);
-        record.parties.detector == Detector::CornerCorner && nearest > halos.min(record.tolerances.target_gap)
+        nearest > halos.min(record.tolerances.target_gap)
     }
 
     /// True if another place closes where the bodies of the contact touch that has run off its features.
