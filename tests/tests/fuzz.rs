@@ -118,7 +118,16 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (1_602_173, "damping counted as if it were a force that varies with places: steps were as rough as that"),
     (2_022_473, "the same of a body of a milligram"),
     (3_000_325, "what had been lifted from where it rested came back fast, and was stopped as a low bounce"),
-    (3121, "a connector to the world closed where a contact ran off, and was asked for the size of its bodies"),
+    (
+        3121,
+        "a connector to the world closed where a contact ran off, and was asked for the size of its bodies",
+    ),
+    (
+        6175,
+        "a contact beside others ran off and what touched was looked for anew: whoever hung on them was left to fly, and their pin came apart",
+    ),
+    (2_035_208, "a step went on into a wall by picometres, though a shorter one would have mended that"),
+    (2_017_251, "the same of a light ring between heavy bodies"),
     (1_331_049, "a target gap near the rounding of coordinates"),
 ];
 

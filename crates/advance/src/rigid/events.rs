@@ -201,7 +201,9 @@ impl RigidSystem {
         self.remeasure(&mut work.region, self.now);
         if self.neighbour_closes(&work.region) {
             // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again. It takes over only
-            // if it is what is nearest now.
+            // if it is what is nearest now. The groups that have been cut no longer tell who belongs together.
+            work.seeds.clear();
+            work.seeds.extend(&work.region.bodies);
             self.collect_region(&mut work.region, &work.seeds, self.now);
         }
         self.hand_over(work);

@@ -5,8 +5,13 @@ use super::segment::StepFailure;
 use super::system::RigidSettings;
 use crate::ode::Stepper;
 
-/// Cap on the shorter steps tried for one that keeps to its rows.
-const MOST_SHORTENINGS: usize = 2;
+/// Shorter steps that are tried for one that keeps to its rows.
+const SHORTENINGS: usize = 2;
+/// Cap on them where bodies would overlap otherwise, which is so beyond so many allowed errors, while each leaves less than
+/// so much of it.
+const MOST_SHORTENINGS: usize = 8;
+const DEEP: f64 = 4.0;
+const WORTHWHILE: f64 = 0.5;
 
 /// What a group's stepping uses beside its dynamics.
 pub(crate) struct Tools<'a> {
@@ -45,7 +50,7 @@ impl Dynamics<'_> {
     fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
-        let mut proposed = None;
+        let (mut proposed, mut before) = (None, f64::INFINITY);
         for tries in 0.. {
             self.extend(tools.stepper, &steps, tools.scales)?;
             self.end_on_rows(tools);
@@ -57,7 +62,9 @@ impl Dynamics<'_> {
             if is_free {
                 break;
             }
-            if tries == MOST_SHORTENINGS && excess > 1.0 {
+            let is_worthwhile = excess > DEEP && excess < WORTHWHILE * before && tries < MOST_SHORTENINGS;
+            before = excess;
+            if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
                 // What shorter steps do not mend is rounding, or rows that contradict each other.
                 self.group.next_step = proposed;
                 break;
