@@ -58,7 +58,11 @@ fn check_file(path: &Path, tolerance: Option<f64>) -> Result<CheckReport, SceneE
     for warning in world.warnings() {
         eprintln!("warning: {}: {warning}", path.display());
     }
-    Ok(check_world(&mut world, &scene))
+    let report = check_world(&mut world, &scene);
+    for finding in &report.findings {
+        eprintln!("warning: {}: {finding}", path.display());
+    }
+    Ok(report)
 }
 
 fn unusable(path: &Path, error: &SceneError) -> FileReport {
@@ -70,6 +74,7 @@ fn unusable(path: &Path, error: &SceneError) -> FileReport {
         velocity_error: None,
         energy_error: None,
         why: vec![error.to_string()],
+        findings: Vec::new(),
     };
     FileReport { report, file, usable: false }
 }

@@ -42,6 +42,9 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     } else if !options.quiet {
         output::print(&table::of_result(&result));
     }
+    for finding in &report.findings {
+        eprintln!("warning: {}: {finding}", options.scene.display());
+    }
     match &report.error {
         None => Ok(End::Done),
         Some(error) => {

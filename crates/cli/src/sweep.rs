@@ -97,6 +97,9 @@ fn tell_on_stderr(sweep: &Sweep, scene: &Path) {
         for warning in warnings.iter().filter(|warning| told.insert(warning.as_str())) {
             eprintln!("warning: {at}: {warning}");
         }
+        for finding in &result.findings {
+            eprintln!("warning: {at}: {finding}");
+        }
         if let Some(error) = error {
             eprintln!("error: {at}: stopped early at t = {} s: {error}", result.time);
         }

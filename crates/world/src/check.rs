@@ -1,5 +1,6 @@
 //! Compares a run with the states that its scene expects.
 
+use crate::finding::Finding;
 use crate::recording::{Frame, Recording};
 use crate::run::{Record, RunPlan, run};
 use crate::scene::{ExpectedData, ExpectedState, Scene};
@@ -23,6 +24,9 @@ pub struct CheckReport {
     pub energy_error: Option<f64>,
     /// What did not come true, each with time, body and quantity.
     pub why: Vec<String>,
+    /// What does not hold at the end, whatever was expected.
+    #[serde(skip)]
+    pub findings: Vec<Finding>,
 }
 
 /// Runs the world of a scene up to its last expected time and compares.
@@ -42,7 +46,7 @@ pub fn check(world: &mut World, scene: &Scene) -> CheckReport {
     if let (Some(missed), Some(error)) = (order.get(report.stops.len()), &report.error) {
         comparison.why.push(format!("t = {} s: not reached: {error}", missed.time));
     }
-    comparison.into_report(scene)
+    comparison.into_report(scene, report.findings)
 }
 
 /// The comparison so far.
@@ -67,7 +71,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    fn into_report(self, scene: &Scene) -> CheckReport {
+    fn into_report(self, scene: &Scene, findings: Vec<Finding>) -> CheckReport {
         CheckReport {
             scene: scene.title.clone(),
             ok: self.why.is_empty(),
@@ -75,6 +79,7 @@ impl<'a> Comparison<'a> {
             velocity_error: self.velocity_error,
             energy_error: self.energy_error,
             why: self.why,
+            findings,
         }
     }
 

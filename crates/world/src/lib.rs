@@ -37,8 +37,11 @@ mod connector;
 #[cfg(feature = "scene")]
 mod estimate;
 mod event;
+mod finding;
 pub mod force;
 mod ledger;
+mod near;
+mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
 #[cfg(feature = "scene")]
@@ -70,6 +73,7 @@ pub use halfgap_collision::{
     SlotFrame, Tolerances,
 };
 
+pub use finding::Finding;
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
 pub use ledger::{LawWork, Ledger};

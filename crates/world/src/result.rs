@@ -1,6 +1,7 @@
 //! The result of a run in short, and as JSON of the format `halfgap-result-1`.
 
 use crate::estimate::ErrorEstimate;
+use crate::finding::Finding;
 use crate::ledger::Ledger;
 use crate::recording::Recording;
 use crate::run::RunReport;
@@ -60,6 +61,8 @@ pub struct RunResult {
     pub statistics: StatisticsResult,
     /// Where the energy went.
     pub ledger: Ledger,
+    /// What does not hold at the end.
+    pub findings: Vec<Finding>,
     /// How far it is from the truth, if that was estimated.
     pub error_estimate: Option<ErrorEstimate>,
 }
@@ -106,6 +109,7 @@ impl RunResult {
             },
             statistics: StatisticsResult { world: world.statistics(), wall_seconds: report.wall_seconds },
             ledger: world.ledger(),
+            findings: report.findings.clone(),
             error_estimate: None,
         }
     }
@@ -119,7 +123,7 @@ impl RunResult {
 
 impl Serialize for RunResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut result = serializer.serialize_struct("RunResult", 9)?;
+        let mut result = serializer.serialize_struct("RunResult", 10)?;
         result.serialize_field("format", "halfgap-result-1")?;
         result.serialize_field("scene", &self.scene)?;
         result.serialize_field("status", &self.status)?;
@@ -128,6 +132,8 @@ impl Serialize for RunResult {
         result.serialize_field("energy", &self.energy)?;
         result.serialize_field("statistics", &self.statistics)?;
         result.serialize_field("ledger", &self.ledger)?;
+        let findings: Vec<String> = self.findings.iter().map(Finding::to_string).collect();
+        result.serialize_field("findings", &findings)?;
         match &self.error_estimate {
             Some(estimate) => result.serialize_field("error_estimate", estimate)?,
             None => result.skip_field("error_estimate")?,

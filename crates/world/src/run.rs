@@ -1,6 +1,7 @@
 //! Runs a world to the end of its scene and records it.
 
 use crate::event::{Event, Impact};
+use crate::finding::Finding;
 use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
@@ -97,6 +98,8 @@ pub struct RunReport {
     pub start_energy: Energy,
     /// Why it stopped early, if it did.
     pub error: Option<RunError>,
+    /// What does not hold at the end, or where it stopped.
+    pub findings: Vec<Finding>,
     /// Time [s] spent on stepping alone.
     pub wall_seconds: f64,
 }
@@ -115,6 +118,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     let mut output = 1;
     // Not the world's own time, which is free to differ from the target by rounding.
     let mut now = plan.start_time;
+    let mut turnover = Turnover::new(start_energy);
     while error.is_none() && now < plan.end_time {
         let output_time = plan.output_time(output);
         let stop_time = plan.stops.get(stops.len()).copied().unwrap_or(f64::INFINITY);
@@ -130,6 +134,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
             output += 1;
             progress(done(now, plan));
         }
+        turnover.note(world);
         let wanted = target == output_time && plan.record == Record::Everything;
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
@@ -142,7 +147,28 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     recording.impacts = stepper.impacts;
     recording.contacts = stepper.contacts;
     recording.ledger = world.ledger();
-    RunReport { recording, stops, start_energy, error, wall_seconds: stepper.wall.as_secs_f64() }
+    let findings = world.findings(turnover.energy);
+    RunReport { recording, stops, start_energy, error, findings, wall_seconds: stepper.wall.as_secs_f64() }
+}
+
+/// The energy that a run has turned over, as far as its outputs tell.
+struct Turnover {
+    start_potential: f64,
+    /// [J].
+    energy: f64,
+}
+
+impl Turnover {
+    fn new(start: Energy) -> Self {
+        Self { start_potential: start.potential, energy: start.kinetic }
+    }
+
+    fn note(&mut self, world: &World) {
+        let ledger = world.ledger();
+        let works: f64 = ledger.laws.iter().map(|law| law.work.abs()).sum();
+        let lifted = (ledger.now.potential - self.start_potential).abs();
+        self.energy = self.energy.max(ledger.now.kinetic + lifted + works);
+    }
 }
 
 /// Records the world, unless its last frame has this time already.

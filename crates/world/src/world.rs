@@ -5,7 +5,7 @@ use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::ledger::{LawWork, Ledger};
 use crate::run_error::RunError;
 use glam::DVec2;
-use halfgap_advance::rigid::{ImpactReport, RigidSystem, RowForce};
+use halfgap_advance::rigid::{ImpactReport, RigidSettings, RigidSystem, RowForce};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
@@ -237,6 +237,15 @@ impl World {
     #[must_use]
     pub fn tolerances(&self) -> &Tolerances {
         &self.system.settings().tolerances
+    }
+
+    pub(crate) fn rigid_settings(&self) -> &RigidSettings {
+        self.system.settings()
+    }
+
+    /// Pairs of bodies that pass through each other.
+    pub(crate) fn pairs_that_pass(&self) -> &[(BodyId, BodyId)] {
+        self.system.excluded()
     }
 
     /// What a user should know although nothing is wrong.

@@ -1,7 +1,10 @@
 //! Why a world could not be built.
 
+use crate::connector::kind_name;
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
+use crate::world::BACKGROUND;
+use halfgap_collision::{BodyId, Connector};
 
 /// Why a world could not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -156,6 +159,18 @@ pub struct ConnectorName {
     pub first: String,
     /// Name of body b.
     pub second: String,
+}
+
+impl ConnectorName {
+    /// The name of a connector, among bodies of which `name_of` tells the names; the background needs none.
+    pub(crate) fn new<'a>(
+        index: usize,
+        connector: &Connector,
+        name_of: impl Fn(BodyId) -> Option<&'a str>,
+    ) -> Self {
+        let [first, second] = connector.bodies().map(|body| name_of(body).unwrap_or(BACKGROUND).to_owned());
+        Self { index, kind: kind_name(&connector.kind), first, second }
+    }
 }
 
 impl std::fmt::Display for ConnectorName {

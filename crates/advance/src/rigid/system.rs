@@ -298,6 +298,12 @@ impl RigidSystem {
         &self.laws
     }
 
+    /// Pairs of bodies that pass through each other, the lesser id first, sorted.
+    #[must_use]
+    pub fn excluded(&self) -> &[(BodyId, BodyId)] {
+        &self.excluded
+    }
+
     pub(crate) fn flyer_mut(&mut self, body: BodyId) -> &mut Flyer {
         self.counts.segments += 1;
         self.counts.backups += 1;

@@ -1,7 +1,6 @@
 //! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
 
 use super::{BodySpec, WorldBuilder, centered};
-use crate::connector::kind_name;
 use crate::scales::Scales;
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
@@ -103,11 +102,8 @@ impl WorldBuilder {
         if value <= largest {
             return Ok(());
         }
-        let name = |body: BodyId| {
-            self.bodies.get(body.index()).map_or_else(|| BACKGROUND.to_owned(), |body| body.name.clone())
-        };
-        let [first, second] = connector.bodies().map(name);
-        let connector = ConnectorName { index, kind: kind_name(&connector.kind), first, second };
+        let name = |body: BodyId| self.bodies.get(body.index()).map(|body| body.name.as_str());
+        let connector = ConnectorName::new(index, connector, name);
         Err(WorldError::FarConnector { connector, largest, value })
     }
 

@@ -1,8 +1,7 @@
 //! How far off the connectors are at the start.
 
 use super::{StartParts, moving};
-use crate::connector::kind_name;
-use crate::world::{BACKGROUND, Named};
+use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, Connector, ConnectorSample};
 
@@ -22,12 +21,8 @@ impl ConnectorOff {
 
 /// A connector as messages name it.
 pub(super) fn name_of(index: usize, named: &[Named], connectors: &[Connector]) -> ConnectorName {
-    let connector = &connectors[index];
-    let name = |body: BodyId| {
-        named.get(body.index()).map_or_else(|| BACKGROUND.to_owned(), |body| body.name.clone())
-    };
-    let [first, second] = connector.bodies().map(name);
-    ConnectorName { index, kind: kind_name(&connector.kind), first, second }
+    let name = |body: BodyId| named.get(body.index()).map(|body| body.name.as_str());
+    ConnectorName::new(index, &connectors[index], name)
 }
 
 /// Refuses the first connector that is off by more than allowed [m].

@@ -5,14 +5,14 @@
 //! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0
 //! (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated
 //! until they fit. `tight` knows the pairs for which that cannot be: they keep their gap. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves
-//! for displacements and for velocities, `overlap` measures how deep two shapes overlap.
+//! for displacements and for velocities.
 
 mod correction;
 mod joined;
-mod overlap;
 mod tight;
 mod touching;
 
+use crate::near::near_pairs;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
@@ -21,7 +21,7 @@ use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
 use tight::TightPairs;
-use touching::{is_below_zone, lowest_below_zone, near_pairs, require_shallow, touching};
+use touching::{is_below_zone, lowest_below_zone, require_shallow, touching};
 
 /// Rounds of correction; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
@@ -64,7 +64,11 @@ pub(crate) fn correct_start(
     rules: &StartRules<'_>,
 ) -> Result<Corrected, WorldError> {
     let pairs = if rules.collisions {
-        near_pairs(bodies, rules.excluded, rules.tolerances.distance_tol())
+        let skin = rules.tolerances.distance_tol();
+        let boxes = bodies
+            .iter()
+            .map(|(body, _, state)| (body.shape.bounds_at(&state.pose()).grown(skin), body.is_fixed()));
+        near_pairs(boxes, rules.excluded)
     } else {
         Vec::new()
     };

@@ -1,10 +1,10 @@
 //! Which bodies touch at the start, and how deep they overlap.
 
 use super::StartParts;
-use super::overlap::overlap_depth;
+use crate::overlap::overlap_depth;
 use crate::world::Named;
 use crate::world_error::WorldError;
-use halfgap_collision::{BodyId, BroadPhase, Collision, Moment, Moving, Tolerances, detect_pair};
+use halfgap_collision::{BodyId, Collision, Moment, Moving, Tolerances, detect_pair};
 
 /// Refuses overlaps deeper than allowed [m].
 pub(super) fn require_shallow(
@@ -22,32 +22,6 @@ pub(super) fn require_shallow(
         }
     }
     Ok(())
-}
-
-/// Pairs that may collide and whose boxes come within `skin` [m].
-pub(super) fn near_pairs(
-    bodies: &[StartParts],
-    excluded: &[(BodyId, BodyId)],
-    skin: f64,
-) -> Vec<(BodyId, BodyId)> {
-    let mut broad = BroadPhase::new();
-    let boxes: Vec<_> =
-        bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()).grown(skin)).collect();
-    let (mut pairs, mut near) = (Vec::new(), Vec::new());
-    for (index, bounds) in boxes.iter().enumerate() {
-        let body = BodyId(u32::try_from(index).unwrap_or(u32::MAX));
-        broad.find_overlapping(bounds, &mut near);
-        for &other in &near {
-            let both_fixed = bodies[index].0.is_fixed() && bodies[other.index()].0.is_fixed();
-            let passes = excluded.iter().any(|&(a, b)| (a, b) == (other, body) || (a, b) == (body, other));
-            if !both_fixed && !passes {
-                pairs.push((other, body));
-            }
-        }
-        broad.set(body, *bounds);
-    }
-    pairs.sort_unstable();
-    pairs
 }
 
 /// Records of all places where bodies touch, overlaps up to `depth` [m] included.

@@ -1,0 +1,208 @@
+//! What a run must not keep to itself: whether where it ended, and its books, hold together.
+//!
+//! A simulation that goes wrong mostly ends in numbers that look like any others. What can be known without knowing the
+//! answer is looked at here, at the end of every run: connectors, overlaps, and the energy.
+
+use crate::ledger::Ledger;
+use crate::near::near_pairs;
+use crate::overlap::overlap_depth;
+use crate::rounded::Rounded;
+use crate::world::World;
+use crate::world_error::ConnectorName;
+use halfgap_collision::{BodyId, ConnectorId};
+
+/// How far off a connector may be, and how much of the energy turned over the books may lack, in tolerances.
+const TOLERANCES: f64 = 1e3;
+/// The same in roundings of the coordinates and of the energies.
+const ROUNDINGS: f64 = 1e6 * f64::EPSILON;
+/// How deep bodies may overlap, in target gaps.
+const GAPS: f64 = 10.0;
+
+/// Something that does not hold at the end of a run.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Finding {
+    /// A connector is off.
+    ConnectorOff {
+        /// Which.
+        connector: ConnectorName,
+        /// How far [m].
+        error: f64,
+    },
+    /// Two bodies overlap.
+    Overlap {
+        /// Name of the one.
+        first: String,
+        /// Name of the other.
+        second: String,
+        /// How deep [m].
+        depth: f64,
+    },
+    /// Energy came or went that nothing accounts for.
+    OpenBooks {
+        /// How much [J].
+        error: f64,
+        /// The energy turned over [J].
+        turned_over: f64,
+    },
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::ConnectorOff { connector, error } => {
+                write!(out, "at the end {connector} is off by {} m", Rounded(*error))
+            }
+            Self::Overlap { first, second, depth } => {
+                write!(out, "at the end \"{first}\" and \"{second}\" overlap by {} m", Rounded(*depth))
+            }
+            Self::OpenBooks { error, turned_over } => write!(
+                out,
+                "the energy books do not close: {} J of {} J turned over are not accounted for",
+                Rounded(*error),
+                Rounded(*turned_over)
+            ),
+        }
+    }
+}
+
+impl World {
+    /// Looks whether connectors are together, bodies are apart, and the energy books close, as far as the settings
+    /// promise that. Empty if all is well.
+    ///
+    /// `turned_over` is the energy [J] that the run has moved: the largest kinetic energy, change of the potential energy
+    /// and work of force laws that was seen.
+    #[must_use]
+    pub fn findings(&self, turned_over: f64) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        self.find_connectors_off(&mut findings);
+        self.find_overlaps(&mut findings);
+        self.find_open_books(turned_over, &mut findings);
+        findings
+    }
+
+    fn find_connectors_off(&self, findings: &mut Vec<Finding>) {
+        let settings = self.rigid_settings();
+        if settings.projection {
+            let share = TOLERANCES * settings.steps.local_error + ROUNDINGS;
+            self.connectors_off(share, findings);
+        }
+    }
+
+    /// Connectors that are off by more than a part of the largest coordinate.
+    fn connectors_off(&self, share: f64, findings: &mut Vec<Finding>) {
+        let farthest = self.bodies().map(|body| {
+            let state = self.state(body);
+            state.position.abs().max_element() + self.shape(body).reach()
+        });
+        let allowed = share * farthest.fold(0.0, f64::max);
+        for (index, connector) in (0..).map(ConnectorId).zip(self.connectors()) {
+            let error = self.connector_error(index);
+            if error.is_nan() || error > allowed {
+                let name = |body: BodyId| (!body.is_world()).then(|| self.name(body));
+                let connector = ConnectorName::new(index.index(), connector, name);
+                findings.push(Finding::ConnectorOff { connector, error });
+            }
+        }
+    }
+
+    fn find_overlaps(&self, findings: &mut Vec<Finding>) {
+        let settings = self.rigid_settings();
+        // Without contact forces bodies sink a little between impacts.
+        if settings.collisions && settings.impulse_step.is_none() {
+            self.overlaps(self.pairs_that_pass(), findings);
+        }
+    }
+
+    /// Overlaps of all but some pairs.
+    fn overlaps(&self, excluded: &[(BodyId, BodyId)], findings: &mut Vec<Finding>) {
+        let allowed = GAPS * self.tolerances().target_gap;
+        let pose = |body: BodyId| self.state(body).pose();
+        let boxes = self.bodies().map(|body| (self.shape(body).bounds_at(&pose(body)), self.is_fixed(body)));
+        for (a, b) in near_pairs(boxes, excluded) {
+            let depth = overlap_depth(self.shape(a), &pose(a), self.shape(b), &pose(b));
+            if let Some(depth) = depth.filter(|depth| *depth > allowed) {
+                let [first, second] = [a, b].map(|body| self.name(body).to_owned());
+                findings.push(Finding::Overlap { first, second, depth });
+            }
+        }
+    }
+
+    fn find_open_books(&self, turned_over: f64, findings: &mut Vec<Finding>) {
+        let settings = self.rigid_settings();
+        // Steps of a given length err by what they err.
+        if settings.projection && settings.method.is_adaptive() {
+            let share = TOLERANCES * settings.steps.local_error + ROUNDINGS;
+            findings.extend(open_books(&self.ledger(), turned_over, share));
+        }
+    }
+}
+
+/// Whether the books lack more than a part of the energy turned over [J], and more than rounding.
+fn open_books(ledger: &Ledger, turned_over: f64, share: f64) -> Option<Finding> {
+    let rounding = ROUNDINGS * (ledger.now.potential.abs() + ledger.start.abs());
+    let error = ledger.integration_error().abs();
+    let is_open = error.is_nan() || error > share * turned_over + rounding;
+    is_open.then_some(Finding::OpenBooks { error, turned_over })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Energy;
+    use crate::{BodySpec, ConnectorSpec, Stabilization, WorldBuilder, WorldSettings};
+    use glam::DVec2;
+    use halfgap_collision::{Anchor, BodyState, Connector, ConnectorKind};
+    use halfgap_geometry::Shape;
+
+    fn disc(name: &str, x: f64) -> BodySpec {
+        let shape = Shape::disc(0.5).expect("a fine radius");
+        let state = BodyState { position: DVec2::new(x, 0.0), ..BodyState::default() };
+        BodySpec::movable(name, shape, 1.0, state)
+    }
+
+    #[test]
+    fn books_that_lack_more_than_steps_may_err_are_open() {
+        let now = Energy { kinetic: 3.0, potential: 1.0 };
+        let ledger = Ledger { now, start: 5.0, impacts: -0.9, ..Ledger::default() };
+        assert_eq!(open_books(&ledger, 4.0, 0.05), None);
+        let found = open_books(&ledger, 4.0, 0.01).map(|finding| finding.to_string());
+        let expected = "the energy books do not close: 0.1 J of 4 J turned over are not accounted for";
+        assert_eq!(found.as_deref(), Some(expected));
+    }
+
+    #[test]
+    fn bodies_that_overlap_are_named_unless_they_may() {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let [a, b] = [("a", 0.0), ("b", 0.75)].map(|(name, x)| builder.add(disc(name, x)));
+        builder.let_pass(a, b);
+        let world = builder.build().expect("they pass through each other");
+        assert_eq!(world.findings(0.0), []);
+        let mut findings = Vec::new();
+        world.overlaps(&[], &mut findings);
+        let [Finding::Overlap { first, second, depth }] = findings.as_slice() else { panic!("{findings:?}") };
+        assert_eq!([first.as_str(), second.as_str()], ["a", "b"]);
+        assert!((depth - 0.25).abs() < 1e-12, "{depth}");
+    }
+
+    #[test]
+    fn a_connector_that_has_drifted_off_is_named() {
+        let settings = WorldSettings { stabilization: Stabilization::None, ..WorldSettings::default() };
+        let mut builder = WorldBuilder::new(settings);
+        let body = builder.add(disc("bob", 1.0));
+        let [a, b] =
+            [(BodyId::WORLD, DVec2::ZERO), (body, DVec2::ZERO)].map(|(body, point)| Anchor { body, point });
+        let rod = Connector::new(ConnectorKind::Rod { a, b, length: 1.0 }, 0.0).expect("a fine rod");
+        builder.add_connector(ConnectorSpec::new(rod));
+        builder.add_gravity(body, DVec2::new(0.0, -10.0));
+        let mut world = builder.build().expect("it hangs");
+        world.advance_to(10.0, &mut |_| ()).expect("it swings");
+        // Nobody promised that it would stay.
+        assert_eq!(world.findings(10.0), []);
+        let mut findings = Vec::new();
+        world.connectors_off(0.0, &mut findings);
+        let told: Vec<_> = findings.iter().map(Finding::to_string).collect();
+        let start = "at the end connector 0 (rod of \"world\" and \"bob\") is off by ";
+        assert!(told.len() == 1 && told[0].starts_with(start), "{told:?}");
+    }
+}
