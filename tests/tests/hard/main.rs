@@ -12,6 +12,7 @@ mod held;
 mod ledger;
 mod linkages;
 mod narrow;
+mod rattling;
 mod reversal;
 mod ropes;
 mod run_off;

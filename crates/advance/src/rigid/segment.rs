@@ -189,11 +189,12 @@ impl Dynamics<'_> {
         self.group.span = offset;
     }
 
-    /// The longest step [s] over which the rounding of accelerations, which grows with its square, does not matter: no
-    /// error estimate ends the steps of a group at rest.
+    /// The longest step [s] over which rounding does not matter: that of accelerations, which grows with its square and which no
+    /// error estimate sees of a group at rest, and that of the places where it ends, which all of it shares.
     fn longest_sound_step(&self) -> f64 {
-        let rounding = f64::EPSILON * self.group.free_acceleration;
-        (2.0 * ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / rounding).sqrt()
+        let allowed = ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / f64::EPSILON;
+        let of_places = allowed / self.top_speed(&self.group.state);
+        (2.0 * allowed / self.group.free_acceleration).sqrt().min(of_places)
     }
 
     /// The longest step [s] along which contacts are surely sampled well: their forces, which no error estimate sees where

@@ -1,0 +1,45 @@
+//! A light body between a wall and a heavy one that closes on it: it rattles ever faster until it has turned the heavy one
+//! back, in hundreds of impacts within what is no time for anything else.
+
+use super::{impacts, within};
+use halfgap::World;
+use halfgap::geometry::DVec2;
+use halfgap_tests::mechanism::{GRAVITY, Workshop, at_rest, block, disc, thrown};
+use std::f64::consts::PI;
+
+/// Where the light disc rests, and where the heavy one starts [m] from the wall.
+const LIGHT: f64 = 1.0;
+const HEAVY: f64 = 2.5;
+
+/// A light disc of 1 kg at rest between a wall and a heavy one that closes on it with 1 m/s. Far away a body falls, so that the
+/// scene has an acceleration.
+fn rattle(heavy: f64) -> World {
+    let mut shop = Workshop::weightless(1e-8);
+    shop.fixed("wall", block(1.0, 4.0), DVec2::new(-0.5, 0.0));
+    shop.body("light", disc(0.1), 1.0, at_rest(LIGHT, 0.0));
+    shop.body("heavy", disc(0.5), heavy, thrown(HEAVY, 0.0, DVec2::new(-1.0, 0.0)));
+    let far = shop.body("far", disc(0.1), 1.0, at_rest(-50.0, 0.0));
+    shop.builder.add_gravity(far, DVec2::new(0.0, -GRAVITY));
+    shop.build()
+}
+
+/// Impacts until the heavy disc leaves are the digits of pi where it is 100^k times as heavy (G. Galperin, "Playing pool with
+/// pi", Regular and Chaotic Dynamics 8, 2003): in velocities weighed by the roots of the masses, the two impacts of a round
+/// turn the motion by twice the angle whose tangent is the root of the ratio.
+#[test]
+fn a_light_disc_between_a_wall_and_a_heavy_one_counts_the_digits_of_pi() {
+    for (heavy, digits) in [(1e4, 314), (1e6, 3141), (1e8, 31415)] {
+        let mut world = rattle(heavy);
+        // The heavy disc turns back once and is then as fast as before; the light one, slower, may take its time for the last.
+        let count = impacts(&mut world, 20.0);
+        assert_eq!(count, digits, "{heavy:e} times as heavy");
+        let body = world.find("heavy").expect("it is there");
+        let angle = (1.0 / heavy).sqrt().atan();
+        let hits = count.div_ceil(2) as f64;
+        let speed = -(2.0 * hits * angle).cos();
+        let what = format!("light disc between a wall and one {heavy:e} times as heavy: speed [m/s]");
+        within(&what, world.state(body).velocity.x - speed, 1e-10);
+        assert!((PI / angle - count as f64) < 1.0, "the angle tells the same");
+        assert_eq!(world.ledger().captures, 0.0);
+    }
+}
