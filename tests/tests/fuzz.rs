@@ -141,6 +141,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         100_504,
         "a disc slid along without any force: its step was months long, and its rounding let it go into what it met",
     ),
+    (
+        112_916,
+        "a corner took over from an edge for a moment, began beyond its end by rounding, and was not seen to hand back: a body went through a needle",
+    ),
     (1_331_049, "a target gap near the rounding of coordinates"),
 ];
 

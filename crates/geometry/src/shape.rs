@@ -163,6 +163,22 @@ impl Shape {
         })
     }
 
+    /// The edges that end and start at a corner; `None` for an edge.
+    #[must_use]
+    pub fn sides_of(&self, feature: FeatureId) -> Option<[FeatureId; 2]> {
+        let FeatureSource { path, edge, kind } = self.source(feature);
+        if kind != FeatureKind::Vertex {
+            return None;
+        }
+        let before = if edge == 0 { self.paths[path as usize].edges().len() as u32 } else { edge } - 1;
+        let whole = |edge: u32| {
+            let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
+            let place = self.sources.partition_point(|source| source <= &corner);
+            FeatureId(u32::try_from(place).unwrap_or(u32::MAX))
+        };
+        Some([before, edge].map(whole))
+    }
+
     /// The bounding tree over the features.
     #[must_use]
     pub fn tree(&self) -> &FeatureTree {

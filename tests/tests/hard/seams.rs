@@ -105,3 +105,25 @@ fn a_block_slides_over_crates_that_stand_side_by_side() {
         within(&format!("block over two crates, tolerance {tolerance:e}: speed"), lost, 1e-3);
     }
 }
+
+/// A block slides from a fixed table onto carts beside it, all as high as the table: each stands its gap above the floor, as the
+/// block does above the table, so that its corner comes at the height of theirs.
+#[test]
+fn a_block_slides_from_a_table_onto_carts_of_the_same_height() {
+    for (tolerance, way, room) in [(1e-6, 1.0, 0.0), (1e-8, -1.0, 0.0), (1e-8, 1.0, 0.1), (1e-10, -1.0, 0.1)]
+    {
+        let mut shop = Workshop::new(tolerance);
+        shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
+        shop.fixed("table", block(2.0, 1.0), DVec2::new(-way, 0.5));
+        let carts = [1.0, 3.0]
+            .map(|x| shop.body(&format!("cart {x}"), block(2.0, 1.0), 4.0, at_rest(way * (x + room), 0.5)));
+        let slider = shop.body("block", block(0.4, 0.2), 1.0, sliding(DVec2::new(-0.8 * way, 1.1), way));
+        let mut world = shop.build();
+        advance(&mut world, 4.0);
+        let what = format!("block from table to carts {room} m away, tolerance {tolerance:e}: speed [m/s]");
+        within(&what, world.state(slider).velocity.x - way, tolerance);
+        for cart in carts {
+            within(&format!("{what} of a cart"), world.state(cart).velocity.x, tolerance);
+        }
+    }
+}

@@ -41,6 +41,24 @@ pub(crate) fn early_fall(
     Some(close(above, (early_node(index, span), values[index]), span, f))
 }
 
+/// The first offset up to the first node at which `f` has fallen below zero after it was not below at an early node, the last
+/// such; for what is below zero at the start, if only by rounding, and at the first node.
+pub(crate) fn fall_after_rise(
+    values: &[f64; NODES],
+    span: f64,
+    mut f: impl FnMut(f64) -> f64,
+) -> Option<f64> {
+    if values[0] >= 0.0 || values[1] >= 0.0 {
+        return None;
+    }
+    let above = (0..EARLY).rev().find_map(|index| {
+        let offset = early_node(index, span);
+        let value = f(offset);
+        (value >= 0.0).then_some((offset, value))
+    })?;
+    Some(close(above, (node(1, span), values[1]), span, f))
+}
+
 /// Offset [s] of a node of a segment of the given span.
 pub(crate) fn node(index: usize, span: f64) -> f64 {
     if index + 1 == NODES { span } else { span * (index as f64 / (NODES - 1) as f64) }
@@ -175,6 +193,21 @@ mod tests {
         let fall = sampled(1.0, |t| (t - 0.6) * (t - 0.6) - 1e-3).expect("it dips");
         assert!((fall - (0.6 - 1e-3f64.sqrt())).abs() < 1e-12);
         assert_eq!(sampled(1.0, |t| (t - 0.6) * (t - 0.6) + 1e-3), None);
+    }
+
+    #[test]
+    fn what_comes_in_from_just_beyond_and_leaves_before_the_first_node_is_found() {
+        let after_rise = |room: f64| {
+            let f = |t: f64| t * (room - t) - 1e-18;
+            fall_after_rise(&std::array::from_fn(|index| f(node(index, 2.0))), 2.0, f)
+        };
+        for room in [0.3, 0.13, 0.01] {
+            let fall = after_rise(room).expect("it leaves");
+            assert!((fall - room).abs() < 1e-12 && fall >= room, "{fall}");
+        }
+        // What only goes farther beyond has not been within, and what is within at the first node has not left.
+        assert_eq!(after_rise(-0.1), None);
+        assert_eq!(after_rise(1.0), None);
     }
 
     #[test]

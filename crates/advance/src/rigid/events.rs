@@ -85,7 +85,7 @@ impl RigidSystem {
         features: [FeatureId; 2],
     ) -> Result<bool, AdvanceError> {
         let bodies = self.pairs.get(pair).bodies;
-        if self.sinks(pair, features) {
+        if self.sinks(pair, features) || self.passes_over(pair, features) {
             return Ok(false);
         }
         let repeats = self.note_repeat(pair)?;

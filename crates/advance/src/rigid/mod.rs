@@ -23,6 +23,7 @@ mod dynamics;
 mod error;
 mod events;
 mod extending;
+mod flush;
 mod flyer;
 mod group;
 mod groups;

@@ -154,7 +154,10 @@ impl RigidSystem {
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
         let bodies = [first.id, second.id];
         let takes_over = region.run_off.is_some_and(|run_off| run_off.bodies == bodies);
-        fresh.retain(|record| self.counts_as_touching(record, bodies, region.at_start, takes_over));
+        fresh.retain(|record| {
+            self.counts_as_touching(record, bodies, region.at_start, takes_over)
+                && !self.is_passed_over(record)
+        });
         if let Some(fired) = region.fired.filter(|fired| fired.bodies == [first.id, second.id])
             && !fresh.iter().any(|record| touch_of(record, fired.bodies) == Some(fired))
         {

@@ -5,7 +5,9 @@
 //! when the time comes up to which none can vanish.
 
 use super::brief::Stepping;
-use super::crossing::{EARLY, NODES, early_fall, early_node, first_fall, first_fall_before, node};
+use super::crossing::{
+    EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
+};
 use super::dynamics::Dynamics;
 use super::group::{Group, SegmentEnd, Stop};
 use super::law::Snapshot;
@@ -113,6 +115,7 @@ impl Dynamics<'_> {
         let mut earliest: Option<(f64, SegmentEnd)> = None;
         let samples = self.sample_rows();
         self.find_early_sinking(&mut earliest, &samples);
+        self.find_early_change(&mut earliest, &samples.rooms);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
@@ -273,6 +276,20 @@ impl Dynamics<'_> {
             self.place_at(offset);
             if self.is_within(row) {
                 *earliest = Some((offset, SegmentEnd::Sink(row)));
+            }
+        }
+    }
+
+    /// The earliest contact that comes onto its features and runs off again before the first node: what has just taken over from its
+    /// neighbour starts at the end of its features, or beyond by rounding.
+    fn find_early_change(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, rooms: &[[f64; NODES]]) {
+        for (row, values) in rooms.iter().enumerate() {
+            let fall = fall_after_rise(values, self.group.span, |offset| {
+                self.place_at(offset);
+                self.room(row)
+            });
+            if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
+                *earliest = Some((offset, SegmentEnd::Change(row)));
             }
         }
     }

@@ -320,4 +320,19 @@ proptest! {
             prop_assert_eq!(shape.ends_of(id), ends);
         }
     }
+
+    #[test]
+    fn the_sides_of_a_corner_are_the_edges_that_end_and_start_there(shape in any_shape()) {
+        for id in (0..shape.features().len()).map(|index| FeatureId(index as u32)) {
+            if shape.source(id).kind != FeatureKind::Vertex {
+                prop_assert_eq!(shape.sides_of(id), None);
+                continue;
+            }
+            let place = shape.edge_of(id).from();
+            let sides = shape.sides_of(id).expect("a corner has sides");
+            prop_assert!(sides.iter().all(|&side| shape.source(side).kind != FeatureKind::Vertex));
+            let ends = [shape.edge_of(sides[0]).to(), shape.edge_of(sides[1]).from()];
+            prop_assert_eq!(ends, [place; 2]);
+        }
+    }
 }
