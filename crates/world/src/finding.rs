@@ -11,7 +11,7 @@ use crate::world::World;
 use crate::world_error::ConnectorName;
 use halfgap_collision::{BodyId, ConnectorId};
 
-/// How far off a connector may be, and how much of the energy turned over the books may lack, in tolerances.
+/// How far off a connector may be, and how much of the energy turned over the books may lack, in errors of a step.
 const TOLERANCES: f64 = 1e3;
 /// The same in roundings of the coordinates and of the energies.
 const ROUNDINGS: f64 = 1e6 * f64::EPSILON;
@@ -82,11 +82,14 @@ impl World {
     }
 
     fn find_connectors_off(&self, findings: &mut Vec<Finding>) {
-        let settings = self.rigid_settings();
-        if settings.projection {
-            let share = TOLERANCES * settings.steps.local_error + ROUNDINGS;
-            self.connectors_off(share, findings);
+        if self.rigid_settings().projection {
+            self.connectors_off(self.allowed_share(), findings);
         }
+    }
+
+    /// Part of the largest coordinate, and of the energy turned over, that steps may leave.
+    fn allowed_share(&self) -> f64 {
+        TOLERANCES * self.rigid_settings().steps.local_error + ROUNDINGS
     }
 
     /// Connectors that are off by more than a part of the largest coordinate.
@@ -132,8 +135,7 @@ impl World {
         let settings = self.rigid_settings();
         // Steps of a given length err by what they err.
         if settings.projection && settings.method.is_adaptive() {
-            let share = TOLERANCES * settings.steps.local_error + ROUNDINGS;
-            findings.extend(open_books(&self.ledger(), turned_over, share));
+            findings.extend(open_books(&self.ledger(), turned_over, self.allowed_share()));
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::ode::Stepper;
 
 /// Shorter steps that are tried for one that keeps to its rows.
 const SHORTENINGS: usize = 2;
-/// Cap on them where bodies would overlap otherwise, which is so beyond so many allowed errors, while each leaves less than
-/// so much of it.
+/// Cap on them where the dense output errs by more than so many times what is allowed, so that bodies would overlap, as long as
+/// each leaves less than so much of the error.
 const MOST_SHORTENINGS: usize = 8;
 const DEEP: f64 = 4.0;
 const WORTHWHILE: f64 = 0.5;

@@ -19,6 +19,9 @@ const NEAR: f64 = 4.0;
 /// What passes rises or sinks by less than this part of its way.
 const LEVEL: f64 = 1e-3;
 
+/// Pairs of features, of the lesser body first.
+type Passing = [Option<[FeatureId; 2]>; 4];
+
 /// A corner of a body in motion.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
@@ -36,10 +39,10 @@ impl RigidSystem {
     /// on.
     pub(crate) fn passes_over(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let bodies = self.pairs.get(pair).bodies;
-        let Some(blunt) = self.flush_corners(bodies, features) else { return false };
+        let Some(passing) = self.passing_features(bodies, features) else { return false };
         self.pairs.change_rules(pair, |rules| {
-            let pairs = blunt[0].into_iter().flat_map(|a| blunt[1].map(|b| [a, b]));
-            rules.extend(pairs.map(|features| FeatureRule { features, target: None }));
+            rules
+                .extend(passing.into_iter().flatten().map(|features| FeatureRule { features, target: None }));
         });
         self.predict(pair);
         true
@@ -49,12 +52,12 @@ impl RigidSystem {
     pub(crate) fn is_passed_over(&self, record: &Collision) -> bool {
         record.motion.normal_velocity < -self.rest_speed()
             && Touch::of(record)
-                .is_some_and(|touch| self.flush_corners(touch.bodies, touch.features).is_some())
+                .is_some_and(|touch| self.passing_features(touch.bodies, touch.features).is_some())
     }
 
-    /// The corners of two bodies that pass over each other where two features meet, each with the side that would run against the
-    /// other.
-    fn flush_corners(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<[[FeatureId; 2]; 2]> {
+    /// The pairs of features that do not run against each other where two features meet, these among them: those of corners that
+    /// pass over each other.
+    fn passing_features(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<Passing> {
         let corners = [0, 1].map(|side: usize| {
             let moving = self.flyer(bodies[side]).moving_at(self.now);
             self.corners_at(bodies[side], &moving, features[side])
@@ -62,15 +65,15 @@ impl RigidSystem {
         let firsts = corners[0].iter().flatten();
         let mut meetings =
             firsts.flat_map(|first| corners[1].iter().flatten().map(move |second| [first, second]));
-        meetings.find_map(|corners| {
-            let flush = self.flush_sides(corners)?;
+        meetings.find_map(|[a, b]| {
+            let flush = self.flush_sides([a, b])?;
             // Where one body lies over the other already, only the corners are in each other's way.
             let is_ahead = flush[0] == flush[1];
-            let blunt = [0, 1].map(|side: usize| {
-                let Corner { id, sides, .. } = *corners[side];
-                [id, if is_ahead { sides[1 - flush[side]] } else { id }]
-            });
-            (0..2).all(|side| blunt[side].contains(&features[side])).then_some(blunt)
+            let [side_a, side_b] = [a.sides[1 - flush[0]], b.sides[1 - flush[1]]];
+            let with_sides = [[a.id, side_b], [side_a, b.id], [side_a, side_b]];
+            let with_sides = with_sides.map(|features| is_ahead.then_some(features));
+            let passing = [Some([a.id, b.id]), with_sides[0], with_sides[1], with_sides[2]];
+            passing.contains(&Some(features)).then_some(passing)
         })
     }
 

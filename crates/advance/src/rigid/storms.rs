@@ -11,10 +11,10 @@ use crate::time::Time;
 /// Events of a body within the resolution time that are always allowed, and those for each row beyond them.
 const CALM_EVENTS: usize = 20;
 const CALM_EVENTS_PER_ROW: usize = 10;
-/// So many times as many are allowed of such events before which bodies came towards each other by more than so many target
-/// gaps: a light body between heavy ones that close on it rattles ever faster until it has turned them back.
-const CALM_WIDE_EVENTS: usize = 50;
+/// An event is wide if its bodies came towards each other by more than so many target gaps since the one before: a light body between
+/// heavy ones that close on it rattles ever faster until it has turned them back. Of wide ones so many times as many are allowed.
 const WIDE: f64 = 100.0;
+const CALM_WIDE_EVENTS: usize = 50;
 
 /// Recent events of one body.
 #[derive(Clone, Copy, Debug, Default)]
