@@ -146,7 +146,32 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a corner took over from an edge for a moment, began beyond its end by rounding, and was not seen to hand back: a body went through a needle",
     ),
     (1_331_049, "a target gap near the rounding of coordinates"),
+    (
+        17_355,
+        "a light disc that whips through a dead point was fitted to its rows where it had been before they moved it, and lost energy",
+    ),
+    (109_094, "the same of a hundred microjoules"),
+    (
+        104_325,
+        "a light crank between a pin and a heavy body: the rod between them was softened where its own square, not the heavy body's, drowned the rest",
+    ),
+    (50_866, "the same with a fourteenth of all energy"),
+    (2_055_199, "the same of three bodies"),
 ];
+
+/// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little.
+const BEYOND_ROUNDING: &[(u64, &str)] = &[
+    (20_433, "bodies that attract each other pass at micrometres, 70 km from the origin"),
+    (1_903_810, "a tiny body on two ropes that whips as they come to one line"),
+];
+
+#[test]
+fn what_rounding_decides_ends_in_an_error() {
+    for &(seed, what) in BEYOND_ROUNDING {
+        let verdict = trial(&scene_of_seed(seed).to_string(), PATIENT);
+        assert!(matches!(verdict, Verdict::Stopped(_)), "{seed}, {what}: {verdict:?}");
+    }
+}
 
 #[test]
 fn what_was_broken_once_holds() {

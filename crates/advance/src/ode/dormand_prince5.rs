@@ -12,6 +12,7 @@ pub(super) const DORMAND_PRINCE5: Tableau = Tableau {
     needs_end_rates: true,
     dense_stages: &[],
     dense_rows: &[&DENSE_5],
+    swing: None,
 };
 
 const STAGES: [Stage; 5] = [

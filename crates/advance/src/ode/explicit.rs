@@ -1,7 +1,7 @@
 //! A step of an explicit method, from the tableau of its coefficients.
 
 use super::tableau::{Stage, Tableau, Term};
-use super::{Ode, Point};
+use super::{Ode, Point, Stiffness};
 
 /// Components that are handled together. The last lane is padded with numbers that nobody reads.
 pub(super) type Lane = [f64; WIDTH];
@@ -160,8 +160,8 @@ impl Explicit {
 
     /// Size of the system's fastest rate times the step, by the difference between the last stage and the end, both of
     /// which are at the end of the step: HNW's (2.26) in "Solving Ordinary Differential Equations II", IV.2.
-    pub(super) fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> f64 {
-        let Some(last) = self.tableau.stages.last() else { return 0.0 };
+    pub(super) fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> Stiffness {
+        let Some(last) = self.tableau.stages.last() else { return Stiffness::default() };
         let place = self.tableau.stages.len();
         self.move_along(last.terms);
         let rates = &self.rates.as_flattened()[WIDTH * place * self.lanes..][..self.size];
@@ -171,7 +171,10 @@ impl Explicit {
             let state = (self.trial.as_flattened()[component] - end.state[component]) / scale;
             (of_rates, of_states) = (of_rates + rate * rate, of_states + state * state);
         }
-        if of_states > 0.0 { self.length.abs() * (of_rates / of_states).sqrt() } else { 0.0 }
+        let told = if of_states > 0.0 { self.length.abs() * (of_rates / of_states).sqrt() } else { 0.0 };
+        let swing = self.tableau.swing.as_ref().filter(|swing| told >= swing.from);
+        let dense_error = swing.map_or(0.0, |swing| swing.by * (of_states / scales.len() as f64).sqrt());
+        Stiffness { told, dense_error }
     }
 
     fn error(&self, row: usize) -> &[f64] {

@@ -57,7 +57,7 @@ mod through;
 pub use control::Accepted;
 pub use method::Method;
 pub use polynomial::{Jet, SegmentPolynomial, Spread};
-pub use stepper::Stepper;
+pub use stepper::{Stepper, Stiffness};
 
 /// A system of ordinary differential equations `y' = f(t, y)`.
 pub trait Ode {

@@ -7,6 +7,17 @@ use super::radau::Radau;
 use super::{Ode, Point};
 use std::ops::Range;
 
+/// How fast the fastest part of a system is, as a step of it tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stiffness {
+    /// Size of the fastest rate times the step: an explicit method is held up by what is fast rather than by its errors when
+    /// this comes to [`Method::stability_limit`].
+    pub told: f64,
+    /// Size of the error that this makes of the motion along the step, in the units of [`Stepper::error_norm`], which does not
+    /// tell it; 0 where nothing is that fast. The end of the step may be right all the same.
+    pub dense_error: f64,
+}
+
 /// Goes steps of a method; keeps the stages of the last one.
 ///
 /// Systems of any size may follow each other; memory is asked for only by one larger than all before.
@@ -103,14 +114,13 @@ impl Stepper {
         }
     }
 
-    /// Estimates the size of the fastest rate of the system times the last step, where `end` is the state at its end with
-    /// its rates: an explicit method is held up by what is fast rather than by its errors when this comes to
-    /// [`Method::stability_limit`].
+    /// Estimates how fast the fastest part of the system is, where `end` is the state at the end of the last step with its
+    /// rates, and what that does to the motion along the step.
     #[must_use]
-    pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> f64 {
+    pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> Stiffness {
         match &mut self.kind {
             Kind::Explicit(explicit) => explicit.stiffness(end, scales),
-            Kind::Implicit(radau) => radau.stiffness(),
+            Kind::Implicit(radau) => Stiffness { told: radau.stiffness(), dense_error: 0.0 },
         }
     }
 

@@ -23,6 +23,15 @@ pub(super) struct Stage {
     pub(super) terms: &'static [Term],
 }
 
+/// How dense output goes wrong at the limit of stability, where the error estimate does not tell: what decays so fast that
+/// its rate times the step is `from` or more makes it err by up to `by` times the difference between the last stage and the
+/// end.
+#[derive(Debug)]
+pub(super) struct Swing {
+    pub(super) from: f64,
+    pub(super) by: f64,
+}
+
 /// The coefficients of a method.
 #[derive(Debug)]
 pub(super) struct Tableau {
@@ -38,6 +47,8 @@ pub(super) struct Tableau {
     pub(super) dense_stages: &'static [Stage],
     /// Weights of `c5`, `c6`, ...
     pub(super) dense_rows: &'static [&'static [Term]],
+    /// `None` if dense output errs by no more than the error estimate there.
+    pub(super) swing: Option<Swing>,
 }
 
 impl Tableau {
@@ -53,7 +64,15 @@ impl Tableau {
 }
 
 const fn fixed(stages: &'static [Stage], weights: &'static [Term]) -> Tableau {
-    Tableau { stages, weights, errors: &[], needs_end_rates: false, dense_stages: &[], dense_rows: &[] }
+    Tableau {
+        stages,
+        weights,
+        errors: &[],
+        needs_end_rates: false,
+        dense_stages: &[],
+        dense_rows: &[],
+        swing: None,
+    }
 }
 
 /// Along the rates at the start.

@@ -3,7 +3,7 @@
 use super::dynamics::Dynamics;
 use super::segment::StepFailure;
 use super::system::RigidSettings;
-use crate::ode::Stepper;
+use crate::ode::{Stepper, Stiffness as Told};
 
 /// Shorter steps that are tried for one that keeps to its rows.
 const SHORTENINGS: usize = 2;
@@ -24,8 +24,8 @@ impl Dynamics<'_> {
     /// Extends the group by a step, with what ends it early.
     pub(crate) fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         if !self.group.is_unwatched {
-            self.extend_on_rows(tools)?;
-            self.note_stiffness(tools);
+            let told = self.extend_on_rows(tools)?;
+            self.note_stiffness(tools, told);
             self.find_event();
             return Ok(());
         }
@@ -33,7 +33,8 @@ impl Dynamics<'_> {
         self.end_on_rows(tools);
         self.follow_rails();
         self.evaluate_end();
-        self.note_stiffness(tools);
+        let told = self.tell_stiffness(tools);
+        self.note_stiffness(tools, told);
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
         (self.group.event, self.group.look) = (None, None);
         self.group.largest_error = self.stage.gap_error;
@@ -46,8 +47,9 @@ impl Dynamics<'_> {
         self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
     }
 
-    /// Extends the group by a step whose dense output keeps to the held rows, too: shorter ones are tried until it does.
-    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not swing:
+    /// shorter ones are tried until it does. Tells how fast the fastest part is, if somebody has looked.
+    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
         let (mut proposed, mut before) = (None, f64::INFINITY);
@@ -59,46 +61,25 @@ impl Dynamics<'_> {
             self.make_dense(tools.stepper);
             let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
             let proposed = *proposed.get_or_insert(self.group.next_step);
+            let told = self.tell_stiffness(tools);
             if is_free {
-                break;
+                return Ok(told);
             }
+            let swing = told.map_or(0.0, |told| told.dense_error);
+            let excess = excess.max(swing).max(self.lost_energy(&steps));
             let is_worthwhile = excess > DEEP && excess < WORTHWHILE * before && tries < MOST_SHORTENINGS;
             before = excess;
             if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
                 // What shorter steps do not mend is rounding, or rows that contradict each other.
                 self.group.next_step = proposed;
-                break;
+                return Ok(told);
             }
             self.limit_next_step(tools.stepper.method().step_factor(excess));
             if excess <= 1.0 {
-                break;
+                return Ok(told);
             }
         }
-        Ok(())
-    }
-
-    /// Projects the end onto the held rows and notes what energy that took.
-    pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) {
-        let settings = tools.settings;
-        self.group.projected = 0.0;
-        let needs_none = self.group.rows.is_empty() || self.group.tree.holds_all();
-        if needs_none || !(settings.projection || settings.joint_small_impacts) {
-            return;
-        }
-        let before = self.end_energy();
-        if settings.projection {
-            self.project_end(&settings.steps);
-        } else {
-            self.fit_joint_velocities();
-        }
-        self.group.projected = self.end_energy() - before;
-    }
-
-    fn end_energy(&mut self) -> f64 {
-        let end = std::mem::take(&mut self.group.end_state);
-        let energy = self.energy(&end);
-        self.group.end_state = end;
-        energy
+        Ok(None)
     }
 }
 

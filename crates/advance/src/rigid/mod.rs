@@ -3,7 +3,7 @@
 //!
 //! What moves: `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
-//! motion, `tree` the same where they hang together by pins, `segment` one step of them, `brief` and `stiff` which method makes it, `kinks` of
+//! motion, `tree` the same where they hang together by pins, `segment` one step of them, `energy` what it may not lose, `brief` and `stiff` which method makes it, `kinks` of
 //! splines end it, `extending` adds it to the group, `deferred` puts it off until somebody looks, `watch` (with `crossing`) finds what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
@@ -20,6 +20,7 @@ mod crossing;
 mod cutting;
 mod deferred;
 mod dynamics;
+mod energy;
 mod error;
 mod events;
 mod extending;

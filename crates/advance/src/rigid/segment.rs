@@ -33,6 +33,9 @@ const PROJECTIONS: usize = 5;
 /// The same where rows share what they hold, which converges more slowly, while each leaves less than so much of the error.
 const SOFT_PROJECTIONS: usize = 20;
 const WORTHWHILE: f64 = 0.5;
+/// Bodies that move by so many times the error of their rows have other rates there: rows that all but depend on each other
+/// carry forces that do work on what is left of them.
+const FAR: f64 = 8.0;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
 /// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
@@ -299,8 +302,7 @@ impl Dynamics<'_> {
     /// Error [J] of a work that is just acceptable: what errors of velocities, just acceptable too, make of the energy. Works
     /// mostly err by far less, but where the motion is simple, as under a constant force, nothing else may err at all.
     fn work_scale(&self, control: &StepControl) -> f64 {
-        let flyers = self.physics.mechanism.flyers;
-        let masses = self.group.bodies.iter().map(|body| 1.0 / flyers[body.index()].body().inverse_mass);
+        let masses = self.group.bodies.iter().map(|&body| self.mass(body));
         let speed = self.speed(control);
         control.local_error * speed * speed * masses.sum::<f64>()
     }
@@ -377,7 +379,7 @@ impl Dynamics<'_> {
         let mut rates = std::mem::take(&mut self.stage.rates);
         let is_soft = self.group.held.is_soft();
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
-        let mut before = f64::INFINITY;
+        let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
             self.stage.load(&self.group.bodies, &end);
             let mut offsets = std::mem::take(&mut self.stage.offsets);
@@ -392,10 +394,12 @@ impl Dynamics<'_> {
             self.respond();
             // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask for more than
             // what holds near here, and for what rounding makes of their gaps.
-            if self.largest_change().powi(2) > error * length {
+            let way = self.largest_change();
+            if way.powi(2) > error * length {
                 break;
             }
             self.change(&mut end, 0);
+            is_far = way > FAR * error;
             // Newton's method squares the relative error.
             let is_enough = if is_soft {
                 error <= f64::EPSILON * length || (round > 0 && error > WORTHWHILE * before)
@@ -406,6 +410,11 @@ impl Dynamics<'_> {
                 break;
             }
             before = error;
+        }
+        if is_far {
+            self.stage.load(&self.group.bodies, &end);
+            rates.clear();
+            self.factorize(|_, rate| rates.push(rate));
         }
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&rates);
@@ -481,26 +490,6 @@ impl Dynamics<'_> {
             let point = body_state(end_state, bodies.len(), place).pose().point_to_world(anchor.point);
             row.hint = Some(path.hint_near(point, Some(hint)).staying());
         }
-    }
-
-    /// Energy [J] of the group's bodies in a state, as far as it has a potential.
-    pub(crate) fn energy(&mut self, state: &[f64]) -> f64 {
-        let count = self.group.bodies.len();
-        let mut energy = 0.0;
-        for (place, &body) in self.group.bodies.iter().enumerate() {
-            let flyer = &self.physics.mechanism.flyers[body.index()];
-            let (inertia, state) = (flyer.body(), body_state(state, count, place));
-            energy += 0.5 * state.velocity.length_squared() / inertia.inverse_mass;
-            energy += 0.5 * state.angular_velocity * state.angular_velocity / inertia.inverse_moment;
-            energy -= flyer.law().acceleration.dot(state.position) / inertia.inverse_mass;
-        }
-        if self.group.laws.is_empty() {
-            return energy;
-        }
-        self.stage.load(&self.group.bodies, state);
-        let now = super::law::Snapshot::new(self.start.seconds(), &self.stage.movings);
-        let laws = self.group.laws.iter().map(|&law| &self.physics.laws[law]);
-        energy + laws.filter_map(|law| law.potential(&now)).sum::<f64>()
     }
 
     /// Dense output of the last step, into the group's paths.

@@ -5,7 +5,7 @@ use super::brief::Stepping;
 use super::dynamics::Dynamics;
 use super::extending::Tools;
 use super::group::Group;
-use crate::ode::{Method, Point};
+use crate::ode::{Method, Point, Stiffness as Told};
 use glam::DVec2;
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
@@ -86,23 +86,30 @@ fn cost(numbers: usize) -> f64 {
 }
 
 impl Dynamics<'_> {
-    /// Notes how fast the fastest part of the group is, after a step whose end has its rates.
-    pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>) {
+    /// How fast the fastest part of the group is, as a step tells whose end has its rates; `None` where nobody looks.
+    pub(crate) fn tell_stiffness(&mut self, tools: &mut Tools<'_>) -> Option<Told> {
         if !tools.settings.method.is_adaptive() || self.group.is_brief {
-            return;
+            return None;
         }
-        let Stiffness { wait, looked, .. } = self.group.stiffness;
-        if wait > 0 && self.group.span >= SHRUNK * looked {
+        let Stiffness { wait, looked, rate, .. } = self.group.stiffness;
+        let is_far = |limit: f64| rate * self.group.span < FAR * limit;
+        let is_far = tools.stepper.method().stability_limit().is_none_or(is_far);
+        if wait > 0 && is_far && self.group.span >= SHRUNK * looked {
             self.group.stiffness.wait -= 1;
-            return;
+            return None;
         }
         self.group.stiffness.looked = self.group.span;
-        let told = if self.group.tree.is_used() {
+        Some(if self.group.tree.is_used() {
             self.stiffness_of_tree(tools.stepper, tools.scales)
         } else {
             let Group { end_state, end_rates, span, .. } = &*self.group;
             tools.stepper.stiffness(Point { offset: *span, state: end_state, rates: end_rates }, tools.scales)
-        };
+        })
+    }
+
+    /// Notes how fast the fastest part of the group is, after a step that told it.
+    pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>, told: Option<Told>) {
+        let Some(Told { told, .. }) = told else { return };
         self.probe(tools);
         let numbers = self.group.numbers();
         let rate = told / self.group.span;

@@ -62,7 +62,8 @@ impl JointTree {
         self.rest.columns = columns;
     }
 
-    /// J M^-1 J^T of a row by itself, without pins.
+    /// J M^-1 J^T of a row by itself, without pins, on the heavier of its sides: what a light body may add, it often cannot,
+    /// because it hangs on a pin that the row points to.
     fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
         let of_side = |(side, place): (usize, Option<u32>)| {
             let Some(link) =
@@ -74,7 +75,8 @@ impl JointTree {
             let torque = jacobian[3 * side + 2];
             force.length_squared() / link.mass + torque * torque / link.moment
         };
-        sides.into_iter().enumerate().map(of_side).sum()
+        let squares = sides.into_iter().enumerate().map(of_side).filter(|&square| square > 0.0);
+        squares.min_by(f64::total_cmp).unwrap_or(0.0)
     }
 
     /// Accelerations of the tree, body by body of the group, under a force of 1 N along a row.

@@ -1,7 +1,7 @@
 //! Steps of a group in the coordinates of its tree.
 
 use super::Hinge;
-use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
+use crate::ode::{Ode, Point, SegmentPolynomial, Stepper, Stiffness};
 use crate::rigid::dynamics::Dynamics;
 use crate::rigid::group::Group;
 use glam::DVec2;
@@ -120,7 +120,7 @@ impl Dynamics<'_> {
     }
 
     /// How fast the fastest part of the tree is, as the stepper tells it of its last step.
-    pub(crate) fn stiffness_of_tree(&mut self, stepper: &mut Stepper, scales: &[f64]) -> f64 {
+    pub(crate) fn stiffness_of_tree(&mut self, stepper: &mut Stepper, scales: &[f64]) -> Stiffness {
         self.group.gather_end();
         let Group { tree, span, .. } = &*self.group;
         stepper.stiffness(Point { offset: *span, state: &tree.end, rates: &tree.end_rates }, scales)
