@@ -239,7 +239,7 @@ fn slot_beside_a_pin(masses: [f64; 2], second: On, normal: DVec2) -> Scene {
 fn what_softness_leaves_lacking_is_made_good() {
     // A slot that pushes bodies all but towards their pins keeps some millionths of its square.
     const KEPT: f64 = 1e-5;
-    let mut scene = slot_beside_a_pin([1.0, 2.0], On::World, DVec2::new(2.0, 1.01));
+    let scene = slot_beside_a_pin([1.0, 2.0], On::World, DVec2::new(2.0, 1.01));
     let (by_rows, by_tree, coordinates, kept) = scene.accelerations();
     assert_eq!(coordinates, 2);
     assert!(kept < KEPT, "{kept}");
