@@ -157,6 +157,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     ),
     (50_866, "the same with a fourteenth of all energy"),
     (2_055_199, "the same of three bodies"),
+    (
+        114_376,
+        "a disc of milligrams under a block: of three steps the shortest went deepest, and no shorter one was tried",
+    ),
 ];
 
 /// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little.

@@ -174,7 +174,7 @@ impl Explicit {
         let told = if of_states > 0.0 { self.length.abs() * (of_rates / of_states).sqrt() } else { 0.0 };
         let swing = self.tableau.swing.as_ref().filter(|swing| told >= swing.from);
         let dense_error = swing.map_or(0.0, |swing| swing.by * (of_states / scales.len() as f64).sqrt());
-        Stiffness { told, dense_error }
+        Stiffness { fastest: told, dense_error }
     }
 
     fn error(&self, row: usize) -> &[f64] {

@@ -12,7 +12,7 @@ use std::ops::Range;
 pub struct Stiffness {
     /// Size of the fastest rate times the step: an explicit method is held up by what is fast rather than by its errors when
     /// this comes to [`Method::stability_limit`].
-    pub told: f64,
+    pub fastest: f64,
     /// Size of the error that this makes of the motion along the step, in the units of [`Stepper::error_norm`], which does not
     /// tell it; 0 where nothing is that fast. The end of the step may be right all the same.
     pub dense_error: f64,
@@ -120,7 +120,7 @@ impl Stepper {
     pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> Stiffness {
         match &mut self.kind {
             Kind::Explicit(explicit) => explicit.stiffness(end, scales),
-            Kind::Implicit(radau) => Stiffness { told: radau.stiffness(), dense_error: 0.0 },
+            Kind::Implicit(radau) => Stiffness { fastest: radau.stiffness(), dense_error: 0.0 },
         }
     }
 

@@ -253,6 +253,39 @@ impl Dynamics<'_> {
         *solves += 1;
     }
 
+    /// True if a single row holds two bodies, or one.
+    fn is_held_by_one(&self) -> bool {
+        matches!(self.group.sides.as_slice(), [[a, b]] if a != b) && !self.group.held.is_soft()
+    }
+
+    /// Adds what the only row does to the accelerations: many groups have no other, and need no factor of equations.
+    fn accelerate_by_row(&mut self) {
+        let Stage { jacobians, offsets, forces, accelerations, solves, .. } = &mut *self.stage;
+        let (jacobian, sides) = (&jacobians[0], &self.group.sides[0]);
+        let mut responses = [[0.0; 3]; 2];
+        let mut square = 0.0;
+        for (side, response) in responses.iter_mut().enumerate() {
+            let Some(place) = sides[side] else { continue };
+            let inertia = self.physics.mechanism.flyers[self.group.bodies[place as usize].index()].body();
+            let inverse = [inertia.inverse_mass, inertia.inverse_mass, inertia.inverse_moment];
+            for k in 0..3 {
+                let entry = jacobian[3 * side + k];
+                response[k] = inverse[k] * entry;
+                square += response[k] * entry;
+            }
+        }
+        let force = if square > 0.0 { -offsets[0] / square } else { 0.0 };
+        for (response, place) in responses.iter().zip(sides) {
+            if let Some(place) = *place {
+                let acceleration = &mut accelerations[place as usize];
+                (0..3).for_each(|k| acceleration[k] += force * response[k]);
+            }
+        }
+        forces.clear();
+        forces.push(force);
+        *solves += 1;
+    }
+
     fn solve_rows(&mut self) {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
@@ -269,16 +302,18 @@ impl Dynamics<'_> {
             self.stage.offsets.push(offset);
             self.stage.jacobians.push(moment.kinematics.jacobian);
         }
-        self.group.held.factorize(&self.stage.jacobians);
-        self.respond_by_rows();
+        if self.is_held_by_one() {
+            self.accelerate_by_row();
+        } else {
+            self.group.held.factorize(&self.stage.jacobians);
+            self.respond_by_rows();
+            let Stage { accelerations, changes, .. } = &mut *self.stage;
+            for (acceleration, change) in accelerations.iter_mut().zip(changes) {
+                (0..3).for_each(|k| acceleration[k] += change[k]);
+            }
+        }
         if self.stage.asks_force_ranges {
             self.stage.widen_force_ranges();
-        }
-        let changes = self.stage.changes.iter();
-        for (acceleration, change) in self.stage.accelerations.iter_mut().zip(changes) {
-            for k in 0..3 {
-                acceleration[k] += change[k];
-            }
         }
         if self.group.rows.iter().any(|row| !row.bilateral) {
             self.level();

@@ -7,8 +7,9 @@ use crate::ode::{Stepper, Stiffness as Told};
 
 /// Shorter steps that are tried for one that keeps to its rows.
 const SHORTENINGS: usize = 2;
-/// Cap on them where the dense output errs by more than so many times what is allowed, so that bodies would overlap, as long as
-/// each leaves less than so much of the error.
+/// More of them where the dense output errs by more than so many times what is allowed, so that bodies would overlap; and more
+/// still as long as each leaves less than so much of the error.
+const DEEP_SHORTENINGS: usize = 5;
 const MOST_SHORTENINGS: usize = 8;
 const DEEP: f64 = 4.0;
 const WORTHWHILE: f64 = 0.5;
@@ -67,7 +68,8 @@ impl Dynamics<'_> {
             }
             let swing = told.map_or(0.0, |told| told.dense_error);
             let excess = excess.max(swing).max(self.lost_energy(&steps));
-            let is_worthwhile = excess > DEEP && excess < WORTHWHILE * before && tries < MOST_SHORTENINGS;
+            let most = if excess < WORTHWHILE * before { MOST_SHORTENINGS } else { DEEP_SHORTENINGS };
+            let is_worthwhile = excess > DEEP && tries < most;
             before = excess;
             if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
                 // What shorter steps do not mend is rounding, or rows that contradict each other.

@@ -109,7 +109,7 @@ impl Dynamics<'_> {
 
     /// Notes how fast the fastest part of the group is, after a step that told it.
     pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>, told: Option<Told>) {
-        let Some(Told { told, .. }) = told else { return };
+        let Some(Told { fastest: told, .. }) = told else { return };
         self.probe(tools);
         let numbers = self.group.numbers();
         let rate = told / self.group.span;
