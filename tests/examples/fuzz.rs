@@ -23,8 +23,45 @@ const HANGS: Duration = Duration::from_secs(20);
 /// Seeds listed for each kind.
 const LISTED: usize = 8;
 
+const USAGE: &str = "\
+Runs generated scenes and counts what became of them.
+
+  --count N     so many scenes (1000)
+  --seed S      from this seed on (1)
+  --jobs N      so many at a time (2)
+  --scene S     prints the scene of a seed
+  --billiard S  the same without forces, ties and loss
+  --shrink S    prints a smaller one that fails alike";
+
+/// Options that a number follows, and those of the processes that this one starts.
+const WITH_NUMBER: [&str; 6] = ["--count", "--seed", "--jobs", "--scene", "--billiard", "--shrink"];
+const WORKER: &str = "--worker";
+
+/// What is wrong with the arguments, if something is.
+fn complaint(arguments: &[String]) -> Option<String> {
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        let takes_number = WITH_NUMBER.contains(&argument.as_str());
+        if !takes_number && argument != WORKER {
+            return Some(format!("\"{argument}\" is no option"));
+        }
+        if takes_number && rest.next().is_none_or(|number| number.parse::<u64>().is_err()) {
+            return Some(format!("a number must follow {argument}"));
+        }
+    }
+    None
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|argument| ["--help", "-h"].contains(&argument.as_str())) {
+        println!("{USAGE}");
+        return;
+    }
+    if let Some(complaint) = complaint(&arguments) {
+        eprintln!("{complaint}\n\n{USAGE}");
+        std::process::exit(2);
+    }
     let number = |name: &str, default: u64| {
         let place = arguments.iter().position(|argument| argument == name);
         place.map_or(default, |place| arguments[place + 1].parse().expect("a number follows the option"))
@@ -37,7 +74,7 @@ fn main() {
         println!("{:#}", billiard_of_seed(number("--billiard", 1)));
     } else if has("--shrink") {
         print_shrunk(number("--shrink", 1));
-    } else if has("--worker") {
+    } else if has(WORKER) {
         work(first, count);
     } else {
         let failed = supervise(first, count, number("--jobs", 2));
@@ -161,7 +198,7 @@ fn add(found: &mut Found, seed: u64, kind: &str, what: &str) {
 fn spawn(first: u64, count: u64) -> (Child, Receiver<String>) {
     let program = std::env::current_exe().expect("this program has a path");
     let mut child = Command::new(program)
-        .args(["--worker", "--seed", &first.to_string(), "--count", &count.to_string()])
+        .args([WORKER, "--seed", &first.to_string(), "--count", &count.to_string()])
         .stdout(Stdio::piped())
         .spawn()
         .expect("a process can be started");
