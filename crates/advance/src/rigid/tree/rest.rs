@@ -17,6 +17,9 @@ const SINGULAR: f64 = 1e-6;
 /// as the loop is within the square root of this (as an angle) of such a point, and falls fast farther away.
 const SOFTNESS: f64 = 1e-8;
 
+/// What a row may keep is measured by no more than so many times the square of its heavier side.
+const HEAVIER: f64 = 10.0;
+
 /// Cap on the rounds in which what softness leaves lacking is made good. Of what is lacking, each leaves the part that softness
 /// makes of what a row keeps, softness included: two do where a row keeps a millionth, as what a light body pushes along its
 /// pin. Nearer to nothing, the error falls as one over the rounds, and noise grows with them.
@@ -62,8 +65,8 @@ impl JointTree {
         self.rest.columns = columns;
     }
 
-    /// J M^-1 J^T of a row by itself, without pins, on the heavier of its sides: what a light body may add, it often cannot,
-    /// because it hangs on a pin that the row points to.
+    /// J M^-1 J^T of a row by itself, without pins, of which no more counts than some times that of the heavier side: what a
+    /// much lighter body may add, it often cannot, because it hangs on a pin that the row points to.
     fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
         let of_side = |(side, place): (usize, Option<u32>)| {
             let Some(link) =
@@ -75,8 +78,9 @@ impl JointTree {
             let torque = jacobian[3 * side + 2];
             force.length_squared() / link.mass + torque * torque / link.moment
         };
-        let squares = sides.into_iter().enumerate().map(of_side).filter(|&square| square > 0.0);
-        squares.min_by(f64::total_cmp).unwrap_or(0.0)
+        let squares = [(0, sides[0]), (1, sides[1])].map(of_side);
+        let heavier = squares.into_iter().filter(|&square| square > 0.0).fold(f64::INFINITY, f64::min);
+        squares.iter().sum::<f64>().min(HEAVIER * heavier)
     }
 
     /// Accelerations of the tree, body by body of the group, under a force of 1 N along a row.
