@@ -1,7 +1,7 @@
-//! What a run must not keep to itself: whether where it ended, and its books, hold together.
+//! What a run must not keep to itself: whether where it is, and its books, hold together.
 //!
 //! A simulation that goes wrong mostly ends in numbers that look like any others. What can be known without knowing the
-//! answer is looked at here, at the end of every run: connectors, overlaps, and the energy.
+//! answer is looked at here, now and then and at the end of every run: connectors, overlaps, and the energy.
 
 use crate::ledger::Ledger;
 use crate::near::near_pairs;
@@ -18,7 +18,7 @@ const ROUNDINGS: f64 = 1e6 * f64::EPSILON;
 /// How deep bodies may overlap, in target gaps.
 const GAPS: f64 = 10.0;
 
-/// Something that does not hold at the end of a run.
+/// Something that does not hold in a run.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Finding {
@@ -28,6 +28,8 @@ pub enum Finding {
         connector: ConnectorName,
         /// How far [m].
         error: f64,
+        /// When that was seen [s].
+        time: f64,
     },
     /// Two bodies overlap.
     Overlap {
@@ -37,6 +39,8 @@ pub enum Finding {
         second: String,
         /// How deep [m].
         depth: f64,
+        /// When that was seen [s].
+        time: f64,
     },
     /// Energy came or went that nothing accounts for.
     OpenBooks {
@@ -50,11 +54,12 @@ pub enum Finding {
 impl std::fmt::Display for Finding {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::ConnectorOff { connector, error } => {
-                write!(out, "at the end {connector} is off by {} m", Rounded(*error))
+            Self::ConnectorOff { connector, error, time } => {
+                write!(out, "at {} s {connector} is off by {} m", Rounded(*time), Rounded(*error))
             }
-            Self::Overlap { first, second, depth } => {
-                write!(out, "at the end \"{first}\" and \"{second}\" overlap by {} m", Rounded(*depth))
+            Self::Overlap { first, second, depth, time } => {
+                let (time, depth) = (Rounded(*time), Rounded(*depth));
+                write!(out, "at {time} s \"{first}\" and \"{second}\" overlap by {depth} m")
             }
             Self::OpenBooks { error, turned_over } => write!(
                 out,
@@ -66,6 +71,56 @@ impl std::fmt::Display for Finding {
     }
 }
 
+/// What was found in the course of a run, each thing once: when it was worst.
+#[derive(Debug, Default)]
+pub(crate) struct Findings(Vec<Finding>);
+
+impl Findings {
+    /// Looks whether connectors are together and bodies apart.
+    pub(crate) fn look(&mut self, world: &World) {
+        let mut found = Vec::new();
+        world.find_connectors_off(&mut found);
+        world.find_overlaps(&mut found);
+        for finding in found {
+            match self.0.iter_mut().find(|known| known.is_of_same(&finding)) {
+                Some(known) if finding.is_worse_than(known) => *known = finding,
+                Some(_) => (),
+                None => self.0.push(finding),
+            }
+        }
+    }
+
+    /// All that was found, and whether the energy books close at the end.
+    pub(crate) fn at_end(mut self, world: &World, turned_over: f64) -> Vec<Finding> {
+        self.look(world);
+        world.find_open_books(turned_over, &mut self.0);
+        self.0
+    }
+}
+
+impl Finding {
+    fn is_of_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::ConnectorOff { connector: a, .. }, Self::ConnectorOff { connector: b, .. }) => a == b,
+            (
+                Self::Overlap { first: a, second: b, .. },
+                Self::Overlap { first: other_a, second: other_b, .. },
+            ) => (a, b) == (other_a, other_b),
+            _ => false,
+        }
+    }
+
+    /// What is no number is worst.
+    fn is_worse_than(&self, other: &Self) -> bool {
+        let size = |finding: &Self| match finding {
+            Self::ConnectorOff { error: size, .. }
+            | Self::Overlap { depth: size, .. }
+            | Self::OpenBooks { error: size, .. } => *size,
+        };
+        size(self).total_cmp(&size(other)).is_gt()
+    }
+}
+
 impl World {
     /// Looks whether connectors are together, bodies are apart, and the energy books close, as far as the settings
     /// promise that. Empty if all is well.
@@ -74,11 +129,7 @@ impl World {
     /// and work of force laws that was seen.
     #[must_use]
     pub fn findings(&self, turned_over: f64) -> Vec<Finding> {
-        let mut findings = Vec::new();
-        self.find_connectors_off(&mut findings);
-        self.find_overlaps(&mut findings);
-        self.find_open_books(turned_over, &mut findings);
-        findings
+        Findings::default().at_end(self, turned_over)
     }
 
     fn find_connectors_off(&self, findings: &mut Vec<Finding>) {
@@ -104,7 +155,7 @@ impl World {
             if error.is_nan() || error > allowed {
                 let name = |body: BodyId| (!body.is_world()).then(|| self.name(body));
                 let connector = ConnectorName::new(index.index(), connector, name);
-                findings.push(Finding::ConnectorOff { connector, error });
+                findings.push(Finding::ConnectorOff { connector, error, time: self.time() });
             }
         }
     }
@@ -126,7 +177,7 @@ impl World {
             let depth = overlap_depth(self.shape(a), &pose(a), self.shape(b), &pose(b));
             if let Some(depth) = depth.filter(|depth| *depth > allowed) {
                 let [first, second] = [a, b].map(|body| self.name(body).to_owned());
-                findings.push(Finding::Overlap { first, second, depth });
+                findings.push(Finding::Overlap { first, second, depth, time: self.time() });
             }
         }
     }
@@ -182,9 +233,24 @@ mod tests {
         assert_eq!(world.findings(0.0), []);
         let mut findings = Vec::new();
         world.overlaps(&[], &mut findings);
-        let [Finding::Overlap { first, second, depth }] = findings.as_slice() else { panic!("{findings:?}") };
+        let [Finding::Overlap { first, second, depth, .. }] = findings.as_slice() else {
+            panic!("{findings:?}")
+        };
         assert_eq!([first.as_str(), second.as_str()], ["a", "b"]);
         assert!((depth - 0.25).abs() < 1e-12, "{depth}");
+    }
+
+    #[test]
+    fn what_was_worst_is_told_once() {
+        let world = WorldBuilder::new(WorldSettings::default()).build().expect("nothing in it");
+        let overlap = |depth, time| Finding::Overlap { first: "a".into(), second: "b".into(), depth, time };
+        let mut findings = Findings(vec![overlap(0.5, 1.0)]);
+        let other = Finding::OpenBooks { error: 1.0, turned_over: 2.0 };
+        assert!(overlap(0.7, 2.0).is_worse_than(&overlap(0.5, 1.0)));
+        assert!(overlap(0.7, 2.0).is_of_same(&overlap(0.5, 1.0)) && !overlap(0.7, 2.0).is_of_same(&other));
+        // What holds again stays told.
+        findings.look(&world);
+        assert_eq!(findings.at_end(&world, 0.0), [overlap(0.5, 1.0)]);
     }
 
     #[test]
@@ -204,7 +270,7 @@ mod tests {
         let mut findings = Vec::new();
         world.connectors_off(0.0, &mut findings);
         let told: Vec<_> = findings.iter().map(Finding::to_string).collect();
-        let start = "at the end connector 0 (rod of \"world\" and \"bob\") is off by ";
+        let start = "at 10 s connector 0 (rod of \"world\" and \"bob\") is off by ";
         assert!(told.len() == 1 && told[0].starts_with(start), "{told:?}");
     }
 }

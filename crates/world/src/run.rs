@@ -1,7 +1,7 @@
 //! Runs a world to the end of its scene and records it.
 
 use crate::event::{Event, Impact};
-use crate::finding::Finding;
+use crate::finding::{Finding, Findings};
 use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
@@ -13,6 +13,8 @@ const LAST_STEP_SHARE: f64 = 1e-6;
 /// Part of a run after which its progress is told where no output is kept: the clock is read as often, which in a run of a
 /// few impacts costs as much as they do.
 const PROGRESS_SHARE: f64 = 1.0 / 50.0;
+/// Looks on the way, where all is recorded, at what does not hold.
+const LOOKS: f64 = 50.0;
 
 /// What a run keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +100,7 @@ pub struct RunReport {
     pub start_energy: Energy,
     /// Why it stopped early, if it did.
     pub error: Option<RunError>,
-    /// What does not hold at the end, or where it stopped.
+    /// What does not hold at the end, or where it stopped; where all is recorded, what was seen not to hold on the way, too.
     pub findings: Vec<Finding>,
     /// Time [s] spent on stepping alone.
     pub wall_seconds: f64,
@@ -119,6 +121,8 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     // Not the world's own time, which is free to differ from the target by rounding.
     let mut now = plan.start_time;
     let mut turnover = Turnover::new(start_energy);
+    let mut findings = Findings::default();
+    let mut looks = 1.0;
     while error.is_none() && now < plan.end_time {
         let output_time = plan.output_time(output);
         let stop_time = plan.stops.get(stops.len()).copied().unwrap_or(f64::INFINITY);
@@ -139,6 +143,10 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
         }
+        if wanted && done(now, plan) >= looks / LOOKS {
+            findings.look(world);
+            looks += 1.0;
+        }
     }
     // Stops at the end itself: the loop has passed them.
     while error.is_none() && stops.len() < plan.stops.len() {
@@ -147,7 +155,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     recording.impacts = stepper.impacts;
     recording.contacts = stepper.contacts;
     recording.ledger = world.ledger();
-    let findings = world.findings(turnover.energy);
+    let findings = findings.at_end(world, turnover.energy);
     RunReport { recording, stops, start_energy, error, findings, wall_seconds: stepper.wall.as_secs_f64() }
 }
 
