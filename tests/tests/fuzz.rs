@@ -157,6 +157,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     ),
     (50_866, "the same with a fourteenth of all energy"),
     (2_055_199, "the same of three bodies"),
+    (4_217_548, "corners that passed over each other fired for ever: another rule for them came first"),
     (
         114_376,
         "a disc of milligrams under a block: of three steps the shortest went deepest, and no shorter one was tried",

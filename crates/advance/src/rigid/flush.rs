@@ -38,11 +38,18 @@ impl RigidSystem {
     /// True if two features that fire are those of corners that pass over each other: the search leaves these alone from now
     /// on.
     pub(crate) fn passes_over(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
+        let is_left_alone = |rule: &FeatureRule| rule.features == features && rule.target.is_none();
+        if self.pairs.rules(pair).iter().any(is_left_alone) {
+            return false;
+        }
         let bodies = self.pairs.get(pair).bodies;
         let Some(passing) = self.passing_features(bodies, features) else { return false };
         self.pairs.change_rules(pair, |rules| {
-            rules
-                .extend(passing.into_iter().flatten().map(|features| FeatureRule { features, target: None }));
+            for features in passing.into_iter().flatten() {
+                // Of several rules for the same features the first counts.
+                rules.retain(|rule| rule.features != features);
+                rules.push(FeatureRule { features, target: None });
+            }
         });
         self.predict(pair);
         true
