@@ -2,11 +2,13 @@
 //!
 //! The resolution time is what acceleration takes to make `velocity_tol`; without acceleration, what the fastest body takes
 //! to cross the target gap. Events between which bodies go far beyond the target gap are resolved in space all the same: many
-//! more of them are no storm.
+//! more of them are no storm, and more still where much energy would be lost. A light body that heavy ones close on takes up
+//! all their energy before it turns them back, and to do so it must hit them about as often as the root of the masses' ratio.
 
 use super::region::Region;
 use super::system::RigidSystem;
 use crate::time::Time;
+use halfgap_collision::BodyId;
 
 /// Events of a body within the resolution time that are always allowed, and those for each row beyond them.
 const CALM_EVENTS: usize = 20;
@@ -15,13 +17,21 @@ const CALM_EVENTS_PER_ROW: usize = 10;
 /// heavy ones that close on it rattles ever faster until it has turned them back. Of wide ones so many times as many are allowed.
 const WIDE: f64 = 100.0;
 const CALM_WIDE_EVENTS: usize = 50;
+/// An event is costly if what closes would lose more than such a part of the energy of all that takes part. Of wide and costly
+/// ones so many times as many again are allowed.
+const COSTLY: f64 = 1e-3;
+const CALM_COSTLY_EVENTS: usize = 100;
+/// What counts for so many wide and costly ones.
+const NARROW: usize = CALM_WIDE_EVENTS * CALM_COSTLY_EVENTS;
+/// So many wide events are not looked at for what they would cost.
+const MANY: usize = 10 * CALM_COSTLY_EVENTS;
 
 /// Recent events of one body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Recent {
     /// When counting began, if it has.
     since: Option<Time>,
-    /// Events since then, wide ones as one and others as so many of them.
+    /// Events since then: wide and costly ones as one, others as so many of them.
     events: usize,
     /// The last event, if there was any.
     last: Option<Time>,
@@ -33,6 +43,9 @@ impl RigidSystem {
         let (now, window) = (self.now, self.settings.resolution_time);
         let speed = region.records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
         let wide = WIDE * self.settings.tolerances.target_gap;
+        // Of few events it does not matter.
+        let is_often = region.bodies.iter().any(|body| self.recent[body.index()].events > MANY);
+        let weight = if is_often && self.is_costly(region) { 1 } else { CALM_COSTLY_EVENTS };
         let mut most = 0;
         for &body in &region.bodies {
             let recent = &mut self.recent[body.index()];
@@ -40,11 +53,12 @@ impl RigidSystem {
                 *recent = Recent { since: Some(now), events: 0, ..*recent };
             }
             let is_wide = recent.last.is_none_or(|last| now.since(last) * speed > wide);
-            recent.events += if is_wide { 1 } else { CALM_WIDE_EVENTS };
+            recent.events += if is_wide { weight } else { NARROW };
             recent.last = Some(now);
             most = most.max(recent.events);
         }
-        let is_storm = most > CALM_WIDE_EVENTS * (CALM_EVENTS + CALM_EVENTS_PER_ROW * region.records.len());
+        let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * region.records.len();
+        let is_storm = most > NARROW * calm;
         if is_storm {
             self.counts.storms += 1;
             for &body in &region.bodies {
@@ -52,5 +66,22 @@ impl RigidSystem {
             }
         }
         is_storm
+    }
+
+    /// True if what closes in a region has a good part of the kinetic energy of its bodies.
+    fn is_costly(&self, region: &Region) -> bool {
+        let inertia = |body: BodyId| (!body.is_world()).then(|| self.flyer(body).body());
+        let closing = region.records.iter().map(|record| {
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let inverse_mass: f64 =
+                bodies.into_iter().filter_map(inertia).map(|body| body.inverse_mass).sum();
+            let rate = record.motion.normal_velocity.min(0.0);
+            if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
+        });
+        let moving = region.bodies.iter().filter(|&&body| self.is_movable(body)).map(|&body| {
+            let velocity = self.flyer(body).state_at(self.now).velocity;
+            0.5 * velocity.length_squared() / self.flyer(body).body().inverse_mass
+        });
+        closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
     }
 }

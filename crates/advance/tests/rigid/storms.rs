@@ -82,5 +82,16 @@ fn one_impact_more_than_a_row_may_have_in_the_resolution_time_is_without_elastic
 
 #[test]
 fn what_goes_far_between_its_impacts_may_have_fifty_times_as_many() {
-    ends_after(1500, 1e8, 0.5, SLOW);
+    ends_after(1500, 1e10, 0.5, SLOW);
+}
+
+#[test]
+fn what_would_cost_much_energy_may_have_a_hundred_times_as_many_again() {
+    let mut system = vise(2.0 * END, 1e8, 0.5, SLOW);
+    let before = energy(&system, 0.0);
+    advance(&mut system, END).expect("they part again");
+    let counts = system.counts();
+    assert!(counts.impacts > 10_000, "{counts:?}");
+    assert_eq!(counts.storms, 0);
+    assert!((energy(&system, END) / before - 1.0).abs() < 1e-10);
 }
