@@ -117,3 +117,26 @@ fn a_spring_far_from_the_origin_is_not_followed_through_rounding() {
     within("spring at 3e5 m, 1 s: books, part of the energy turned over", open, 1e-5);
     few_steps("spring at 3e5 m, 1 s: steps", &world);
 }
+
+#[test]
+fn a_dot_whose_spin_has_decayed_does_not_spin_between_steps() {
+    // The spin decays at 2e6 a second; then nothing shows that an explicit step that is fine for the spring is too long.
+    let (mass, radius, damping, spin) = (1.5, 1e-3, 1.5, 0.4);
+    let mut shop = Workshop::weightless(1e-11);
+    let turning = BodyState { angular_velocity: spin, ..thrown(-3.9, 2.9, DVec2::new(2.2, 1.2)) };
+    let dot = shop.body("dot", disc(radius), mass, turning);
+    let other = shop.body("other", disc(0.3), 0.4, at_rest(-1.2, -3.4));
+    shop.builder.add_damping(dot, 0.5, damping);
+    shop.builder.add_damping(other, 0.5, damping);
+    let ends =
+        [(other, DVec2::new(-0.2, -0.3)), (dot, DVec2::ZERO)].map(|(body, point)| Anchor { body, point });
+    shop.builder.add_force(Arc::new(Spring::new("spring", ends, 0.7, 1000.0)));
+    let mut world = shop.build();
+    let mut most: f64 = 0.0;
+    for look in 1..=2000 {
+        advance(&mut world, 1e-4 + 1e-5 * f64::from(look));
+        most = most.max(world.state(dot).angular_velocity.abs());
+    }
+    within("dot in syrup, 20 ms: spin [rad/s]", most, 1e-9);
+    few_steps("dot in syrup, 20 ms: steps", &world);
+}

@@ -30,16 +30,29 @@ impl Dynamics<'_> {
             self.find_event();
             return Ok(());
         }
-        self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
-        self.end_on_rows(tools);
-        self.follow_rails();
-        self.evaluate_end();
-        let told = self.tell_stiffness(tools);
+        let told = self.extend_unwatched(tools)?;
         self.note_stiffness(tools, told);
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
         (self.group.event, self.group.look) = (None, None);
         self.group.largest_error = self.stage.gap_error;
         Ok(())
+    }
+
+    /// Extends the group by a step whose dense output will not swing when somebody looks.
+    fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
+        for tries in 0.. {
+            self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
+            self.end_on_rows(tools);
+            self.follow_rails();
+            self.evaluate_end();
+            let told = self.tell_stiffness(tools);
+            let swing = told.map_or(0.0, |told| told.dense_error);
+            if swing <= 1.0 || tries >= DEEP_SHORTENINGS {
+                return Ok(told);
+            }
+            self.limit_next_step(tools.stepper.method().step_factor(swing));
+        }
+        Ok(None)
     }
 
     /// Makes the dense output of the last step.

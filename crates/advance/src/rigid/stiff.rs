@@ -92,6 +92,7 @@ impl Dynamics<'_> {
             return None;
         }
         let Stiffness { wait, looked, rate, .. } = self.group.stiffness;
+        let rate = rate.max(self.damping_rate());
         let is_far = |limit: f64| rate * self.group.span < FAR * limit;
         let is_far = tools.stepper.method().stability_limit().is_none_or(is_far);
         if wait > 0 && is_far && self.group.span >= SHRUNK * looked {
@@ -107,10 +108,25 @@ impl Dynamics<'_> {
         })
     }
 
+    /// The fastest rate [1/s] at which damping lets a body of the group come to rest. What is at rest already does not show it.
+    fn damping_rate(&self) -> f64 {
+        let laws = self.group.bodies.iter().map(|&body| self.physics.mechanism.flyers[body.index()].law());
+        laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
+    }
+
+    /// The longest step [s] of a method that is stable under damping. A longer one from rest ends at rest, too, by luck, but what
+    /// rounding sets in motion grows on the way, and dense output is far off.
+    pub(crate) fn longest_stable_step(&self, method: Method) -> f64 {
+        let rate = self.damping_rate();
+        let limit = method.stability_limit().filter(|_| rate > 0.0 && method.is_adaptive());
+        limit.map_or(f64::INFINITY, |limit| limit / rate)
+    }
+
     /// Notes how fast the fastest part of the group is, after a step that told it.
     pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>, told: Option<Told>) {
         let Some(Told { fastest: told, .. }) = told else { return };
         self.probe(tools);
+        let told = told.max(self.damping_rate() * self.group.span);
         let numbers = self.group.numbers();
         let rate = told / self.group.span;
         // What is fast makes this of the rounding of positions in a step.
