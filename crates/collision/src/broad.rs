@@ -53,6 +53,14 @@ impl BroadPhase {
         Some(&self.nodes[leaf as usize].bounds)
     }
 
+    /// Takes all boxes away; the tree keeps its room.
+    pub fn clear(&mut self) {
+        self.nodes.clear();
+        self.root = None;
+        self.free.clear();
+        self.leaves.clear();
+    }
+
     /// Gives a body its box [m], in place of the one it had.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
         if self.leaves.len() <= body.index() {

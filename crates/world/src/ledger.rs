@@ -47,7 +47,54 @@ impl Ledger {
     /// What remains: the error of the integration [J].
     #[must_use]
     pub fn integration_error(&self) -> f64 {
-        (self.now.total() - self.start) - self.booked()
+        Books::from(self).error()
+    }
+}
+
+/// Sums of the ledger: enough to tell whether the books close.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Books {
+    /// Kinetic and potential energy now.
+    pub(crate) now: Energy,
+    /// Total energy at the start [J].
+    pub(crate) start: f64,
+    /// All changes that are booked [J].
+    pub(crate) booked: f64,
+    /// Sum of the sizes of the works of force laws that have no potential [J].
+    pub(crate) works: f64,
+}
+
+impl Books {
+    /// What remains: the error of the integration [J].
+    pub(crate) fn error(&self) -> f64 {
+        (self.now.total() - self.start) - self.booked
+    }
+}
+
+impl From<&Ledger> for Books {
+    fn from(ledger: &Ledger) -> Self {
+        let works = ledger.laws.iter().map(|law| law.work.abs()).sum();
+        let Ledger { now, start, .. } = *ledger;
+        Self { now, start, booked: ledger.booked(), works }
+    }
+}
+
+/// The energy that a run has turned over, as far as somebody looked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turnover {
+    start_potential: f64,
+    /// The largest sum of kinetic energy, change of the potential energy, and work of force laws that was seen [J].
+    pub(crate) energy: f64,
+}
+
+impl Turnover {
+    pub(crate) fn new(start: Energy) -> Self {
+        Self { start_potential: start.potential, energy: start.kinetic }
+    }
+
+    pub(crate) fn note(&mut self, books: &Books) {
+        let lifted = (books.now.potential - self.start_potential).abs();
+        self.energy = self.energy.max(books.now.kinetic + lifted + books.works);
     }
 }
 

@@ -56,6 +56,7 @@ mod run_error;
 mod scales;
 #[cfg(feature = "scene")]
 pub mod scene;
+mod sentry;
 mod settings;
 mod start;
 mod world;

@@ -2,6 +2,7 @@
 
 use crate::event::{Event, Impact};
 use crate::finding::{Finding, Findings};
+use crate::ledger::{Books, Turnover};
 use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
@@ -138,7 +139,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
             output += 1;
             progress(done(now, plan));
         }
-        turnover.note(world);
+        turnover.note(&Books::from(&world.ledger()));
         let wanted = target == output_time && plan.record == Record::Everything;
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
@@ -157,26 +158,6 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     recording.ledger = world.ledger();
     let findings = findings.at_end(world, turnover.energy);
     RunReport { recording, stops, start_energy, error, findings, wall_seconds: stepper.wall.as_secs_f64() }
-}
-
-/// The energy that a run has turned over, as far as its outputs tell.
-struct Turnover {
-    start_potential: f64,
-    /// [J].
-    energy: f64,
-}
-
-impl Turnover {
-    fn new(start: Energy) -> Self {
-        Self { start_potential: start.potential, energy: start.kinetic }
-    }
-
-    fn note(&mut self, world: &World) {
-        let ledger = world.ledger();
-        let works: f64 = ledger.laws.iter().map(|law| law.work.abs()).sum();
-        let lifted = (ledger.now.potential - self.start_potential).abs();
-        self.energy = self.energy.max(ledger.now.kinetic + lifted + works);
-    }
 }
 
 /// Records the world, unless its last frame has this time already.

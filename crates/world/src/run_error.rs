@@ -1,5 +1,7 @@
 //! Why a run stopped early, in the words of the world: with the names of bodies.
 
+use crate::finding::Finding;
+use crate::rounded::Rounded;
 use halfgap_advance::rigid::{AdvanceError, Between};
 use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, SolveError};
@@ -81,6 +83,32 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Steps have become so short that those for all the time that is to be simulated would never come to an end, and nothing
+    /// happens meanwhile.
+    #[error(
+        "at {time} s {} goes on in steps of {} s{}: for {duration} s that would be {} of them",
+        quoted(bodies), Rounded(*step), under(laws), Rounded(duration / step)
+    )]
+    Crawls {
+        /// When [s].
+        time: f64,
+        /// Mean length of the last steps [s].
+        step: f64,
+        /// How long is to be simulated [s].
+        duration: f64,
+        /// Names of the bodies that share the steps.
+        bodies: Vec<String>,
+        /// Names of the force laws that act on them.
+        laws: Vec<String>,
+    },
+    /// The world does not hold together any more: what it would go on with is not what the scene asks for.
+    #[error("stopped at {time} s, as it does not hold together any more: {finding}")]
+    Astray {
+        /// When [s].
+        time: f64,
+        /// What does not hold.
+        finding: Finding,
+    },
     /// The time to advance to is not a number.
     #[error("cannot advance to a time that is not a number")]
     NotATime,
@@ -120,6 +148,8 @@ impl RunError {
             | Self::Contacts { time, .. }
             | Self::StepCollapsed { time, .. }
             | Self::Unresolved { time, .. }
+            | Self::Crawls { time, .. }
+            | Self::Astray { time, .. }
             | Self::Stuck { time, .. } => Some(*time),
             Self::NotATime | Self::BadPlan { .. } | Self::Advance(_) => None,
         }
@@ -141,6 +171,10 @@ impl RunError {
             AdvanceError::Unresolved { time, length, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::Unresolved { time, length, bodies, laws }
+            }
+            AdvanceError::Crawls { time, step, duration, bodies, laws } => {
+                let bodies = bodies.into_iter().map(name).collect();
+                Self::Crawls { time, step, duration, bodies, laws }
             }
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);

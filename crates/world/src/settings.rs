@@ -13,6 +13,9 @@ const DEFAULT_FIXED_STEP: f64 = 0.025;
 pub struct WorldSettings {
     /// Time at the start [s].
     pub start_time: f64,
+    /// How long the world will run [s], if that is known: steps that would never come to its end are told as an error. No less
+    /// than a single advance asks for.
+    pub duration: Option<f64>,
     /// Relative accuracy asked for.
     pub tolerance: f64,
     /// Thresholds given in place of derived ones.
@@ -109,6 +112,7 @@ impl Default for WorldSettings {
     fn default() -> Self {
         Self {
             start_time: 0.0,
+            duration: None,
             tolerance: DEFAULT_TOLERANCE,
             overrides: ToleranceOverrides::default(),
             start_overlap: None,

@@ -2,10 +2,11 @@
 
 use crate::event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
-use crate::ledger::{LawWork, Ledger};
+use crate::ledger::{Books, LawWork, Ledger};
 use crate::run_error::RunError;
+use crate::sentry::Sentry;
 use glam::DVec2;
-use halfgap_advance::rigid::{ImpactReport, RigidSettings, RigidSystem, RowForce};
+use halfgap_advance::rigid::{ImpactReport, Ledger as Booked, RigidSettings, RigidSystem, RowForce};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
@@ -83,12 +84,13 @@ pub struct World {
     system: RigidSystem,
     bodies: Vec<Named>,
     forces: Vec<Arc<dyn ForceLaw>>,
-    connectors: Vec<Connector>,
+    pub(crate) connectors: Vec<Connector>,
     now: Time,
     warnings: Vec<String>,
-    start: Start,
+    pub(crate) start: Start,
     /// The last impact told, always of that kind: its buffers are used again and again.
     told: Event,
+    pub(crate) sentry: Sentry,
 }
 
 /// What was done to the bodies before the start.
@@ -110,9 +112,10 @@ impl World {
         now: Time,
         warnings: Vec<String>,
         start: Start,
+        sentry: Sentry,
     ) -> Self {
         let told = Event::Impact(Impact::default());
-        Self { system, bodies, forces, connectors, now, warnings, start, told }
+        Self { system, bodies, forces, connectors, now, warnings, start, told, sentry }
     }
 
     /// The present time [s].
@@ -180,7 +183,33 @@ impl World {
     /// Energy at the present time.
     #[must_use]
     pub fn energy(&self) -> Energy {
-        energy_of(&self.bodies, &self.forces, self.time(), |body| self.state(body))
+        self.energy_in(&mut Vec::new())
+    }
+
+    /// The same with room for what it reads.
+    fn energy_in(&self, room: &mut Vec<Moving>) -> Energy {
+        energy_of(&self.bodies, &self.forces, self.time(), |body| self.state(body), room)
+    }
+
+    /// Sums of the ledger, with room for what they read.
+    pub(crate) fn books(&self, booked: &mut Booked, room: &mut Vec<Moving>) -> Books {
+        self.system.write_ledger(self.now, booked);
+        let works = |size: fn(f64) -> f64| {
+            let laws = booked.laws.iter().enumerate();
+            laws.filter(|(index, _)| !self.system.has_potential(*index))
+                .map(|(_, &work)| size(work))
+                .sum::<f64>()
+        };
+        Books {
+            now: self.energy_in(room),
+            start: self.start.energy,
+            booked: booked.impacts
+                + booked.captures
+                + booked.projections
+                + booked.damping
+                + works(|work| work),
+            works: works(f64::abs),
+        }
     }
 
     /// Where the energy went since the start.
@@ -239,6 +268,11 @@ impl World {
         &self.system.settings().tolerances
     }
 
+    /// The relative accuracy asked for.
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.sentry.tolerance
+    }
+
     pub(crate) fn rigid_settings(&self) -> &RigidSettings {
         self.system.settings()
     }
@@ -281,12 +315,14 @@ impl World {
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
     ///
     /// # Errors
-    /// Something that cannot be simulated happens; the world stays at the time of that event. The time is not a number.
+    /// Something that cannot be simulated happens; the world stays at the time of that event. What must hold does not any more
+    /// at that time. The time is not a number.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         if time.is_nan() {
             return Err(RunError::NotATime);
         }
         let until = Time::from_seconds(time);
+        self.system.expect(self.sentry.duration.max(time - self.time()));
         let (system, told) = (&mut self.system, &mut self.told);
         let outcome = advance_until(system, until, |system, handled| {
             if handled.impact {
@@ -302,16 +338,10 @@ impl World {
             changes.end.iter().for_each(|row| on_event(&Event::ContactEnds(told_of(row))));
             changes.begin.iter().for_each(|row| on_event(&Event::ContactBegins(told_of(row))));
         });
-        match outcome {
-            Ok(()) => {
-                self.now = self.now.max(until);
-                Ok(())
-            }
-            Err(error) => {
-                self.now = self.now.max(self.system.now());
-                Err(RunError::new(error, |body| self.name(body).to_owned()))
-            }
-        }
+        let reached = if outcome.is_ok() { until } else { self.system.now() };
+        self.now = self.now.max(reached);
+        let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));
+        self.stand_guard(outcome)
     }
 }
 
@@ -325,12 +355,13 @@ fn contact_force(row: &RowForce) -> ContactForce {
     }
 }
 
-/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them.
+/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them; with room for what laws read.
 pub(crate) fn energy_of(
     bodies: &[Named],
     forces: &[Arc<dyn ForceLaw>],
     time: f64,
     state_of: impl Fn(BodyId) -> BodyState,
+    room: &mut Vec<Moving>,
 ) -> Energy {
     let ids = (0..u32::try_from(bodies.len()).unwrap_or(u32::MAX)).map(BodyId);
     let mut energy = Energy::default();
@@ -343,8 +374,9 @@ pub(crate) fn energy_of(
         energy.potential -= inertia.mass * gravity.dot(state.position);
     }
     if !forces.is_empty() {
-        let moving: Vec<_> = ids.map(|body| Moving::from(&state_of(body))).collect();
-        energy.potential += potential_of(forces, &Snapshot::new(time, &moving));
+        room.clear();
+        room.extend(ids.map(|body| Moving::from(&state_of(body))));
+        energy.potential += potential_of(forces, &Snapshot::new(time, room));
     }
     energy
 }

@@ -62,6 +62,23 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Steps have become so short that those for all the time that is to be simulated would never come to an end, and nothing
+    /// happens meanwhile.
+    #[error(
+        "at {time} s the steps of bodies {bodies:?} are {step:e} s long: too many of them for {duration} s; forces on them: {laws:?}"
+    )]
+    Crawls {
+        /// When [s].
+        time: f64,
+        /// Mean length of the last steps [s].
+        step: f64,
+        /// How long is to be simulated [s].
+        duration: f64,
+        /// The bodies that share the steps.
+        bodies: Vec<BodyId>,
+        /// Names of the force laws that act on them.
+        laws: Vec<String>,
+    },
     /// The same two bodies collide again and again without any time going by.
     #[error(
         "stuck at {time} s: bodies {} and {} collided {events} times without any time going by",

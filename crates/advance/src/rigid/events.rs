@@ -290,7 +290,10 @@ impl RigidSystem {
         }
         self.last_impact = report;
         let happened = outcome?;
-        self.counts.impacts += u64::from(happened);
+        if happened {
+            self.counts.impacts += 1;
+            self.forget_paces(&work.region.bodies);
+        }
         self.remeasure(&mut work.region, self.now);
         self.go_on(work)?;
         Ok(happened)

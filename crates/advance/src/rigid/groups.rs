@@ -423,7 +423,7 @@ impl RigidSystem {
             outcome = self.with_group(&mut group, |dynamics, tools| dynamics.extend_watched(tools));
         }
         self.counts.segments += 1;
-        if let Err(failure) = outcome {
+        if let Err(failure) = outcome.and_then(|()| self.note_pace(&group)) {
             let error = self.step_error(&group, failure);
             self.give_up(&group);
             return Err(error);
@@ -467,6 +467,9 @@ impl RigidSystem {
         let laws = group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect();
         match failure {
             StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
+            StepFailure::Crawls(step) => {
+                AdvanceError::Crawls { time, step, duration: self.horizon, bodies, laws }
+            }
             StepFailure::Unresolved(length) => {
                 let bodies = self.so_far_apart(group, length).map_or(bodies, Vec::from);
                 AdvanceError::Unresolved { time, length, bodies, laws }

@@ -35,6 +35,7 @@ mod lane;
 mod law;
 mod ledger;
 mod marks;
+mod pace;
 mod pairs;
 mod path;
 mod predictions;

@@ -152,7 +152,17 @@ impl RigidSystem {
     /// The energy's books at a time of the present segments.
     #[must_use]
     pub fn ledger_at(&self, time: Time) -> Ledger {
-        let mut ledger = self.ledger.clone();
+        let mut ledger = Ledger::default();
+        self.write_ledger(time, &mut ledger);
+        ledger
+    }
+
+    /// Writes what [`Self::ledger_at`] tells, in place of what is there.
+    pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
+        let Ledger { impacts, captures, projections, damping, ref laws } = self.ledger;
+        let mut room = std::mem::take(&mut ledger.laws);
+        room.clone_from(laws);
+        *ledger = Ledger { impacts, captures, projections, damping, laws: room };
         for group in self.groups.by_leader.iter().flatten() {
             let offset = time.since(group.start);
             for (&work, path) in group.works.iter().zip(group.work_paths()) {
@@ -162,7 +172,6 @@ impl RigidSystem {
         for body in self.bodies() {
             ledger.damping += self.damping_loss(body, time);
         }
-        ledger
     }
 
     /// Energy [J] that damping took from a body in flight since the start of its segment.

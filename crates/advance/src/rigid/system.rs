@@ -17,6 +17,7 @@ use super::lane::Lane;
 use super::law::{ForceLaw, Snapshot};
 use super::ledger::Ledger;
 use super::marks::Marks;
+use super::pace::Pace;
 use super::pairs::{Link, PairId, Pairs, Prediction};
 use super::report::ContactChanges;
 use super::rows::Mechanism;
@@ -148,6 +149,9 @@ pub struct RigidSystem {
     pub(crate) now: Time,
     pub(crate) groups: Groups,
     pub(crate) recent: Vec<Recent>,
+    pub(crate) paces: Vec<Pace>,
+    /// For how long [s] the system will be advanced in all; 0 if nothing is known.
+    pub(crate) horizon: f64,
     pub(crate) ledger: Ledger,
     pub(crate) ticks: Ticks,
     /// The event at hand is a tick.
@@ -202,6 +206,8 @@ impl RigidSystem {
             now: start,
             groups: Groups::new(count),
             recent: vec![Recent::default(); count],
+            paces: vec![Pace::default(); count],
+            horizon: 0.0,
             ticks: Ticks::default(),
             at_tick: false,
             start,

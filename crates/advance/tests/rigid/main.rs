@@ -8,5 +8,6 @@ mod energy;
 mod hops;
 mod limits;
 mod no_overlap;
+mod pace;
 mod rest;
 mod storms;

@@ -9,6 +9,7 @@ use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub(crate) fn of_run(run: &RunData) -> WorldSettings {
     WorldSettings {
         start_time: run.start_time,
+        duration: Some(run.duration),
         tolerance: run.tolerance,
         overrides: ToleranceOverrides {
             target_gap: run.target_gap,

@@ -8,6 +8,7 @@ use crate::rigid_settings::rigid_settings;
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::scales::Scales;
+use crate::sentry::Sentry;
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, energy_of, name_among};
@@ -163,7 +164,8 @@ impl WorldBuilder {
     pub fn build(mut self) -> Result<World, WorldError> {
         self.check()?;
         self.align();
-        let scales = self.scales(&self.wrenches()?);
+        let wrenches = self.wrenches()?;
+        let scales = self.scales(&wrenches);
         self.check_resolution(&scales)?;
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
         self.check_accuracy(&tolerances)?;
@@ -182,8 +184,9 @@ impl WorldBuilder {
         };
         let total = |bodies: &[StartParts]| {
             let state = |body: BodyId| bodies[body.index()].2;
-            energy_of(&named, &self.forces, self.settings.start_time, state).total()
+            energy_of(&named, &self.forces, self.settings.start_time, state, &mut Vec::new()).total()
         };
+        let rough = tolerances.target_gap * forces_on(&bodies, &wrenches);
         let given = total(&bodies);
         let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
         if let Some((connector, rate)) = apart.filter(|&(_, rate)| rate > tolerances.velocity_tol) {
@@ -195,6 +198,7 @@ impl WorldBuilder {
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
+        let sentry = Sentry::new(&self.settings, usual_energy(&bodies, &scales), rough);
         let settings = rigid_settings(&self.settings, &scales);
         let parts = RigidParts {
             bodies,
@@ -205,7 +209,7 @@ impl WorldBuilder {
         let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(system, named, (self.forces, connectors), now, warnings, start))
+        Ok(World::new(system, named, (self.forces, connectors), now, warnings, start, sentry))
     }
 
     /// What to say if the coordinates do not allow the gap that the tolerance asks for.
@@ -274,6 +278,22 @@ impl WorldBuilder {
         }
         scales
     }
+}
+
+/// Kinetic energy [J] of bodies as fast as the fastest, and as fast as what falls across all of them.
+fn usual_energy(bodies: &[StartParts], scales: &Scales) -> f64 {
+    let bounds = bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()));
+    let size = bounds.reduce(|all, one| all.union(one)).map_or(0.0, |all| all.size().length());
+    let mass =
+        bodies.iter().filter(|(body, ..)| !body.is_fixed()).map(|(body, ..)| body.inverse_mass.recip());
+    (0.5 * scales.speed * scales.speed + scales.acceleration * size) * mass.sum::<f64>()
+}
+
+/// Sum of the sizes of the forces [N] on the movable bodies.
+fn forces_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
+    let movable = bodies.iter().zip(wrenches).filter(|((body, ..), _)| !body.is_fixed());
+    let forces = movable.map(|((body, law, _), wrench)| wrench.force + law.acceleration / body.inverse_mass);
+    forces.map(|force| force.length()).sum()
 }
 
 fn center_of_mass(body: &BodySpec) -> DVec2 {

@@ -12,7 +12,7 @@ mod joined;
 mod tight;
 mod touching;
 
-use crate::near::near_pairs;
+use crate::near::NearPairs;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
@@ -68,7 +68,7 @@ pub(crate) fn correct_start(
         let boxes = bodies
             .iter()
             .map(|(body, _, state)| (body.shape.bounds_at(&state.pose()).grown(skin), body.is_fixed()));
-        near_pairs(boxes, rules.excluded)
+        NearPairs::default().find(boxes, rules.excluded).to_vec()
     } else {
         Vec::new()
     };

@@ -1,0 +1,162 @@
+//! The sentry: stops a world that does not hold together any more.
+//!
+//! What a run finds out about itself ([`Finding`]) is told at its end. But a connector that has come apart, bodies that lie in
+//! one another, or energy from nowhere mean that all that follows is another scene's: there the advance ends with an error.
+//! It is looked at where an advance stops, as often as costs next to nothing.
+
+use crate::finding::Finding;
+use crate::ledger::{Books, Turnover};
+use crate::near::NearPairs;
+use crate::run_error::RunError;
+use crate::settings::WorldSettings;
+use crate::world::World;
+use halfgap_advance::rigid::Ledger as Booked;
+use halfgap_collision::Moving;
+
+/// Segments of motion from one look to the next, beside one for each body.
+const SEGMENTS: u64 = 16;
+
+/// What the sentry remembers, and room for its looks.
+#[derive(Clone, Debug)]
+pub(crate) struct Sentry {
+    /// The relative accuracy asked for.
+    pub(crate) tolerance: f64,
+    /// How long the world will run [s]; 0 if that is not known.
+    pub(crate) duration: f64,
+    /// Energy [J] that is usual in such a scene: what is turned over between looks is not seen.
+    usual: f64,
+    /// Work [J] of the forces of the start along a target gap.
+    rough: f64,
+    turnover: Option<Turnover>,
+    /// Segments that had been started at the last look.
+    looked: u64,
+    room: Room,
+}
+
+/// Room for looks, used again and again.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    booked: Booked,
+    movings: Vec<Moving>,
+    near: NearPairs,
+}
+
+impl Sentry {
+    /// For a scene in which so much energy [J] is usual, and forces do so much work [J] along a target gap.
+    pub(crate) fn new(settings: &WorldSettings, usual: f64, rough: f64) -> Self {
+        let duration = settings.duration.unwrap_or_default();
+        Self {
+            tolerance: settings.tolerance,
+            duration,
+            usual,
+            rough,
+            turnover: None,
+            looked: 0,
+            room: Room::default(),
+        }
+    }
+}
+
+impl World {
+    /// Looks at what must hold after an advance, if it ended with an error, or enough has happened since the last time.
+    ///
+    /// # Errors
+    /// It does not; else that of the advance.
+    pub(crate) fn stand_guard(&mut self, outcome: Result<(), RunError>) -> Result<(), RunError> {
+        let segments = self.statistics().steps;
+        let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
+        if outcome.is_ok() && is_soon || !self.keeps_to_tolerance() {
+            return outcome;
+        }
+        self.sentry.looked = segments;
+        let mut room = std::mem::take(&mut self.sentry.room);
+        let books = self.books(&mut room.booked, &mut room.movings);
+        self.sentry.turnover.get_or_insert_with(|| Turnover::new(books.now)).note(&books);
+        let found = self.astray(&books, &mut room.near);
+        self.sentry.room = room;
+        match found {
+            Some(finding) => Err(RunError::Astray { time: self.time(), finding }),
+            None => outcome,
+        }
+    }
+
+    /// What has gone wrong beyond repair, if anything.
+    fn astray(&self, books: &Books, near: &mut NearPairs) -> Option<Finding> {
+        let mut found = Vec::new();
+        self.find_connectors_off(&mut found);
+        self.find_overlaps(near, &mut found);
+        found.into_iter().next().or_else(|| {
+            let turned_over = self.sentry.turnover.map_or(0.0, |turnover| turnover.energy);
+            self.books_astray(books, turned_over, (self.sentry.usual, self.sentry.rough))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BodySpec, ConnectorSpec, WorldBuilder};
+    use glam::DVec2;
+    use halfgap_collision::{Anchor, BodyId, BodyState, Connector, ConnectorKind};
+    use halfgap_geometry::Shape;
+
+    /// Times [s] between which a pendulum makes more segments than the sentry lets pass.
+    const LATER: f64 = 20.0;
+    const LATER_STILL: f64 = 40.0;
+
+    /// A pendulum that has swung for a while, and what its rod is called.
+    fn pendulum() -> World {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let shape = Shape::disc(0.5).expect("a fine radius");
+        let state = BodyState { position: DVec2::new(1.0, 0.0), ..BodyState::default() };
+        let body = builder.add(BodySpec::movable("bob", shape, 1.0, state));
+        let [a, b] = [BodyId::WORLD, body].map(|body| Anchor { body, point: DVec2::ZERO });
+        builder.add_connector(ConnectorSpec::new(rod(a, b, 1.0)));
+        builder.add_gravity(body, DVec2::new(0.0, -10.0));
+        let mut world = builder.build().expect("it hangs");
+        world.advance_to(LATER, &mut |_| ()).expect("it swings");
+        world
+    }
+
+    fn rod(a: Anchor, b: Anchor, length: f64) -> Connector {
+        Connector::new(ConnectorKind::Rod { a, b, length }, 0.0).expect("a fine rod")
+    }
+
+    #[test]
+    fn a_connector_that_is_off_ends_the_advance() {
+        let mut world = pendulum();
+        let ConnectorKind::Rod { a, b, .. } = world.connectors[0].kind else { panic!("it is a rod") };
+        // What is looked at is longer than what holds the bob.
+        world.connectors[0] = rod(a, b, 1.0 + 1e-3);
+        let outcome = world.advance_to(LATER_STILL, &mut |_| ());
+        let Err(RunError::Astray { time, finding: Finding::ConnectorOff { error, .. } }) = &outcome else {
+            panic!("{outcome:?}")
+        };
+        assert_eq!(*time, LATER_STILL);
+        assert!((error - 1e-3).abs() < 1e-9, "{error}");
+        let start = "stopped at 40 s, as it does not hold together any more: at 40 s connector 0 (rod of \"world\" and \"bob\") is off by 0.001 m";
+        assert!(outcome.is_err_and(|error| error.to_string() == start));
+    }
+
+    #[test]
+    fn books_far_from_closing_end_the_advance_and_others_do_not() {
+        // At a tolerance of 1e-8, of some 10 J.
+        for (lost, is_astray) in [(1e-7, false), (1e-3, true)] {
+            let mut world = pendulum();
+            world.start.energy += lost;
+            let outcome = world.advance_to(LATER_STILL, &mut |_| ());
+            let found = matches!(outcome, Err(RunError::Astray { finding: Finding::OpenBooks { error, .. }, .. }) if (error - lost).abs() < 1e-6);
+            assert_eq!(found, is_astray, "{lost}: {outcome:?}");
+            assert_eq!(outcome.is_ok(), !is_astray);
+        }
+    }
+
+    #[test]
+    fn nothing_is_looked_at_while_next_to_nothing_happens() {
+        let mut world = pendulum();
+        world.start.energy += 1.0;
+        let before = world.statistics().steps;
+        world.advance_to(LATER + 1e-3, &mut |_| ()).expect("nobody looks");
+        assert!(world.statistics().steps - before < SEGMENTS);
+    }
+}
