@@ -280,7 +280,8 @@ impl RigidSystem {
     /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
     fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
-        let is_storm = self.at_tick || self.note_events(&work.region) || work.repeats > 0;
+        work.region.in_storm = self.note_events(&work.region);
+        let is_storm = self.at_tick || work.region.in_storm || work.repeats > 0;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
         let manner = if is_storm { Manner::Inelastic } else { Manner::Lawful };
@@ -296,6 +297,7 @@ impl RigidSystem {
         }
         self.remeasure(&mut work.region, self.now);
         self.go_on(work)?;
+        work.region.in_storm = false;
         Ok(happened)
     }
 
@@ -347,6 +349,11 @@ impl RigidSystem {
     /// Where such rows contradict each other, nothing is done, and it says false: as unilateral ones they need not.
     pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
         let now = self.now;
+        // At the start there may be blows to come, which are not to be stopped along with the rest.
+        if work.region.records.iter().any(closes_fast) {
+            unmark(&mut work.region);
+            return false;
+        }
         work.before.clear();
         work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
         // What may as well be left is not worth long trying.
@@ -358,9 +365,7 @@ impl RigidSystem {
         let is_stopped = outcome.is_ok()
             && self.has_stopped(&work.region)
             && self.is_modest(&work.stop, &work.region, &work.before);
-        for record in &mut work.region.records {
-            record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
-        }
+        unmark(&mut work.region);
         if is_stopped {
             self.book_impact(&work.stop, true);
         } else if outcome.is_ok() {
@@ -417,5 +422,12 @@ impl RigidSystem {
         let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
         *booked += report.energy_change;
+    }
+}
+
+/// Takes the marks as bilateral from the contacts of a region.
+fn unmark(region: &mut Region) {
+    for record in &mut region.records {
+        record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
     }
 }

@@ -33,6 +33,8 @@ pub(crate) struct Region {
     pub(crate) groups: Vec<BodyId>,
     /// Nothing has happened yet: what rests within `distance_tol` counts as touching.
     pub(crate) at_start: bool,
+    /// What happens to it is one event too many in a short time.
+    pub(crate) in_storm: bool,
     /// The contact that fired: it takes part, however near it is to the ends of its features.
     pub(crate) fired: Option<Touch>,
     /// A contact that has just run off its features: its neighbours take over, if they touch.

@@ -221,7 +221,11 @@ impl RigidSystem {
         settling.held.clear();
         settling.touches.clear();
         settling.candidates.clear();
-        let rest = if region.at_start { self.start_rest() } else { self.rest_speed() };
+        let rest = match region {
+            Region { at_start: true, .. } => self.start_rest(),
+            Region { in_storm: true, .. } => self.storm_rest(),
+            _ => self.rest_speed(),
+        };
         let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
         let may_hold = |record: &Collision| {
             let may_hop = with_hops && self.may_hop(record);
