@@ -3,15 +3,17 @@
 //! The search for contacts sees dense output. Where that may err by much of what a step may, the step is made anew up to the
 //! event, so that the restart has full order; the contact that fired is then a little off, and the time is corrected until
 //! it is where the search saw it. Where that does not bring all that touches to where it was seen, as of what closes slowly,
-//! the event stays on the dense output, along which nothing penetrates.
+//! or brings a body into another, the event stays on the dense output, along which nothing penetrates.
 
 use super::dynamics::body_state;
 use super::group::SegmentEnd;
-use super::pairs::{Pair, Prediction};
+use super::pairs::{Link, Pair, Prediction};
 use super::region::{Region, Touch};
 use super::system::RigidSystem;
 use crate::time::Time;
+use glam::DVec2;
 use halfgap_collision::BodyId;
+use halfgap_geometry::Relation;
 
 /// An event's time is corrected while the gap is off by more than this part of the accuracy.
 const TIME_SHARE: f64 = 1e-2;
@@ -102,12 +104,45 @@ impl RigidSystem {
     }
 
     /// True if what touches in a region is not where the search saw it: of an event whose time was corrected, what fired.
+    /// So it is where a body lies within another that it did not touch.
     fn is_off(&self, region: &Region, time: Time) -> bool {
         let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
         let mut seen = region.touches.iter().zip(&region.motions);
-        seen.any(|(&touch, &(gap, _))| {
+        let moves_touches = seen.any(|(&touch, &(gap, _))| {
             let counts = time == self.now || region.fired == Some(touch);
             counts && (self.gap_at(touch, time).0 - gap).abs() > allowed
+        });
+        moves_touches || self.strayed(region, time).any(|body| self.is_in_another(body, region, time))
+    }
+
+    /// The bodies of a region that are farther from where the search saw them than contacts may be.
+    fn strayed<'a>(&'a self, region: &'a Region, time: Time) -> impl Iterator<Item = BodyId> + 'a {
+        let allowed = self.settings.tolerances.accuracy;
+        let groups =
+            region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
+        groups.flat_map(move |group| {
+            let offset = time.since(group.start).max(0.0);
+            let places = group.bodies.iter().zip(&group.paths);
+            places.filter_map(move |(&body, path)| {
+                let [x, y, angle] = [0, 1, 2].map(|k: usize| path[k].value_at(offset));
+                let state = self.flyer(body).state_at(time);
+                let way = state.position.distance(DVec2::new(x, y));
+                (way + (state.angle - angle).abs() * self.flyer(body).reach() > allowed).then_some(body)
+            })
+        })
+    }
+
+    /// True if a body lies within one near it, deeper than contacts may be, that it does not touch in a region.
+    fn is_in_another(&self, body: BodyId, region: &Region, time: Time) -> bool {
+        let pose = |body: BodyId| self.flyer(body).moving_at(time).pose;
+        let shape = |body: BodyId| &self.flyers[body.index()].body().shape;
+        self.pairs.of_body(body).iter().any(|&Link { pair, other }| {
+            let touches = |touch: &Touch| touch.bodies == self.pairs.get(pair).bodies;
+            let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
+            finite
+                && !region.touches.iter().any(touches)
+                && shape(body).distance(&pose(body), shape(other), &pose(other)).relation
+                    == Relation::Crossing
         })
     }
 

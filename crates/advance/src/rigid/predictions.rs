@@ -223,7 +223,7 @@ impl RigidSystem {
         span: f64,
     ) -> Search {
         // A lowered target makes nothing lie on the far side of its body.
-        let depth = tolerances.target_gap + self.settings.tolerances.target_gap;
+        let depth = tolerances.target_gap.max(0.0) + self.settings.tolerances.target_gap;
         let search = self.settings.search;
         let settings = &SearchSettings { depth: search.depth.max(depth), ..search };
         PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
@@ -287,8 +287,12 @@ fn look_ahead(
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_scene::resting_discs;
+    use super::super::test_scene::{FINE, resting_discs};
     use super::*;
+    use crate::rigid::{FlightLaw, RigidParts};
+    use glam::DVec2;
+    use halfgap_collision::{Body, BodyState};
+    use halfgap_geometry::Shape;
 
     #[test]
     fn bodies_that_follow_an_integrator_far_from_each_other_stay_apart() {
@@ -300,5 +304,27 @@ mod tests {
         };
         assert!(apart(1, 2));
         assert!(!apart(2, 3), "the gap is less than the target");
+    }
+
+    #[test]
+    fn bodies_that_fire_deep_within_each_other_still_meet() {
+        let block = |side: f64, spin: f64| {
+            let shape = Shape::block(1.0, 1.0).expect("a fine size");
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+            let (position, velocity) = (DVec2::new(side, 0.1 * side), DVec2::new(-side, 0.0));
+            let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
+            (body, FlightLaw::default(), state)
+        };
+        let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
+        let mut system = RigidSystem::new(parts, FINE, Time::from_seconds(10.0)).expect("nothing rests");
+        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
+        let expected = system.pairs.get(pair).clear;
+        for lowered in [0.4, 0.0, -1.0, -4.4] {
+            system.lanes[0].halo = lowered * FINE.tolerances.target_gap;
+            system.predict_all_of(&[BodyId(0)], true);
+            let Pair { prediction, clear, .. } = *system.pairs.get(pair);
+            assert!(matches!(prediction, Prediction::Contact(_)), "{lowered}: {prediction:?}");
+            assert!((clear.since(expected)).abs() < 1e-9, "{lowered}");
+        }
     }
 }

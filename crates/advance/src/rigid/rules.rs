@@ -27,6 +27,7 @@ impl RigidSystem {
             self.pairs.clear_rules_of(body);
         }
         let rest = self.rest_speed();
+        let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
         self.set_halos(region);
         for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
@@ -35,8 +36,8 @@ impl RigidSystem {
                 touch.skipped()
             } else {
                 // What opens comes back to where any pair fires, however low the halos of its bodies.
-                // What fired although it does not close would do so again at once.
-                let fired_open = *fired_open && region.fired == Some(*touch);
+                // What fired although it does not close would do so again at once. It may sink no farther than its zone.
+                let fired_open = *fired_open && region.fired == Some(*touch) && gap > least;
                 let stays = rate <= rest || fired_open;
                 let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
                 touch.lowered_to(target)
@@ -85,7 +86,8 @@ impl RigidSystem {
                     rule.target = rule.target.map(|target| target - lower);
                 }
             });
-            for body in self.pairs.get(pair).bodies {
+            // What cannot move is in no region that would raise it again.
+            for body in self.pairs.get(pair).bodies.into_iter().filter(|&body| region.place(body).is_some()) {
                 self.lanes[body.index()].halo -= lower;
             }
         }
@@ -118,5 +120,31 @@ impl RigidSystem {
                 *halo = halo.min((gap - seam).max(least));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::repeats::CALM_REPEATS;
+    use super::super::test_scene::resting_discs;
+    use super::*;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn a_floor_on_which_a_contact_insists_fires_elsewhere_as_before() {
+        let mut system = resting_discs(&[0.0]);
+        let [floor, disc] = [BodyId(0), BodyId(1)];
+        let before = system.lanes[floor.index()].halo;
+        let pair = system.pairs.between(floor, disc).expect("they touch");
+        for _ in 0..CALM_REPEATS + 5 {
+            system.note_repeat(pair).expect("not stuck yet");
+        }
+        let mut work = EventWork::default();
+        system.collect_region(&mut work.region, &[disc], system.now);
+        system.remeasure(&mut work.region, system.now);
+        system.measure_touches(&mut work.region);
+        system.lower_insistent(&work.region);
+        assert!(system.lanes[disc.index()].halo < before);
+        assert_eq!(system.lanes[floor.index()].halo, before);
     }
 }
