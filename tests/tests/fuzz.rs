@@ -178,6 +178,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         9_111_004,
         "a step made anew carried a light body, pressed by tons, into a wall that it had not touched",
     ),
+    (
+        9_229_541,
+        "an arc that was turned away met a line between two looks, as it was turned to it and sank at once",
+    ),
     (9_163_025, "a contact that fired although it opened was lowered each time, without end"),
 ];
 

@@ -214,6 +214,10 @@ impl World {
         turned_over: f64,
         (usual, rough): (f64, f64),
     ) -> Option<Finding> {
+        if usual == 0.0 {
+            // Where nothing moves or falls, there is only rounding.
+            return None;
+        }
         let share = (ASTRAY + self.statistics().steps as f64) * self.tolerance();
         let turned = turned_over.max(SELDOM * usual);
         let open = open_books(books, turned, share).filter(|error| error.is_nan() || *error > ROUGH * rough);

@@ -338,16 +338,31 @@ impl Dynamics<'_> {
                 (watch.place)(self, offset);
                 (watch.read)(self, row)
             });
-            let mut counts = |offset: &f64| {
-                (watch.place)(self, *offset);
-                (watch.counts)(self, row)
-            };
             let is_first = |offset: &f64| limit.is_none_or(|(least, _)| *offset < least);
-            if let Some(offset) = fall.filter(is_first).filter(&mut counts) {
+            let Some(offset) = fall.filter(is_first) else { continue };
+            (watch.place)(self, offset);
+            let counting = if (watch.counts)(self, row) {
+                Some(offset)
+            } else {
+                self.first_sinking_within(row).filter(is_first)
+            };
+            if let Some(offset) = counting {
                 *earliest = Some((offset, (watch.end)(row)));
             }
         }
         self.stage.there = there;
+    }
+
+    /// When a contact that is touched without force sinks on its features, beyond which it was seen to: what is turned away may
+    /// be turned back, and then sinks at once.
+    fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
+        let span = self.group.span;
+        let mut read = |offset: f64| {
+            self.place_at(offset);
+            self.height(row).max(-self.leaning_room(row))
+        };
+        let values = std::array::from_fn(|index| read(node(index, span)));
+        first_fall_before(&values, span, None, read)
     }
 
     /// How far a row is from running off its features, without end for one that cannot.
@@ -378,8 +393,13 @@ impl Dynamics<'_> {
 
     /// True if a contact that is touched without force lies within its features.
     fn is_within(&self, row: usize) -> bool {
+        self.leaning_room(row) >= 0.0
+    }
+
+    /// How far [m] a contact that is touched without force is from running off its features, without end if it cannot.
+    fn leaning_room(&self, row: usize) -> f64 {
         let row = &self.group.leaning[row];
-        self.physics.mechanism.room(row, &self.stage.movings).is_none_or(|room| room >= 0.0)
+        self.physics.mechanism.room(row, &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
     /// Force [N] of a row, raised by what counts as none; without end for one of either sign.
