@@ -397,7 +397,7 @@ impl Dynamics<'_> {
             self.stage.offsets = offsets;
             self.respond();
             // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask for more than
-            // what holds near here, and for what rounding makes of their gaps: that carried bodies through what they are near.
+            // what holds near here, and for what rounding makes of their gaps: errors far within the zone are not worth more.
             let way = self.largest_change();
             let is_noise = error < ROUNDING_SHARE * zone && way > zone;
             if way.powi(2) > error * length || is_noise {
