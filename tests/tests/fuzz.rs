@@ -182,6 +182,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         9_229_541,
         "an arc that was turned away met a line between two looks, as it was turned to it and sank at once",
     ),
+    (9_288_747, "a group that was to be stopped altogether was left a little spin, and drifted off its pins"),
     (9_163_025, "a contact that fired although it opened was lowered each time, without end"),
 ];
 

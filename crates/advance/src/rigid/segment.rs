@@ -36,6 +36,9 @@ const WORTHWHILE: f64 = 0.5;
 /// Bodies that move by so many times the error of their rows have other rates there: rows that all but depend on each other
 /// carry forces that do work on what is left of them.
 const FAR: f64 = 8.0;
+/// A change of velocities by more than so many times what is fast corrects nothing: to stop a group altogether, some points change
+/// by a little more than the fastest moves.
+const ALL_OF_IT: f64 = 2.0;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
 /// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
@@ -424,7 +427,7 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&rates);
         self.respond();
-        if self.largest_change() <= speed {
+        if self.largest_change() <= ALL_OF_IT * speed {
             self.change(&mut end, velocities);
         }
         self.stage.rates = rates;
