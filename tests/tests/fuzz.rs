@@ -183,6 +183,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "an arc that was turned away met a line between two looks, as it was turned to it and sank at once",
     ),
     (9_288_747, "a group that was to be stopped altogether was left a little spin, and drifted off its pins"),
+    (
+        9_296_680,
+        "a strongly damped dot beside heavy bodies: steps of few stages went on for ever, as they would have grown but for that",
+    ),
     (9_163_025, "a contact that fired although it opened was lowered each time, without end"),
 ];
 

@@ -102,6 +102,7 @@ impl Dynamics<'_> {
         let longest = self.longest_sound_step().min(self.longest_watched_step()).min(turning);
         let longest = longest.min(self.longest_smooth_step(control));
         let longest = longest.min(self.longest_stable_step(stepper.method()));
+        self.note_damping();
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();

@@ -114,6 +114,13 @@ impl Dynamics<'_> {
         laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
     }
 
+    /// Notes how fast damping is, where nobody has looked how fast the fastest part of the group is.
+    pub(crate) fn note_damping(&mut self) {
+        let rate = self.damping_rate();
+        let stiffness = &mut self.group.stiffness;
+        stiffness.rate = stiffness.rate.max(rate);
+    }
+
     /// The longest step [s] of a method that is stable under damping. A longer one from rest ends at rest, too, by luck, but what
     /// rounding sets in motion grows on the way, and dense output is far off.
     pub(crate) fn longest_stable_step(&self, method: Method) -> f64 {
