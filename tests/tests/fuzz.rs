@@ -188,6 +188,8 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a strongly damped dot beside heavy bodies: steps of few stages went on for ever, as they would have grown but for that",
     ),
     (9_163_025, "a contact that fired although it opened was lowered each time, without end"),
+    (9_552_829, "speeds counted as slow by how far from the origin bodies were, and blows became captures"),
+    (9_525_492, "the same by how strongly a body was damped"),
 ];
 
 /// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or masses too far apart. The

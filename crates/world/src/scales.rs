@@ -1,6 +1,7 @@
 //! From one relative tolerance and the scene's scales to the thresholds of touching.
 
 use halfgap_collision::Tolerances;
+use halfgap_geometry::Aabb;
 
 /// Part of the smallest body's radius, times the tolerance, that the target gap takes: the gap is a modelling error that
 /// impacts amplify, so it lies far below the tolerance.
@@ -18,10 +19,17 @@ pub(crate) struct Scales {
     pub(crate) smallest_radius: Option<f64>,
     /// Largest coordinate in size [m].
     pub(crate) coordinate: f64,
+    /// How far it is across all of it [m], or from the origin if that is less.
+    pub(crate) extent: f64,
     /// Largest speed of a point of a body [m/s].
     pub(crate) speed: f64,
-    /// Largest acceleration of a body [m/s^2].
+    /// Largest acceleration of a body [m/s^2] but for damping, which makes nothing fast.
     pub(crate) acceleration: f64,
+}
+
+/// The largest coordinate in size [m] within some bounds.
+pub(crate) fn farthest_in(bounds: &Aabb) -> f64 {
+    bounds.min.abs().max(bounds.max.abs()).max_element()
 }
 
 /// Thresholds that the user gives in place of the derived ones.
@@ -36,6 +44,13 @@ pub struct ToleranceOverrides {
 }
 
 impl Scales {
+    /// Takes in all that lies within some bounds [m].
+    pub(crate) fn spread(&mut self, bounds: Option<Aabb>) {
+        let Some(bounds) = bounds else { return };
+        self.coordinate = farthest_in(&bounds);
+        self.extent = bounds.size().length().min(self.coordinate);
+    }
+
     /// The smallest target gap [m] that coordinates of this size allow.
     pub(crate) fn smallest_gap(&self) -> f64 {
         GAP_ROUNDINGS * f64::EPSILON * self.coordinate
@@ -52,9 +67,9 @@ impl Scales {
         tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)
     }
 
-    /// A speed [m/s] of the scene: what falls across it reaches this, even if all is at rest at the start.
+    /// A speed [m/s] of the scene: what falls across it reaches this, even if all is at rest at the start, and wherever it is.
     pub(crate) fn speed_scale(&self) -> f64 {
-        self.speed.max((self.acceleration * self.coordinate).sqrt())
+        self.speed.max((self.acceleration * self.extent).sqrt())
     }
 
     pub(crate) fn tolerances(&self, tolerance: f64, given: &ToleranceOverrides) -> Tolerances {
@@ -68,5 +83,24 @@ impl Scales {
                 .velocity_tol
                 .unwrap_or((tolerance * self.speed_scale()).max(told_from_rounding)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn what_happens_far_away_is_no_faster() {
+        let speed_at = |place: DVec2| {
+            let mut scales = Scales { acceleration: 10.0, ..Scales::default() };
+            scales.spread(Some(Aabb { min: place - 4.0, max: place + 4.0 }));
+            assert!(scales.coordinate >= place.max_element());
+            scales.speed_scale()
+        };
+        let near = speed_at(DVec2::ZERO);
+        assert_eq!(near, (10.0f64 * 4.0).sqrt());
+        assert!(speed_at(DVec2::new(1e6, 0.0)) < 2.0 * near);
     }
 }

@@ -1,13 +1,13 @@
 //! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
 
 use super::{BodySpec, WorldBuilder, centered};
-use crate::scales::Scales;
+use crate::scales::{Scales, farthest_in};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
-use halfgap_collision::{BodyId, BodyState, Connector, Tolerances};
-use halfgap_geometry::{Aabb, Pose, Shape};
+use halfgap_collision::{BodyId, Connector, Tolerances};
+use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
 
 /// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to fourth powers of
@@ -89,7 +89,7 @@ impl WorldBuilder {
     pub(super) fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
         let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
         let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);
-        let mut far = bodies.map(|body| (body, farthest_of_shape(&centered(body), &body.state)));
+        let mut far = bodies.map(|body| (body, farthest_in(&centered(body).bounds_at(&body.state.pose()))));
         if let Some((body, value)) = far.find(|&(_, value)| value > largest) {
             return Err(too_large(body, "coordinates", largest, value));
         }
@@ -131,26 +131,20 @@ fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// The largest world coordinate of a body in size [m], given its shape about its centre of mass.
-pub(super) fn farthest_of_shape(shape: &Shape, state: &BodyState) -> f64 {
-    let bounds: Aabb = shape.bounds_at(&state.pose());
-    bounds.min.abs().max(bounds.max.abs()).max_element()
-}
-
 /// The largest coordinate of a connector in size [m], on a body or in the world.
 fn farthest(connector: &Connector) -> f64 {
     let (a, b) = connector.anchors();
     let anchors = [Some(a), b].into_iter().flatten().map(|anchor| anchor.point.abs().max_element());
-    anchors.fold(coordinate_of(connector), f64::max)
+    anchors.fold(world_bounds(connector).map_or(0.0, |bounds| farthest_in(&bounds)), f64::max)
 }
 
-/// The largest world coordinate of a connector in size [m], where it has any.
-pub(super) fn coordinate_of(connector: &Connector) -> f64 {
+/// What of the world a connector is tied to, if to any of it: the points, and the path.
+pub(super) fn world_bounds(connector: &Connector) -> Option<Aabb> {
     let (a, b) = connector.anchors();
     let anchors = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
-    let anchor = anchors.map(|anchor| anchor.point.abs().max_element()).fold(0.0, f64::max);
+    let points = anchors.map(|anchor| Aabb { min: anchor.point, max: anchor.point });
     let path = connector.path().map(|path| path.bounds());
-    path.map_or(anchor, |bounds| bounds.min.abs().max(bounds.max.abs()).max_element().max(anchor))
+    points.chain(path).reduce(Aabb::union)
 }
 
 fn check_body(body: &BodySpec) -> Result<(), WorldError> {

@@ -13,12 +13,12 @@ use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, energy_of, name_among};
 use crate::world_error::WorldError;
-use checks::{coordinate_of, farthest_of_shape};
+use checks::world_bounds;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
-use halfgap_geometry::{Pose, Shape};
+use halfgap_geometry::{Aabb, Pose, Shape};
 use std::slice::from_ref;
 use std::sync::Arc;
 
@@ -186,7 +186,7 @@ impl WorldBuilder {
             let state = |body: BodyId| bodies[body.index()].2;
             energy_of(&named, &self.forces, self.settings.start_time, state, &mut Vec::new()).total()
         };
-        let rough = tolerances.target_gap * forces_on(&bodies, &wrenches);
+        let forces = forces_on(&bodies, &wrenches);
         let given = total(&bodies);
         let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
         if let Some((connector, rate)) = apart.filter(|&(_, rate)| rate > tolerances.velocity_tol) {
@@ -198,7 +198,8 @@ impl WorldBuilder {
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
-        let sentry = Sentry::new(&self.settings, usual_energy(&bodies, &scales), rough);
+        let rough = tolerances.target_gap * forces;
+        let sentry = Sentry::new(&self.settings, usual_energy(&bodies, forces), rough);
         let settings = rigid_settings(&self.settings, &scales);
         let parts = RigidParts {
             bodies,
@@ -260,33 +261,35 @@ impl WorldBuilder {
 
     fn scales(&self, wrenches: &[Wrench]) -> Scales {
         let mut scales = Scales::default();
-        for spec in &self.connectors {
-            scales.coordinate = scales.coordinate.max(coordinate_of(&spec.connector));
-        }
+        let of_connectors = self.connectors.iter().filter_map(|spec| world_bounds(&spec.connector));
+        let mut bounds = of_connectors.reduce(Aabb::union);
         for ((body, law), wrench) in self.bodies.iter().zip(&self.laws).zip(wrenches) {
             let shape = centered(body);
-            scales.coordinate = scales.coordinate.max(farthest_of_shape(&shape, &body.state));
+            let own = shape.bounds_at(&body.state.pose());
+            bounds = Some(bounds.map_or(own, |all| all.union(own)));
             let Some(inertia) = &body.inertia else { continue };
             let reach = shape.reach();
             scales.smallest_radius = Some(scales.smallest_radius.map_or(reach, |least| least.min(reach)));
             let speed = body.state.velocity.length() + body.state.angular_velocity.abs() * reach;
             scales.speed = scales.speed.max(speed);
             let acceleration = (law.acceleration + wrench.force / inertia.mass).length()
-                + law.linear_rate * body.state.velocity.length()
                 + wrench.torque.abs() / inertia.moment * reach;
             scales.acceleration = scales.acceleration.max(acceleration);
         }
+        scales.spread(bounds);
         scales
     }
 }
 
-/// Kinetic energy [J] of bodies as fast as the fastest, and as fast as what falls across all of them.
-fn usual_energy(bodies: &[StartParts], scales: &Scales) -> f64 {
+/// Kinetic energy [J] of the bodies, and what forces of a size [N] make of it across all of them.
+fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
     let bounds = bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()));
-    let size = bounds.reduce(|all, one| all.union(one)).map_or(0.0, |all| all.size().length());
-    let mass =
-        bodies.iter().filter(|(body, ..)| !body.is_fixed()).map(|(body, ..)| body.inverse_mass.recip());
-    (0.5 * scales.speed * scales.speed + scales.acceleration * size) * mass.sum::<f64>()
+    let size = bounds.reduce(Aabb::union).map_or(0.0, |all| all.size().length());
+    let kinetic = bodies.iter().filter(|(body, ..)| !body.is_fixed()).map(|(body, _, state)| {
+        let (v, w) = (state.velocity, state.angular_velocity);
+        0.5 * (v.length_squared() / body.inverse_mass + w * w / body.inverse_moment)
+    });
+    kinetic.sum::<f64>() + forces * size
 }
 
 /// Sum of the sizes of the forces [N] on the movable bodies.
