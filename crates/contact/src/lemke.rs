@@ -2,7 +2,8 @@
 //!
 //! Follows C. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965, with
 //! lexicographic ties (see [`Dictionary`]) and a perturbed b, after scaling to a unit diagonal; the final basis is solved
-//! again from the original data, which undoes the perturbation and the digits that a dictionary loses with every pivot. Ends either at a solution or on a ray; a ray that
+//! again from the original data, which undoes the perturbation and the digits that a dictionary loses with every pivot, and
+//! corrected where it is wrong by that. Ends either at a solution or on a ray; a ray that
 //! is a Farkas certificate proves that the inequalities alone have no solution, any other proves nothing.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
@@ -24,6 +25,9 @@ const RAY: f64 = 1e-9;
 /// Sizes of the perturbation of b, in units of the scale, for one attempt each. On large redundant problems the exact
 /// rule for ties drowns in rounding; a small perturbation separates them, and its basis mostly serves b itself.
 const PERTURBATIONS: [f64; 4] = [1e-8, 0.0, 1e-6, 1e-4];
+
+/// How many rows of a final basis are changed, one by one, where the original data say that rounding chose the wrong one.
+const CORRECTIONS: usize = 8;
 
 /// Lemke's method with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -118,14 +122,52 @@ impl Lemke {
         End::Stopped
     }
 
-    /// Solves A_CC f_C = -b_C of the final basis in the original data, with refinement.
-    fn polish(&self, problem: &Problem, solution: &mut Solution) {
+    /// Solves again with the final basis in the original data, and corrects it where that shows that a row should have been in
+    /// it or not: of what is nearly zero rounding has decided. True if the answer is accepted.
+    fn polish(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
         let n = problem.len();
         let basic = self.dictionary.basic_rows().filter(|&(v, _)| v >= n && v < 2 * n).map(|(v, _)| v - n);
         solution.active.extend(basic);
         solution.active.sort_unstable();
+        for _ in 0..=CORRECTIONS {
+            let pulling = self.solve_basis(problem, solution);
+            if self.is_accepted(problem, solution) {
+                return true;
+            }
+            let closing = self.fastest_closing(problem, solution);
+            let Some((wrong, _)) =
+                [pulling, closing].into_iter().flatten().max_by(|p, q| p.1.total_cmp(&q.1))
+            else {
+                return false;
+            };
+            match solution.active.binary_search(&wrong) {
+                Ok(place) => drop(solution.active.remove(place)),
+                Err(place) => solution.active.insert(place, wrong),
+            }
+        }
+        false
+    }
+
+    fn is_accepted(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
+        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        solution.residuals.accepted(&self.settings, 0.0)
+    }
+
+    /// The row without force that closes fastest, and how fast, as part of the largest offset.
+    fn fastest_closing(&self, problem: &Problem, solution: &Solution) -> Option<(usize, f64)> {
+        let scaled = |i: usize, value: f64| value * self.scale[i];
+        let largest = (0..problem.len()).map(|i| scaled(i, problem.offset[i]).abs()).fold(0.0, f64::max);
+        let free = (0..problem.len())
+            .filter(|i| !problem.bilateral[*i] && solution.active.binary_search(i).is_err());
+        let closing = free.map(|i| (i, -scaled(i, solution.acceleration[i]) / largest));
+        closing.filter(|row| row.1 > 0.0).max_by(|p, q| p.1.total_cmp(&q.1))
+    }
+
+    /// Solves A_CC f_C = -b_C of the basis in the original data, with refinement. The row that pulls most, and how much, as part
+    /// of the largest force.
+    fn solve_basis(&self, problem: &Problem, solution: &mut Solution) -> Option<(usize, f64)> {
         let active = &solution.active;
-        let mut place = vec![usize::MAX; n];
+        let mut place = vec![usize::MAX; problem.len()];
         active.iter().enumerate().for_each(|(at, &row)| place[row] = at);
         let mut basis = Mat::<f64>::zeros(active.len(), active.len());
         for (at, &i) in active.iter().enumerate() {
@@ -142,10 +184,15 @@ impl Lemke {
             let rest = &right - &basis * &force;
             force += factor.solve(&rest);
         }
+        solution.force.fill(0.0);
         for (at, &i) in active.iter().enumerate() {
             let value = force[(at, 0)] * self.scale[i];
             solution.force[i] = if problem.bilateral[i] { value } else { value.max(0.0) };
         }
+        let largest = (0..active.len()).map(|at| force[(at, 0)].abs()).fold(0.0, f64::max);
+        let unilateral = active.iter().enumerate().filter(|&(_, &i)| !problem.bilateral[i]);
+        let pulling = unilateral.map(|(at, &i)| (i, -force[(at, 0)] / largest));
+        pulling.filter(|row| row.1 > 0.0).max_by(|p, q| p.1.total_cmp(&q.1))
     }
 
     /// The ray as a certificate, if it is one: z ≥ 0, Aᵀz ≤ 0 (= 0 on bilateral rows), bᵀz < 0.
@@ -210,12 +257,12 @@ impl Solver for Lemke {
             {
                 return Err(SolveError::Infeasible(Box::new(proof)));
             }
-            if let End::Solved = end {
-                self.polish(problem, solution);
-            }
             solution.iterations = self.pivots;
-            solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
-            if solution.residuals.accepted(&self.settings, 0.0) {
+            let is_solved = match end {
+                End::Solved => self.polish(problem, solution),
+                End::Ray(_) | End::Stopped => self.is_accepted(problem, solution),
+            };
+            if is_solved {
                 return Ok(());
             }
         }

@@ -1,6 +1,6 @@
 //! Problems that went wrong once: found by trying many of a family.
 
-use halfgap_contact::{Auto, Inertia, Problem, Row, Solution, SolveError, Solver};
+use halfgap_contact::{Auto, Inertia, Lemke, Problem, Row, Solution, SolveError, Solver};
 
 use crate::data::{Case, disproof, judge};
 
@@ -28,6 +28,15 @@ fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
             "{name}: {judged:?}"
         );
     }
+}
+
+#[test]
+fn a_row_that_rounding_left_out_of_the_basis_is_taken_in() {
+    let case = Case::found("parallel_rows_at_a_tie");
+    let mut solution = Solution::new();
+    Lemke::default().solve(&case.problem, &mut solution).unwrap();
+    let judged = judge(&case.problem, &solution.force);
+    assert!(judged.good(), "{judged:?}");
 }
 
 #[test]
