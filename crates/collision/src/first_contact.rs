@@ -290,13 +290,22 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
                 return Search::NoneBefore(span);
             }
             start = near;
-            let whole =
-                Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, span);
-            let wanted = length.unwrap_or_else(|| self.first_length(&whole));
-            let end = span.min(start + wanted);
             // A window shorter than the clock resolves: let it be one tick.
-            let end = if end > start { end } else { start.next_up() };
-            let (progress, tried) = self.search_window(start, end);
+            let end_after = |wanted: f64| span.min(start + wanted).max(start.next_up());
+            let over = |end: f64| {
+                Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, end)
+            };
+            let (wanted, window) = match length {
+                Some(wanted) => (wanted, over(end_after(wanted))),
+                None => {
+                    let mut window = over(span);
+                    let wanted = self.first_length(&window);
+                    window.end_at(end_after(wanted));
+                    (wanted, window)
+                }
+            };
+            let end = end_after(wanted);
+            let (progress, tried) = self.search_window(&window, start, end);
             match progress.into_search() {
                 Search::NoneBefore(time) if time >= end => start = end,
                 Search::NoneBefore(time) => return Search::NoneBefore(time),
@@ -355,8 +364,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     }
 
     /// Searches one window; also tells how many feature pairs had to be tried.
-    fn search_window(&self, start: f64, end: f64) -> (Progress, usize) {
-        let window = Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, end);
+    fn search_window(&self, window: &Window<'_, A, B>, start: f64, end: f64) -> (Progress, usize) {
         let half = 0.5 * (end - start);
         let (at_a, at_b) = window.at(start + half);
         // A point turns by at most its arm times the angle, and never farther than across its circle.
@@ -377,7 +385,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
                 let Some(kind) = pair_kind(feature_a, feature_b) else { return };
                 if let Some(pair) = self.pair(kind, [a, b], feature_a, feature_b) {
                     tried += 1;
-                    self.try_pair(&window, &pair, [a, b], start, &mut progress);
+                    self.try_pair(window, &pair, [a, b], start, &mut progress);
                 }
             },
         );

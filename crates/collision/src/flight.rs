@@ -10,21 +10,18 @@ use halfgap_geometry::{Pose, Rotation};
 
 /// Below this value of k t the functions p1 and p2 are summed as series, above in closed form.
 const SERIES_BELOW: f64 = 0.5;
-/// Terms of these series: enough for full precision below `SERIES_BELOW`, below `SMALL`, and below `TINY`.
+/// Terms of the series: enough for full precision below `SERIES_BELOW`; half of them do below `SMALL`.
 const SERIES_TERMS: usize = 16;
 const SMALL: f64 = 1.0 / 64.0;
-const SMALL_TERMS: usize = 8;
-const TINY: f64 = 1.0 / 1024.0;
-const TINY_TERMS: usize = 5;
-/// 1/(n + 3): a chain of divisions would take most of the time.
-const RECIPROCALS: [f64; SERIES_TERMS] = {
-    let mut reciprocals = [0.0; SERIES_TERMS];
-    let mut n = 0;
+/// (-1)^n/(n + 2)!, the coefficients of p2.
+const SERIES: [f64; SERIES_TERMS] = {
+    let mut coefficients = [0.5; SERIES_TERMS];
+    let mut n = 1;
     while n < SERIES_TERMS {
-        reciprocals[n] = 1.0 / (n + 3) as f64;
+        coefficients[n] = -coefficients[n - 1] / (n + 2) as f64;
         n += 1;
     }
-    reciprocals
+    coefficients
 };
 
 /// The motion of a body on which only uniform forces and linear damping act; also that of a fixed body.
@@ -123,31 +120,36 @@ impl Flight {
         if self.linear_rate == 0.0 {
             return self.start.position + (self.start.velocity + self.acceleration * (0.5 * t)) * t;
         }
-        let decay = Decay::new(self.linear_rate * t);
-        self.start.position + (self.start.velocity * decay.p1 + self.acceleration * (t * decay.p2)) * t
+        self.decayed_position(&Decay::new(self.linear_rate * t), t)
     }
 
     fn velocity_at(&self, t: f64) -> DVec2 {
         if self.linear_rate == 0.0 {
             return self.start.velocity + self.acceleration * t;
         }
-        let z = self.linear_rate * t;
-        let decay = Decay::new(z);
-        self.start.velocity * (1.0 - z * decay.p1) + self.acceleration * (t * decay.p1)
+        self.decayed_velocity(&Decay::new(self.linear_rate * t), t)
+    }
+
+    fn decayed_position(&self, decay: &Decay, t: f64) -> DVec2 {
+        self.start.position + (self.start.velocity * decay.p1 + self.acceleration * (t * decay.p2)) * t
+    }
+
+    fn decayed_velocity(&self, decay: &Decay, t: f64) -> DVec2 {
+        self.start.velocity * decay.left + self.acceleration * (t * decay.p1)
     }
 
     fn angle_at(&self, t: f64) -> f64 {
-        if self.angular_rate == 0.0 {
-            return self.start.angle + self.start.angular_velocity * t;
-        }
-        self.start.angle + self.start.angular_velocity * t * Decay::new(self.angular_rate * t).p1
+        self.start.angle + self.start.angular_velocity * t * self.angular_decay(t).p1
     }
 
     fn angular_velocity_at(&self, t: f64) -> f64 {
-        if self.angular_rate == 0.0 {
-            return self.start.angular_velocity;
-        }
-        self.start.angular_velocity * libm::exp(-self.angular_rate * t)
+        self.start.angular_velocity * self.angular_decay(t).left
+    }
+
+    /// What damping leaves of the turning, where there is any.
+    fn angular_decay(&self, t: f64) -> Decay {
+        let is_damped = self.angular_rate != 0.0 && self.start.angular_velocity != 0.0;
+        if is_damped { Decay::new(self.angular_rate * t) } else { Decay::NONE }
     }
 }
 
@@ -162,17 +164,25 @@ impl Motion for Flight {
     }
 
     #[inline]
-    fn moving_at(&self, offset: f64) -> Moving {
-        let rotation = if self.start.angular_velocity == 0.0 || offset == 0.0 {
-            self.start_rotation
-        } else {
-            Rotation::from_angle(self.angle_at(offset))
+    fn moving_at(&self, t: f64) -> Moving {
+        let start = &self.start;
+        let linear = if self.linear_rate == 0.0 { None } else { Some(Decay::new(self.linear_rate * t)) };
+        let (position, velocity) = match &linear {
+            Some(decay) => (self.decayed_position(decay, t), self.decayed_velocity(decay, t)),
+            None => (self.position_at(t), self.velocity_at(t)),
         };
-        let (position, velocity) = self.center_at(offset);
+        if start.angular_velocity == 0.0 || t == 0.0 {
+            let pose = Pose { position, rotation: self.start_rotation };
+            return Moving { pose, velocity, angular_velocity: start.angular_velocity };
+        }
+        // Mostly both are damped alike.
+        let shared = linear.filter(|_| self.angular_rate == self.linear_rate);
+        let angular = shared.unwrap_or_else(|| self.angular_decay(t));
+        let angle = start.angle + start.angular_velocity * t * angular.p1;
         Moving {
-            pose: Pose { position, rotation },
+            pose: Pose { position, rotation: Rotation::from_angle(angle) },
             velocity,
-            angular_velocity: self.angular_velocity_at(offset),
+            angular_velocity: start.angular_velocity * angular.left,
         }
     }
 
@@ -181,12 +191,8 @@ impl Motion for Flight {
         if self.linear_rate == 0.0 {
             return (self.position_at(t), self.velocity_at(t));
         }
-        // For less than one by one: e^-z = 1 - z p1.
-        let z = self.linear_rate * t;
-        let decay = Decay::new(z);
-        let (v, a) = (self.start.velocity, self.acceleration);
-        let position = self.start.position + (v * decay.p1 + a * (t * decay.p2)) * t;
-        (position, v * (1.0 - z * decay.p1) + a * (t * decay.p1))
+        let decay = Decay::new(self.linear_rate * t);
+        (self.decayed_position(&decay, t), self.decayed_velocity(&decay, t))
     }
 
     fn bounds(&self, from: f64, to: f64) -> MotionBounds {
@@ -217,30 +223,37 @@ impl Motion for Flight {
     }
 }
 
-/// The functions p1 and p2 of damped motion.
+/// What damping makes of a motion by the time t, with z = k t.
 struct Decay {
+    /// e^-z: what is left of a velocity.
+    left: f64,
     p1: f64,
     p2: f64,
 }
 
 impl Decay {
+    const NONE: Self = Self { left: 1.0, p1: 1.0, p2: 0.5 };
+
+    #[inline]
     fn new(z: f64) -> Self {
-        if z > SERIES_BELOW {
-            let p1 = -libm::expm1(-z) / z;
-            return Self { p1, p2: (1.0 - p1) / z };
+        if z.abs() > SERIES_BELOW {
+            return Self::closed(z);
         }
-        let p2 = match z.abs() {
-            size if size < TINY => Self::series::<TINY_TERMS>(z),
-            size if size < SMALL => Self::series::<SMALL_TERMS>(z),
-            _ => Self::series::<SERIES_TERMS>(z),
+        let (z2, z4) = (z * z, (z * z) * (z * z));
+        let eight = |n: usize| {
+            let pair = |k: usize| SERIES[n + k] + z * SERIES[n + k + 1];
+            (pair(0) + z2 * pair(2)) + z4 * (pair(4) + z2 * pair(6))
         };
-        Self { p1: 1.0 - z * p2, p2 }
+        let p2 = if z.abs() < SMALL { eight(0) } else { eight(0) + z4 * z4 * eight(8) };
+        let p1 = 1.0 - z * p2;
+        Self { left: 1.0 - z * p1, p1, p2 }
     }
 
-    /// p2(z) = sum of (-z)^n / (n + 2)!, by Horner's rule from the last term; p1 = 1 - z p2.
-    #[inline]
-    fn series<const TERMS: usize>(z: f64) -> f64 {
-        0.5 * RECIPROCALS[..TERMS].iter().rev().fold(1.0, |sum, reciprocal| 1.0 - sum * (z * reciprocal))
+    /// Kept apart: few flights last so long.
+    #[inline(never)]
+    fn closed(z: f64) -> Self {
+        let p1 = -libm::expm1(-z) / z;
+        Self { left: libm::exp(-z), p1, p2: (1.0 - p1) / z }
     }
 }
 
@@ -250,11 +263,12 @@ mod tests {
 
     #[test]
     fn the_series_of_damping_meet_the_closed_forms() {
-        for z in [SERIES_BELOW, 0.4999999, 0.1, SMALL, 0.999 * SMALL, TINY, 0.999 * TINY, 1e-4] {
+        for z in [SERIES_BELOW, 0.4999999, 0.1, SMALL, 0.999 * SMALL, 1e-4, 3.0, 40.0] {
             let series = Decay::new(z);
             let p1 = -(-z).exp_m1() / z;
             assert!((series.p1 - p1).abs() < 1e-15, "p1({z})");
             assert!((series.p2 - (1.0 - p1) / z).abs() < 1e-15 / z, "p2({z})");
+            assert!((series.left / (-z).exp() - 1.0).abs() < 1e-15, "left of {z}");
         }
     }
 

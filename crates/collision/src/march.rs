@@ -35,6 +35,9 @@ pub(crate) struct Window<'a, A, B> {
     pub(crate) motion_b: &'a B,
     /// Offsets [s] of the search's time 0 in the two motions.
     pub(crate) offsets: [f64; 2],
+    /// The time [s] at which the window begins, and where the bodies are then: every march looks there first.
+    start: f64,
+    at_start: (Moving, Moving),
     /// Bounds over the window on the relative velocity and acceleration of the centres of mass, of a against b.
     pub(crate) speed: f64,
     pub(crate) acceleration: Ball,
@@ -43,7 +46,7 @@ pub(crate) struct Window<'a, A, B> {
 }
 
 /// Bounds on a body's turning.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SpinBound {
     /// Angular speed [rad/s].
     pub(crate) speed: f64,
@@ -116,17 +119,29 @@ type LineSide<'a> = (&'a LineFeature, &'a Moving, SpinBound);
 impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     /// The window from `start` to `end` [s].
     pub(crate) fn new(motion_a: &'a A, motion_b: &'a B, offsets: [f64; 2], start: f64, end: f64) -> Self {
-        let bounds_a = motion_a.bounds(offsets[0] + start, offsets[0] + end);
-        let bounds_b = motion_b.bounds(offsets[1] + start, offsets[1] + end);
-        Self {
+        let mut window = Self {
             motion_a,
             motion_b,
             offsets,
-            speed: bounds_a.velocity.largest_difference(&bounds_b.velocity),
-            acceleration: bounds_a.acceleration.minus(&bounds_b.acceleration),
-            spin_a: SpinBound::of(&bounds_a),
-            spin_b: SpinBound::of(&bounds_b),
-        }
+            start,
+            at_start: (motion_a.moving_at(offsets[0] + start), motion_b.moving_at(offsets[1] + start)),
+            speed: 0.0,
+            acceleration: Ball::default(),
+            spin_a: SpinBound::default(),
+            spin_b: SpinBound::default(),
+        };
+        window.end_at(end);
+        window
+    }
+
+    /// Lets the window end at another time [s].
+    pub(crate) fn end_at(&mut self, end: f64) {
+        let bounds_a = self.motion_a.bounds(self.offsets[0] + self.start, self.offsets[0] + end);
+        let bounds_b = self.motion_b.bounds(self.offsets[1] + self.start, self.offsets[1] + end);
+        self.speed = bounds_a.velocity.largest_difference(&bounds_b.velocity);
+        self.acceleration = bounds_a.acceleration.minus(&bounds_b.acceleration);
+        self.spin_a = SpinBound::of(&bounds_a);
+        self.spin_b = SpinBound::of(&bounds_b);
     }
 
     /// Where the two bodies are at a time [s] of the search.
@@ -158,7 +173,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     }
 
     fn look(&self, pair: &Pair<'_>, time: f64, ahead: f64) -> Look {
-        let (a, b) = self.at(time);
+        let (a, b) = if time == self.start { self.at_start } else { self.at(time) };
         match (pair.kind, pair.feature_a, pair.feature_b) {
             (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
                 let slack = pair.slack[0];

@@ -83,7 +83,14 @@ impl Aabb {
     #[must_use]
     #[inline]
     pub fn distance_to(&self, point: DVec2) -> f64 {
+        self.distance_squared_to(point).sqrt()
+    }
+
+    /// Its square [m^2].
+    #[must_use]
+    #[inline]
+    pub(crate) fn distance_squared_to(&self, point: DVec2) -> f64 {
         let outside = (self.min - point).max(point - self.max).max(DVec2::ZERO);
-        outside.length()
+        outside.length_squared()
     }
 }

@@ -13,7 +13,7 @@
 //!
 //! # Code map
 //!
-//! `pose` places a body; `line`, `arc` and `edge` are the edges, `crossing` and `edge_distance` what two of them have to
+//! `pose` places a body, by the `sine` of its angle; `line`, `arc` and `edge` are the edges, `crossing` and `edge_distance` what two of them have to
 //! do with each other; `path` chains them, `outline` orients paths, `simple` refuses those that meet, `mass` integrates
 //! over them; `shape` bundles outline, features and tree; `build` and `build_mechanism` are the ready-made shapes.
 //! `feature` and `gap` answer how far apart two features are; `tree` finds the features near a place. The queries on
@@ -55,6 +55,7 @@ mod pose;
 mod ray;
 mod shape;
 mod simple;
+mod sine;
 mod swept;
 mod tree;
 

@@ -1,5 +1,6 @@
 //! Placements of a body in the plane: a rotation about the body's origin, then a shift.
 
+use crate::sine::sin_cos;
 use glam::DVec2;
 
 /// A rotation, kept as its cosine and sine.
@@ -22,7 +23,7 @@ impl Rotation {
         if angle == 0.0 {
             return Self::IDENTITY;
         }
-        let (sin, cos) = libm::sincos(angle);
+        let (sin, cos) = sin_cos(angle);
         Self { cos, sin }
     }
 

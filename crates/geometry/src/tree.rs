@@ -117,7 +117,7 @@ impl FeatureTree {
     ) {
         if !self.nodes.is_empty() && !other.nodes.is_empty() {
             let pair = PosedTrees { a: self, b: other, a_in_b: pose.seen_from(other_pose), distance };
-            pair.descend(0, 0, visit);
+            pair.descend(pair.of_a(0), pair.of_b(0), visit);
         }
     }
 
@@ -227,36 +227,64 @@ struct PosedTrees<'a> {
     distance: f64,
 }
 
+/// A node with the centre of its circle in the other tree's coordinates [m].
+#[derive(Clone, Copy)]
+struct Placed {
+    node: usize,
+    center: DVec2,
+}
+
 impl PosedTrees<'_> {
-    fn descend(&self, node_a: usize, node_b: usize, visit: &mut impl FnMut(FeatureId, FeatureId)) {
-        let (a, b) = (&self.a.nodes[node_a], &self.b.nodes[node_b]);
-        if self.are_apart(a, b) {
+    fn of_a(&self, node: usize) -> Placed {
+        Placed { node, center: self.a_in_b.point_to_world(self.a.nodes[node].center) }
+    }
+
+    fn of_b(&self, node: usize) -> Placed {
+        Placed { node, center: self.a_in_b.point_to_body(self.b.nodes[node].center) }
+    }
+
+    fn descend(&self, at_a: Placed, at_b: Placed, visit: &mut impl FnMut(FeatureId, FeatureId)) {
+        let (a, b) = (&self.a.nodes[at_a.node], &self.b.nodes[at_b.node]);
+        if self.are_apart((a, at_a.center), (b, at_b.center)) {
             return;
         }
         match (a.content, b.content) {
             (Content::Leaf(feature_a), Content::Leaf(feature_b)) => visit(feature_a, feature_b),
-            (Content::Branch(second), Content::Leaf(_)) => {
-                self.descend(node_a + 1, node_b, visit);
-                self.descend(second as usize, node_b, visit);
-            }
             (Content::Branch(second), Content::Branch(_)) if a.radius >= b.radius => {
-                self.descend(node_a + 1, node_b, visit);
-                self.descend(second as usize, node_b, visit);
+                self.descend_a(at_a.node, second, at_b, visit);
+            }
+            (Content::Branch(second), Content::Leaf(_)) => {
+                self.descend_a(at_a.node, second, at_b, visit);
             }
             (_, Content::Branch(second)) => {
-                self.descend(node_a, node_b + 1, visit);
-                self.descend(node_a, second as usize, visit);
+                self.descend(at_a, self.of_b(at_b.node + 1), visit);
+                self.descend(at_a, self.of_b(second as usize), visit);
             }
         }
     }
 
-    fn are_apart(&self, a: &Node, b: &Node) -> bool {
-        let center_a = self.a_in_b.point_to_world(a.center);
-        let reach = a.radius + b.radius + self.distance;
-        if (center_a - b.center).length_squared() > reach * reach {
-            return true;
-        }
-        b.bounds.distance_to(center_a) > a.radius + self.distance
-            || a.bounds.distance_to(self.a_in_b.point_to_body(b.center)) > b.radius + self.distance
+    fn descend_a(
+        &self,
+        node: usize,
+        second: u32,
+        at_b: Placed,
+        visit: &mut impl FnMut(FeatureId, FeatureId),
+    ) {
+        self.descend(self.of_a(node + 1), at_b, visit);
+        self.descend(self.of_a(second as usize), at_b, visit);
     }
+
+    /// True if the bounds of two nodes are farther apart than the distance, given each centre as the other sees it.
+    #[inline]
+    fn are_apart(&self, (a, center_a): (&Node, DVec2), (b, center_b): (&Node, DVec2)) -> bool {
+        let (reach_a, reach_b) = (a.radius + self.distance, b.radius + self.distance);
+        (center_a - b.center).length_squared() > square(a.radius + reach_b)
+            || b.bounds.distance_squared_to(center_a) > square(reach_a)
+            || a.bounds.distance_squared_to(center_b) > square(reach_b)
+    }
+}
+
+#[inline]
+fn square(x: f64) -> f64 {
+    x * x
 }
