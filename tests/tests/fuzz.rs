@@ -222,11 +222,11 @@ fn books_that_rounding_opens_are_told() {
         return;
     }
     assert!(matches!(&verdict, Verdict::Broken(broken) if broken.kind == "energy books"), "{verdict:?}");
-    let scene = Scene::parse(&json, SceneFormat::Json).unwrap();
-    let mut world = World::from_scene(&scene).unwrap();
+    let scene = Scene::parse(&json, SceneFormat::Json).expect("scenes of seeds are scenes");
+    let mut world = World::from_scene(&scene).expect("it ran before");
     let mut turned_over = 0.0f64;
     for part in 1..=100 {
-        world.advance_to(scene.run.duration * f64::from(part) / 100.0, &mut |_| ()).unwrap();
+        world.advance_to(scene.run.duration * f64::from(part) / 100.0, &mut |_| ()).expect("it ran before");
         turned_over = turned_over.max(world.ledger().now.kinetic);
     }
     let findings = world.findings(turned_over);

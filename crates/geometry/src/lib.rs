@@ -15,7 +15,7 @@
 //!
 //! `pose` places a body, by the `sine` of its angle; `line`, `arc` and `edge` are the edges, `crossing` and `edge_distance` what two of them have to
 //! do with each other; `path` chains them, `outline` orients paths, `simple` refuses those that meet, `mass` integrates
-//! over them; `shape` bundles outline, features and tree; `build` and `build_mechanism` are the ready-made shapes.
+//! over them; `shape` bundles outline, features and tree, `pool` keeps equal ones once; `build` and `build_mechanism` are the ready-made shapes.
 //! `feature` and `gap` answer how far apart two features are; `tree` finds the features near a place. The queries on
 //! shapes are `inside`, `nearest`, `ray`, `distance` (of two shapes), `bounds` and `swept` (boxes).
 //!
@@ -51,6 +51,7 @@ mod mass;
 mod nearest;
 mod outline;
 mod path;
+mod pool;
 mod pose;
 mod ray;
 mod shape;
@@ -75,6 +76,7 @@ pub use line::Line;
 pub use mass::MassProperties;
 pub use nearest::NearestPoint;
 pub use path::{EdgeSpec, Path, PathSpec};
+pub use pool::ShapePool;
 pub use pose::{Pose, Rotation};
 pub use ray::{Ray, RayHit};
 pub use shape::Shape;

@@ -13,13 +13,19 @@ use crate::pose::Pose;
 use crate::tree::{FeatureTree, Node};
 use glam::DVec2;
 use std::f64::consts::PI;
+use std::sync::Arc as Shared;
 
 /// A corner whose edges' directions differ by less than this angle [rad] is smooth: the edges carry all contacts there.
 const SMOOTH_CORNER: f64 = 1e-9;
 
-/// A flat, rigid shape with holes, in body coordinates.
+/// A flat, rigid shape with holes, in body coordinates. Clones share what lies in memory.
 #[derive(Clone, Debug)]
 pub struct Shape {
+    parts: Shared<Parts>,
+}
+
+#[derive(Debug)]
+struct Parts {
     paths: Vec<Path>,
     mass: MassProperties,
     bounds: Aabb,
@@ -41,7 +47,11 @@ impl Shape {
     /// Open, empty, crossing or degenerate paths: the error names path and edge. Sizes whose fourth powers are no numbers.
     pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
         let shape = Self::from_oriented(build_outline(specs)?);
-        if shape.mass.is_sound() { Ok(shape) } else { Err(ShapeError::NoMoments { reach: shape.reach }) }
+        if shape.parts.mass.is_sound() {
+            Ok(shape)
+        } else {
+            Err(ShapeError::NoMoments { reach: shape.reach() })
+        }
     }
 
     /// The shape moved by `shift` [m] in body coordinates.
@@ -50,30 +60,36 @@ impl Shape {
         if shift == DVec2::ZERO {
             return self.clone();
         }
-        Self::from_oriented(self.paths.iter().map(|path| path.translated(shift)).collect())
+        Self::from_oriented(self.parts.paths.iter().map(|path| path.translated(shift)).collect())
+    }
+
+    /// True if two shapes are one and the same in memory.
+    #[cfg(test)]
+    pub(crate) fn is_shared_with(&self, other: &Shape) -> bool {
+        Shared::ptr_eq(&self.parts, &other.parts)
     }
 
     /// The closed paths, each with the solid on its left.
     #[must_use]
     pub fn paths(&self) -> &[Path] {
-        &self.paths
+        &self.parts.paths
     }
 
     /// All edges of all paths.
     pub fn edges(&self) -> impl Iterator<Item = &Edge> {
-        self.paths.iter().flat_map(Path::edges)
+        self.parts.paths.iter().flat_map(Path::edges)
     }
 
     /// Area, centroid and second moment.
     #[must_use]
     pub fn mass_properties(&self) -> MassProperties {
-        self.mass
+        self.parts.mass
     }
 
     /// Smallest axis-aligned box around the shape in body coordinates.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.parts.bounds
     }
 
     /// Smallest axis-aligned box around the posed shape.
@@ -89,14 +105,14 @@ impl Shape {
     /// Largest distance [m] of a point of the shape from the body's origin.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        self.reach
+        self.parts.reach
     }
 
     /// Farthest point of the shape along a unit vector of the body: its distance [m] from the origin along the vector.
     #[must_use]
     pub fn extent(&self, direction: DVec2) -> f64 {
         let bound = |node: &Node| -(node.center.dot(direction) + node.radius);
-        let farthest = self.tree.find_least(f64::INFINITY, &bound, &mut |id| {
+        let farthest = self.parts.tree.find_least(f64::INFINITY, &bound, &mut |id| {
             Some((-feature_extent(self.feature(id), direction), ()))
         });
         farthest.map_or(0.0, |(least, ())| -least)
@@ -112,7 +128,7 @@ impl Shape {
     /// One of the edges.
     #[must_use]
     pub fn edge(&self, id: EdgeId) -> &Edge {
-        &self.paths[id.path as usize].edges()[id.edge as usize]
+        &self.parts.paths[id.path as usize].edges()[id.edge as usize]
     }
 
     /// The edge that a feature is; `None` for a vertex.
@@ -124,14 +140,14 @@ impl Shape {
     /// The parts of the shape that can touch.
     #[must_use]
     pub fn features(&self) -> &[Feature] {
-        &self.features
+        &self.parts.features
     }
 
     /// One of the features.
     #[must_use]
     #[inline]
     pub fn feature(&self, id: FeatureId) -> &Feature {
-        &self.features[id.0 as usize]
+        &self.parts.features[id.0 as usize]
     }
 
     /// Length [m] over which an angle outside of a feature's range becomes a distance: an arc's radius, the shorter of the
@@ -139,26 +155,26 @@ impl Shape {
     #[must_use]
     #[inline]
     pub fn lever(&self, feature: FeatureId) -> f64 {
-        self.levers[feature.0 as usize]
+        self.parts.levers[feature.0 as usize]
     }
 
     /// Which part of the outline a feature is.
     #[must_use]
     pub fn source(&self, id: FeatureId) -> FeatureSource {
-        self.sources[id.0 as usize]
+        self.parts.sources[id.0 as usize]
     }
 
     /// The corners at the two ends of an edge; `None` where the outline goes on smoothly or turns inwards, and for a vertex.
     #[must_use]
     pub fn ends_of(&self, feature: FeatureId) -> [Option<FeatureId>; 2] {
         let Some(EdgeId { path, edge }) = self.whole_edge(feature) else { return [None; 2] };
-        let count = self.paths[path as usize].edges().len();
+        let count = self.parts.paths[path as usize].edges().len();
         let after = if edge as usize + 1 == count { 0 } else { edge + 1 };
         [edge, after].map(|edge| {
             let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
             // Features are in the order of their edges, a vertex before the edge that starts at it.
-            let place = self.sources.partition_point(|source| source < &corner);
-            (self.sources.get(place) == Some(&corner))
+            let place = self.parts.sources.partition_point(|source| source < &corner);
+            (self.parts.sources.get(place) == Some(&corner))
                 .then(|| FeatureId(u32::try_from(place).unwrap_or(u32::MAX)))
         })
     }
@@ -170,10 +186,10 @@ impl Shape {
         if kind != FeatureKind::Vertex {
             return None;
         }
-        let before = if edge == 0 { self.paths[path as usize].edges().len() as u32 } else { edge } - 1;
+        let before = if edge == 0 { self.parts.paths[path as usize].edges().len() as u32 } else { edge } - 1;
         let whole = |edge: u32| {
             let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
-            let place = self.sources.partition_point(|source| source <= &corner);
+            let place = self.parts.sources.partition_point(|source| source <= &corner);
             FeatureId(u32::try_from(place).unwrap_or(u32::MAX))
         };
         Some([before, edge].map(whole))
@@ -182,7 +198,7 @@ impl Shape {
     /// The bounding tree over the features.
     #[must_use]
     pub fn tree(&self) -> &FeatureTree {
-        &self.tree
+        &self.parts.tree
     }
 
     fn from_oriented(paths: Vec<Path>) -> Self {
@@ -194,7 +210,8 @@ impl Shape {
         let tree = FeatureTree::build(&features, &boxes);
         let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
         let levers = features.iter().zip(&sources).map(|(f, source)| lever(&paths, f, source)).collect();
-        Self { paths, mass, bounds, reach, features, sources, levers, tree }
+        let parts = Parts { paths, mass, bounds, reach, features, sources, levers, tree };
+        Self { parts: Shared::new(parts) }
     }
 }
 

@@ -18,7 +18,7 @@ use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
-use halfgap_geometry::{Aabb, Pose, Shape};
+use halfgap_geometry::{Aabb, Pose, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
 
@@ -173,6 +173,8 @@ impl WorldBuilder {
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
+        let mut pool = ShapePool::default();
+        bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
         let rules = StartRules {
             tolerances: &tolerances,
