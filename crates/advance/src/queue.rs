@@ -47,10 +47,22 @@ struct Family([Key; CHILDREN]);
 pub struct EventQueue {
     families: Vec<Family>,
     len: usize,
-    /// Place in the heap of each source's entry.
-    places: Vec<u32>,
-    /// What the first number of each source's time leaves.
-    rests: Vec<f64>,
+    /// By source.
+    sources: Vec<Source>,
+}
+
+/// What is known of a source, in one place.
+#[derive(Clone, Copy, Debug)]
+struct Source {
+    /// Place of its entry in the heap.
+    place: u32,
+    /// What the first number of its time leaves.
+    rest: f64,
+}
+
+impl Source {
+    /// Without an event.
+    const IDLE: Self = Self { place: ABSENT, rest: 0.0 };
 }
 
 impl EventQueue {
@@ -88,27 +100,26 @@ impl EventQueue {
     /// Predicts the source's event for `time`, in place of any earlier prediction.
     pub fn set(&mut self, source: SourceId, time: Time) {
         let index = source.0 as usize;
-        if index >= self.places.len() {
-            self.places.resize(index + 1, ABSENT);
-            self.rests.resize(index + 1, 0.0);
+        if index >= self.sources.len() {
+            self.sources.resize(index + 1, Source::IDLE);
         }
         let (seconds, rest) = time.parts();
         let key = Key { seconds, source: source.0 };
         let Some(place) = self.place_of(source) else {
-            self.rests[index] = rest;
+            self.sources[index].rest = rest;
             let place = self.grow();
             self.rise(place, key);
             return;
         };
         let is_earlier = time < self.time(self.key(place));
-        self.rests[index] = rest;
+        self.sources[index].rest = rest;
         if is_earlier { self.rise(place, key) } else { self.sink(place, key) }
     }
 
     /// Takes the source's event away, if it has one.
     pub fn clear(&mut self, source: SourceId) {
         let Some(place) = self.place_of(source) else { return };
-        self.places[source.0 as usize] = ABSENT;
+        self.sources[source.0 as usize].place = ABSENT;
         self.len -= 1;
         let (gone, last) = (self.key(place), self.key(self.len));
         *self.slot(self.len) = NOTHING;
@@ -118,12 +129,12 @@ impl EventQueue {
     }
 
     fn place_of(&self, source: SourceId) -> Option<usize> {
-        let place = self.places.get(source.0 as usize).copied().filter(|&place| place != ABSENT)?;
-        Some(place as usize)
+        let place = self.sources.get(source.0 as usize)?.place;
+        (place != ABSENT).then_some(place as usize)
     }
 
     fn time(&self, key: Key) -> Time {
-        Time::from_parts(key.seconds, self.rests[key.source as usize])
+        Time::from_parts(key.seconds, self.sources[key.source as usize].rest)
     }
 
     /// Makes room for one more entry, and says at which place.
@@ -156,8 +167,9 @@ impl EventQueue {
     /// The same of times whose first numbers are equal, which is rare.
     #[cold]
     fn breaks_tie(&self, a: Key, b: Key) -> bool {
-        let of =
-            |key: Key| (self.rests.get(key.source as usize).copied().unwrap_or(f64::INFINITY), key.source);
+        let of = |key: Key| {
+            (self.sources.get(key.source as usize).map_or(f64::INFINITY, |source| source.rest), key.source)
+        };
         let ((rest_a, source_a), (rest_b, source_b)) = (of(a), of(b));
         rest_a < rest_b || (rest_a == rest_b && source_a < source_b)
     }
@@ -200,7 +212,7 @@ impl EventQueue {
     #[inline]
     fn put(&mut self, place: usize, key: Key) {
         *self.slot(place) = key;
-        self.places[key.source as usize] =
+        self.sources[key.source as usize].place =
             u32::try_from(place).expect("sources are counted in 32 bits, and each has at most one place");
     }
 }

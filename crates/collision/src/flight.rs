@@ -63,6 +63,18 @@ impl Flight {
         &self.start
     }
 
+    /// Acceleration [m/s^2] of the centre of mass without damping.
+    #[must_use]
+    pub fn acceleration(&self) -> DVec2 {
+        self.acceleration
+    }
+
+    /// Rates [1/s] at which damping takes the linear and the angular velocity.
+    #[must_use]
+    pub fn rates(&self) -> [f64; 2] {
+        [self.linear_rate, self.angular_rate]
+    }
+
     /// The parabola of the centre of mass from the start on; `None` if damping bends it.
     #[must_use]
     pub fn parabola(&self) -> Option<Polynomial> {

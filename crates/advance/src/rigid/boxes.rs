@@ -5,6 +5,7 @@
 //! its room ahead.
 
 use super::flyer::Flyer;
+use super::lane::Lane;
 use super::path::Path;
 use crate::time::Time;
 use glam::DVec2;
@@ -39,20 +40,25 @@ impl Room {
     }
 
     /// The box around the body at a time, with the room that it has.
-    pub(crate) fn fat_box(&self, flyer: &Flyer, time: Time) -> Aabb {
-        if flyer.is_at_rest() {
+    pub(crate) fn fat_box(&self, lane: &Lane, flyer: &Flyer, time: Time) -> Aabb {
+        if lane.is_at_rest {
             return flyer.body().shape.bounds_at(&flyer.moving_at(time).pose).grown(self.skin);
         }
-        let state = flyer.state_at(time);
-        let center = state.position + self.ahead(flyer, state.velocity);
+        let center = match lane.flight_from(time) {
+            Some(path) => path.position + self.ahead(path.velocity),
+            None => {
+                let state = flyer.state_at(time);
+                // Of what does not fly only a bound on the speed is known: it has as much room on all sides.
+                let ahead = flyer.flight().map_or(DVec2::ZERO, |_| self.ahead(state.velocity));
+                state.position + ahead
+            }
+        };
         Aabb::around_disc(center, self.reach + self.margin + self.skin)
     }
 
-    /// By how much [m] the box is set ahead of the body. Of what does not fly only a bound on the speed is known: it has as
-    /// much room on all sides.
-    fn ahead(&self, flyer: &Flyer, velocity: DVec2) -> DVec2 {
-        let direction = velocity.try_normalize().filter(|_| flyer.flight().is_some());
-        direction.map_or(DVec2::ZERO, |direction| direction * (AHEAD * self.margin))
+    /// By how much [m] the box of what flies is set ahead of the body.
+    fn ahead(&self, velocity: DVec2) -> DVec2 {
+        velocity.try_normalize().map_or(DVec2::ZERO, |direction| direction * (AHEAD * self.margin))
     }
 
     /// Fits the margin to the number of neighbours found.
@@ -65,8 +71,8 @@ impl Room {
     }
 
     /// A time before which the body surely stays in the given box; `None` if it stays for ever.
-    pub(crate) fn stays_until(&self, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
-        if flyer.is_at_rest() {
+    pub(crate) fn stays_until(&self, lane: &Lane, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
+        if lane.is_at_rest {
             return None;
         }
         let core = fat_box.grown(-(self.reach + self.skin));
@@ -74,19 +80,19 @@ impl Room {
             // The tight box of a body that was at rest: it has no room to move in, not even to turn.
             return Some(time);
         }
+        if let Some(path) = lane.flight_from(time) {
+            return leaving_time(&path, &core).map(|wait| time.plus(wait));
+        }
         let offset = flyer.offset(time);
         let slack = || {
             let position = flyer.path().state_at(offset).position;
             (position - core.min).min(core.max - position).min_element().max(0.0)
         };
         match flyer.path() {
-            Path::Flight(flight) => match flight.polynomial_from(offset) {
-                Some(path) => leaving_time(&path, &core).map(|wait| time.plus(wait)),
-                None => {
-                    let by_axes = damped_leaving_time(flight, offset, &core)?;
-                    Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))
-                }
-            },
+            Path::Flight(flight) => {
+                let by_axes = damped_leaving_time(flight, offset, &core)?;
+                Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))
+            }
             // What comes after the segment is another question.
             Path::Dense(dense) if core.contains(&dense.center_box()) => None,
             Path::Dense(dense) => {

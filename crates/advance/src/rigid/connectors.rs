@@ -53,7 +53,7 @@ impl RigidSystem {
     /// Adds the records of the connectors of a body of the region.
     pub(crate) fn collect_connectors(&self, region: &mut Region, place: usize, time: Time) {
         let body = region.bodies[place];
-        for &id in &self.connectors_of[body.index()] {
+        for &id in self.connectors_of.of(body) {
             let connector = self.connector(id);
             let [a, b] = connector.bodies();
             let other = if a == body { b } else { a };
@@ -109,8 +109,8 @@ impl RigidSystem {
     /// Notes where on their rails the points of a region's connectors are.
     pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
         for &body in &region.bodies {
-            for index in 0..self.connectors_of[body.index()].len() {
-                let id = self.connectors_of[body.index()][index];
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
                 let Some(path) = self.connector(id).path() else { continue };
                 let (anchor, _) = self.connector(id).anchors();
                 let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
@@ -145,8 +145,8 @@ impl RigidSystem {
     pub(crate) fn predict_ropes(&mut self, region: &Region, settling: &Settling) {
         let sink = self.sink();
         for &body in &region.bodies {
-            for index in 0..self.connectors_of[body.index()].len() {
-                let id = self.connectors_of[body.index()][index];
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
                 let Some(rope) = rope_of(self.connector(id)) else { continue };
                 let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, self.now));
                 let sample = self.connector(id).measure(0, &a, &b);
@@ -165,8 +165,8 @@ impl RigidSystem {
     /// Searches on for the ropes of some bodies, whose motions are known for longer now.
     pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
         for &body in bodies {
-            for index in 0..self.connectors_of[body.index()].len() {
-                let id = self.connectors_of[body.index()][index];
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
                 let is_known = self.connector_states[id.index()].taut.is_some();
                 if let (Some(rope), false) = (rope_of(self.connector(id)), is_known) {
                     self.predict_rope(id, &rope);

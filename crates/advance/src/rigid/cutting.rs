@@ -7,7 +7,7 @@
 
 use super::dynamics::body_state;
 use super::group::SegmentEnd;
-use super::pairs::{Link, Pair, Prediction};
+use super::pairs::{Link, Prediction};
 use super::region::{Region, Touch};
 use super::system::RigidSystem;
 use crate::time::Time;
@@ -92,11 +92,9 @@ impl RigidSystem {
         let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
         let links = region.bodies.iter().flat_map(|&body| self.pairs.of_body(body));
         let contacts = links.filter_map(|link| {
-            let &Pair { bodies, prediction: Prediction::Contact(features), .. } = self.pairs.get(link.pair)
-            else {
-                return None;
-            };
+            let Prediction::Contact(features) = self.pairs.get(link.pair).prediction else { return None };
             let predicted = self.queue.time_of(self.pair_source(link.pair))?;
+            let bodies = self.pairs.bodies(link.pair);
             let has_sunk = || self.gap_at(Touch { bodies, features }, time).0 < least;
             (predicted < time && has_sunk()).then_some(predicted)
         });
@@ -137,7 +135,7 @@ impl RigidSystem {
         let pose = |body: BodyId| self.flyer(body).moving_at(time).pose;
         let shape = |body: BodyId| &self.flyers[body.index()].body().shape;
         self.pairs.of_body(body).iter().any(|&Link { pair, other }| {
-            let touches = |touch: &Touch| touch.bodies == self.pairs.get(pair).bodies;
+            let touches = |touch: &Touch| touch.bodies == self.pairs.bodies(pair);
             let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
             finite
                 && !region.touches.iter().any(touches)

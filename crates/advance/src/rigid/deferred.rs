@@ -12,7 +12,7 @@ impl RigidSystem {
     /// True if nothing ends the segments of a group early.
     pub(crate) fn is_unwatched(&self, group: &Group) -> bool {
         let mechanism = self.mechanism();
-        let mut connectors = group.bodies.iter().flat_map(|body| &self.connectors_of[body.index()]);
+        let mut connectors = group.bodies.iter().flat_map(|&body| self.connectors_of.of(body));
         group.bodies.iter().all(|body| self.loners[body.index()])
             && connectors.all(|&id| self.connector(id).is_bilateral())
             && group.rows.iter().all(|row| row.bilateral && !mechanism.can_change(row))

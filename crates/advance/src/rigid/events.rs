@@ -84,7 +84,7 @@ impl RigidSystem {
         pair: PairId,
         features: [FeatureId; 2],
     ) -> Result<bool, AdvanceError> {
-        let bodies = self.pairs.get(pair).bodies;
+        let bodies = self.pairs.bodies(pair);
         if self.sinks(pair, features) || self.passes_over(pair, features) {
             return Ok(false);
         }

@@ -42,7 +42,7 @@ impl RigidSystem {
         if self.pairs.rules(pair).iter().any(is_left_alone) {
             return false;
         }
-        let bodies = self.pairs.get(pair).bodies;
+        let bodies = self.pairs.bodies(pair);
         let Some(passing) = self.passing_features(bodies, features) else { return false };
         self.pairs.change_rules(pair, |rules| {
             for features in passing.into_iter().flatten() {
@@ -65,6 +65,9 @@ impl RigidSystem {
     /// The pairs of features that do not run against each other where two features meet, these among them: those of corners that
     /// pass over each other.
     fn passing_features(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<Passing> {
+        if bodies.iter().any(|&body| self.flyer(body).disc().is_some()) {
+            return None;
+        }
         let corners = [0, 1].map(|side: usize| {
             let moving = self.flyer(bodies[side]).moving_at(self.now);
             self.corners_at(bodies[side], &moving, features[side])

@@ -6,7 +6,6 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
 use halfgap_geometry::{DirectionRange, Feature, Shape};
-use std::sync::Arc;
 
 /// What acts on a body in free flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,15 +28,14 @@ impl FlightLaw {
 
 /// A body and its segment: its motion and when that started.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub struct Flyer {
     start: Time,
     flight: Flight,
     reach: f64,
     /// Radius [m], if the body is nothing but a disc about its centre of mass.
     disc: Option<f64>,
-    law: FlightLaw,
-    /// Shared with clones, and away from what every prediction reads.
-    body: Arc<Body>,
+    body: Body,
     /// The motion, while it is integrated.
     is_integrated: bool,
     dense: Option<Box<DensePath>>,
@@ -53,16 +51,7 @@ impl Flyer {
             Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), disc_radius(&body.shape));
-        Self {
-            start: time,
-            flight,
-            reach,
-            disc,
-            law,
-            body: Arc::new(body),
-            is_integrated: false,
-            dense: None,
-        }
+        Self { start: time, flight, reach, disc, body, is_integrated: false, dense: None }
     }
 
     /// The body.
@@ -73,8 +62,9 @@ impl Flyer {
 
     /// What acts on it in free flight.
     #[must_use]
-    pub fn law(&self) -> &FlightLaw {
-        &self.law
+    pub fn law(&self) -> FlightLaw {
+        let (acceleration, [linear_rate, angular_rate]) = (self.flight.acceleration(), self.flight.rates());
+        FlightLaw { acceleration, linear_rate, angular_rate }
     }
 
     /// State at a time of the present segment.

@@ -188,7 +188,7 @@ impl RigidSystem {
             }
         }
         for place in 0..count {
-            let mut connectors = self.connectors_of[region.bodies[place].index()].iter();
+            let mut connectors = self.connectors_of.of(region.bodies[place]).iter();
             self.groups.integrated[place] |= connectors.any(|&id| is_stop(self.connector(id)));
         }
         // What is integrated is a matter of the whole class.
@@ -299,7 +299,7 @@ impl RigidSystem {
 
     fn list_stops(&self, group: &mut Group) {
         for index in 0..group.bodies.len() {
-            for &id in &self.connectors_of[group.bodies[index].index()] {
+            for &id in self.connectors_of.of(group.bodies[index]) {
                 let source = RowSource::Connector(id, 0);
                 let is_held = group.rows.iter().any(|row| row.source == source);
                 if is_stop(self.connector(id)) && !is_held {

@@ -42,6 +42,8 @@ pub(crate) struct Lane {
     /// Of what has no parabola: how far [m] its centre of mass gets from `position` during its segment.
     course: f64,
     pub(crate) kind: LaneKind,
+    /// The body neither moves nor is about to.
+    pub(crate) is_at_rest: bool,
 }
 
 /// A disc in which a centre of mass stays for some time.
@@ -66,6 +68,7 @@ impl Lane {
             halo,
             course: f64::INFINITY,
             kind: LaneKind::Other,
+            is_at_rest: false,
         };
         lane.follow(flyer);
         lane
@@ -73,6 +76,7 @@ impl Lane {
 
     /// Takes over the present motion of the body.
     pub(crate) fn follow(&mut self, flyer: &Flyer) {
+        self.is_at_rest = flyer.is_at_rest();
         let Some(parabola) = flyer.flight().and_then(Flight::parabola) else {
             self.kind = LaneKind::Other;
             (self.position, self.course) = match flyer.path() {
@@ -108,6 +112,12 @@ impl Lane {
         self.position + (self.velocity + self.acceleration * (0.5 * t)) * t
     }
 
+    /// How it goes on from a time, if it follows a parabola.
+    #[inline]
+    pub(crate) fn flight_from(&self, time: Time) -> Option<Polynomial> {
+        (self.kind != LaneKind::Other).then(|| self.parabola_from(time))
+    }
+
     /// How it goes on from a time; not to be asked of `Other`.
     #[inline]
     pub(crate) fn parabola_from(&self, time: Time) -> Polynomial {
@@ -122,6 +132,7 @@ impl Lane {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pairs::Pair;
     use super::super::test_scene::resting_discs;
     use super::*;
     use crate::rigid::FlightLaw;
@@ -179,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn where_a_body_is_fits_in_a_line_of_the_cache() {
-        assert_eq!(size_of::<Lane>(), 128);
+    fn what_events_read_fits_into_lines_of_the_cache() {
+        assert_eq!([size_of::<Lane>(), size_of::<Flyer>(), size_of::<Pair>()], [128, 192, 32]);
     }
 }

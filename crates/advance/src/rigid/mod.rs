@@ -15,6 +15,7 @@
 mod bounces;
 mod boxes;
 mod brief;
+mod by_body;
 mod connectors;
 mod crossing;
 mod cutting;

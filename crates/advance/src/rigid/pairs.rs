@@ -19,15 +19,15 @@ pub(crate) enum Prediction {
     Quiet,
 }
 
-/// Two bodies whose boxes overlap: what every prediction reads, and no more.
+/// Two bodies whose boxes overlap: what every prediction reads, and no more, within a line of the cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub(crate) struct Pair {
-    pub(crate) bodies: [BodyId; 2],
     /// No contact before this time.
     pub(crate) clear: Time,
     pub(crate) prediction: Prediction,
     /// The last batch of predictions that it was in.
-    batch: u32,
+    batch: u16,
     /// False if no feature pair is searched otherwise.
     pub(crate) has_rules: bool,
     alive: bool,
@@ -80,11 +80,13 @@ pub(crate) struct Seen {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
+    /// The bodies of each pair, the lesser first.
+    bodies: Vec<[BodyId; 2]>,
     pasts: Vec<PairPast>,
     free: Vec<PairId>,
     of_body: Vec<Vec<Link>>,
     /// The present batch of predictions.
-    batch: u32,
+    batch: u16,
     /// Fixed bodies keep no list: nothing ever changes their motion, and theirs would be the longest.
     is_fixed: Vec<bool>,
 }
@@ -100,6 +102,11 @@ impl Pairs {
 
     pub(crate) fn get_mut(&mut self, id: PairId) -> &mut Pair {
         &mut self.pairs[id.0 as usize]
+    }
+
+    /// The bodies of a pair, the lesser first.
+    pub(crate) fn bodies(&self, id: PairId) -> [BodyId; 2] {
+        self.bodies[id.0 as usize]
     }
 
     /// True of a body that nothing moves.
@@ -190,16 +197,17 @@ impl Pairs {
 
     pub(crate) fn add(&mut self, a: BodyId, b: BodyId, clear: Time) -> PairId {
         let bodies = if a < b { [a, b] } else { [b, a] };
-        let pair =
-            Pair { bodies, clear, prediction: Prediction::Quiet, batch: 0, has_rules: false, alive: true };
+        let pair = Pair { clear, prediction: Prediction::Quiet, batch: 0, has_rules: false, alive: true };
         let id = match self.free.pop() {
             Some(id) => {
                 *self.get_mut(id) = pair;
+                self.bodies[id.0 as usize] = bodies;
                 self.past_mut(id).clear();
                 id
             }
             None => {
                 self.pairs.push(pair);
+                self.bodies.push(bodies);
                 self.pasts.push(PairPast::default());
                 PairId(
                     u32::try_from(self.pairs.len() - 1)
@@ -218,7 +226,7 @@ impl Pairs {
     pub(crate) fn remove(&mut self, id: PairId) {
         debug_assert!(self.get(id).alive, "a pair is removed once");
         self.get_mut(id).alive = false;
-        for body in self.get(id).bodies {
+        for body in self.bodies(id) {
             let list = &mut self.of_body[body.index()];
             if let Some(place) = list.iter().position(|link| link.pair == id) {
                 list.swap_remove(place);

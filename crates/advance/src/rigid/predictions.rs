@@ -1,7 +1,7 @@
 //! What may happen next: which bodies are near each other, and when pairs of them come into contact.
 
 use super::lane::{Lane, LaneKind};
-use super::pairs::{Link, Pair, PairId, Prediction};
+use super::pairs::{Link, PairId, Prediction};
 use super::path::Path;
 use super::system::RigidSystem;
 use crate::queue::SourceId;
@@ -29,19 +29,25 @@ impl RigidSystem {
         }
     }
 
+    /// Gives a body that goes on as before a box of its own.
     fn place_box(&mut self, body: BodyId) {
-        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
-        let fat_box = room.fat_box(flyer, self.now);
+        let (lane, flyer) = (&self.lanes[body.index()], &self.flyers[body.index()]);
+        let fat_box = self.rooms[body.index()].fat_box(lane, flyer, self.now);
         self.broad.set(body, fat_box);
-        self.renew_stay(body);
+        self.predict_leaving(body);
     }
 
-    /// Predicts anew when the body, whose motion may be new, leaves its box.
+    /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
+        self.lanes[body.index()].follow(&self.flyers[body.index()]);
+        self.predict_leaving(body);
+    }
+
+    fn predict_leaving(&mut self, body: BodyId) {
         let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
-        let stay = self.broad.bounds(body).and_then(|fat_box| room.stays_until(flyer, fat_box, self.now));
         let lane = &mut self.lanes[body.index()];
-        lane.follow(flyer);
+        let fat_box = self.broad.bounds(body);
+        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.now));
         lane.stay = stay.unwrap_or(Time::NEVER);
         match stay {
             Some(time) => self.queue.set(SourceId(body.0), time),
@@ -94,8 +100,8 @@ impl RigidSystem {
 
     /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
     pub(crate) fn predict(&mut self, pair: PairId) {
-        let &Pair { bodies: [a, b], clear, .. } = self.pairs.get(pair);
-        let from = clear.max(self.now);
+        let [a, b] = self.pairs.bodies(pair);
+        let from = self.pairs.get(pair).clear.max(self.now);
         let disc = self.disc_at(a, from);
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
@@ -137,7 +143,7 @@ impl RigidSystem {
     /// Kept apart: most pairs do not come here.
     #[inline(never)]
     fn predict_any(&mut self, pair: PairId, from: Time) {
-        let [a, b] = self.pairs.get(pair).bodies;
+        let [a, b] = self.pairs.bodies(pair);
         let until = self.known_until(a).min(self.known_until(b));
         if self.stays_apart(pair, from, until) {
             self.note_prediction(pair, (Prediction::Quiet, until));
@@ -152,11 +158,10 @@ impl RigidSystem {
     /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near each other: in a
     /// heap, where steps are short, few of those that are neighbours do.
     fn stays_apart(&self, pair: PairId, from: Time, until: Time) -> bool {
-        let &Pair { bodies, has_rules, .. } = self.pairs.get(pair);
-        let [a, b] = bodies.map(|body| &self.lanes[body.index()]);
+        let [a, b] = self.pairs.bodies(pair).map(|body| &self.lanes[body.index()]);
         let span = until.since(from);
         let any_integrated = a.kind == LaneKind::Other || b.kind == LaneKind::Other;
-        if has_rules || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
+        if self.pairs.get(pair).has_rules || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
             return false;
         }
         let (p, q) = (a.course_from(from, span), b.course_from(from, span));
@@ -181,7 +186,7 @@ impl RigidSystem {
         if !self.pairs.get(pair).has_rules {
             return;
         }
-        let [a, b] = self.pairs.get(pair).bodies;
+        let [a, b] = self.pairs.bodies(pair);
         let (pose_a, pose_b) = (self.flyer(a).moving_at(time).pose, self.flyer(b).moving_at(time).pose);
         let (shape_a, shape_b) = (&self.flyers[a.index()].body().shape, &self.flyers[b.index()].body().shape);
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
@@ -196,7 +201,7 @@ impl RigidSystem {
 
     /// Searches for a contact of two bodies in the given span [s] from a time on.
     fn search(&self, pair: PairId, from: Time, span: f64) -> Search {
-        let [a, b] = self.pairs.get(pair).bodies;
+        let [a, b] = self.pairs.bodies(pair);
         let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
@@ -287,6 +292,7 @@ fn look_ahead(
 
 #[cfg(test)]
 mod tests {
+    use super::super::pairs::Pair;
     use super::super::test_scene::{FINE, resting_discs};
     use super::*;
     use crate::rigid::{FlightLaw, RigidParts};

@@ -24,7 +24,7 @@ impl RigidSystem {
     /// How often the contacts of a pair have been handled at the present time.
     pub(crate) fn note_repeat(&mut self, pair: PairId) -> Result<u32, AdvanceError> {
         let now = self.now;
-        let bodies = self.pairs.get(pair).bodies;
+        let bodies = self.pairs.bodies(pair);
         let entry = self.pairs.past_mut(pair);
         let is_repeat = entry.last_contact.is_some_and(|last| is_same_time(last, now));
         entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };

@@ -87,7 +87,7 @@ impl RigidSystem {
                 }
             });
             // What cannot move is in no region that would raise it again.
-            for body in self.pairs.get(pair).bodies.into_iter().filter(|&body| region.place(body).is_some()) {
+            for body in self.pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
                 self.lanes[body.index()].halo -= lower;
             }
         }

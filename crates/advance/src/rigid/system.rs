@@ -5,6 +5,7 @@
 
 use super::boxes::Room;
 use super::brief::Steppers;
+use super::by_body::ByBody;
 use super::connectors::ConnectorState;
 use super::deferred::loners;
 use super::dynamics::{ExtraAcceleration, Stage};
@@ -131,10 +132,10 @@ pub struct RigidSystem {
     pub(crate) pairs: Pairs,
     pub(crate) flyers: Vec<Flyer>,
     pub(crate) connectors: Vec<Connector>,
-    pub(crate) connectors_of: Vec<Vec<ConnectorId>>,
+    pub(crate) connectors_of: ByBody<ConnectorId>,
     pub(crate) connector_states: Vec<ConnectorState>,
     pub(crate) laws: Vec<Arc<dyn ForceLaw>>,
-    laws_of: Vec<Vec<usize>>,
+    laws_of: ByBody<usize>,
     /// Whether each law has a potential.
     pub(crate) has_potential: Vec<bool>,
     pub(crate) rooms: Vec<Room>,
@@ -193,6 +194,7 @@ impl RigidSystem {
         let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = flyers.len();
+        let connector_ids = (0..).map(ConnectorId);
         let mut system = Self {
             settings,
             counts: Counts { segments: count as u64, ..Counts::default() },
@@ -213,16 +215,8 @@ impl RigidSystem {
             start,
             ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
             has_potential: laws.iter().map(|law| law.potential(&snapshot).is_some()).collect(),
-            connectors_of: index_by_body(
-                count,
-                connectors.iter().map(|connector| connector.bodies().to_vec()),
-            )
-            .into_iter()
-            .map(|list| {
-                list.into_iter().map(|index| ConnectorId(u32::try_from(index).unwrap_or(u32::MAX))).collect()
-            })
-            .collect(),
-            laws_of: index_by_body(count, laws.iter().map(|law| law.bodies().to_vec())),
+            connectors_of: ByBody::new(count, connector_ids.zip(connectors.iter().map(Connector::bodies))),
+            laws_of: ByBody::new(count, laws.iter().map(|law| law.bodies()).enumerate()),
             connector_states: vec![ConnectorState::default(); connectors.len()],
             connectors,
             laws,
@@ -326,7 +320,7 @@ impl RigidSystem {
 
     /// Laws that act on a body.
     pub(crate) fn laws_of(&self, body: BodyId) -> &[usize] {
-        &self.laws_of[body.index()]
+        self.laws_of.of(body)
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_> {
@@ -388,19 +382,6 @@ impl RigidSystem {
             }
         }
     }
-}
-
-/// For each body the places of the lists that name it.
-fn index_by_body(bodies: usize, lists: impl Iterator<Item = Vec<BodyId>>) -> Vec<Vec<usize>> {
-    let mut of_body = vec![Vec::new(); bodies];
-    for (index, list) in lists.enumerate() {
-        for body in list.into_iter().filter(|body| !body.is_world()) {
-            if of_body[body.index()].last() != Some(&index) {
-                of_body[body.index()].push(index);
-            }
-        }
-    }
-    of_body
 }
 
 impl EventDriven for RigidSystem {

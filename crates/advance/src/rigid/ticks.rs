@@ -39,7 +39,7 @@ impl RigidSystem {
     /// True if a pair that fires is left to sink until the next tick.
     pub(crate) fn sinks(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let Some(step) = self.settings.impulse_step else { return false };
-        let bodies = self.pairs.get(pair).bodies;
+        let bodies = self.pairs.bodies(pair);
         let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
         let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
         let sample = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose);
@@ -82,7 +82,7 @@ impl RigidSystem {
         self.queue.clear(self.tick_source());
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
-        work.seeds.extend(self.ticks.waiting.iter().flat_map(|&pair| self.pairs.get(pair).bodies));
+        work.seeds.extend(self.ticks.waiting.iter().flat_map(|&pair| self.pairs.bodies(pair)));
         self.ticks.waiting.clear();
         work.seeds.sort_unstable();
         work.seeds.dedup();
