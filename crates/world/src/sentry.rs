@@ -13,10 +13,8 @@ use crate::world::World;
 use halfgap_advance::rigid::Ledger as Booked;
 use halfgap_collision::Moving;
 
-/// Segments of motion from one look to the next, beside some for each body.
+/// Segments of motion from one look to the next, beside one for each body.
 const SEGMENTS: u64 = 16;
-/// Those for each body.
-const SEGMENTS_PER_BODY: u64 = 4;
 
 /// What the sentry remembers, and room for its looks.
 #[derive(Clone, Debug)]
@@ -66,7 +64,7 @@ impl World {
     /// It does not; else that of the advance.
     pub(crate) fn stand_guard(&mut self, outcome: Result<(), RunError>) -> Result<(), RunError> {
         let segments = self.statistics().steps;
-        let is_soon = segments - self.sentry.looked < SEGMENTS + SEGMENTS_PER_BODY * self.body_count() as u64;
+        let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
         if outcome.is_ok() && is_soon || !self.keeps_to_tolerance() {
             return outcome;
         }
