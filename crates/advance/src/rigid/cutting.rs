@@ -123,7 +123,7 @@ impl RigidSystem {
             let places = group.bodies.iter().zip(&group.paths);
             places.filter_map(move |(&body, path)| {
                 let [x, y, angle] = [0, 1, 2].map(|k: usize| path[k].value_at(offset));
-                let state = self.flyer(body).state_at(time);
+                let state = self.flyer(body).unwound_at(time);
                 let way = state.position.distance(DVec2::new(x, y));
                 (way + (state.angle - angle).abs() * self.flyer(body).reach() > allowed).then_some(body)
             })

@@ -303,6 +303,9 @@ impl RigidSystem {
 
     /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        for &body in &work.region.bodies {
+            self.flyers[body.index()].unwind();
+        }
         self.note_rails(&work.region, self.now);
         self.settle_and_still(work)?;
         self.note_begins(&work.region, &work.settling);
@@ -355,7 +358,7 @@ impl RigidSystem {
             return false;
         }
         work.before.clear();
-        work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).state_at(now)));
+        work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(now)));
         // What may as well be left is not worth long trying.
         let manner = Manner::Trial;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut work.stop, now, manner);
@@ -383,7 +386,7 @@ impl RigidSystem {
         let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
         region.bodies.iter().zip(before).all(|(&body, before)| {
             let flyer = self.flyer(body);
-            let after = flyer.state_at(self.now);
+            let after = flyer.unwound_at(self.now);
             let turned = (after.angular_velocity - before.angular_velocity).abs() * flyer.reach();
             after.velocity.distance(before.velocity) + turned <= MODEST * stopped
         })

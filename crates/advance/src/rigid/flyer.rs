@@ -6,6 +6,10 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
 use halfgap_geometry::{DirectionRange, Feature, Shape};
+use std::f64::consts::TAU;
+
+/// What the number nearest to a turn [rad] lacks of it.
+const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
 /// What acts on a body in free flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,6 +40,8 @@ pub struct Flyer {
     /// Radius [m], if the body is nothing but a disc about its centre of mass.
     disc: Option<f64>,
     body: Body,
+    /// Whole turns that the angles of the present motion lack.
+    turns: f64,
     /// The motion, while it is integrated.
     is_integrated: bool,
     dense: Option<Box<DensePath>>,
@@ -51,7 +57,7 @@ impl Flyer {
             Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), disc_radius(&body.shape));
-        Self { start: time, flight, reach, disc, body, is_integrated: false, dense: None }
+        Self { start: time, flight, reach, disc, body, turns: 0.0, is_integrated: false, dense: None }
     }
 
     /// The body.
@@ -70,7 +76,26 @@ impl Flyer {
     /// State at a time of the present segment.
     #[must_use]
     pub fn state_at(&self, time: Time) -> BodyState {
+        let state = self.unwound_at(time);
+        BodyState { angle: state.angle + (self.turns * TAU + self.turns * TAU_REST), ..state }
+    }
+
+    /// The same, with an angle that lacks the whole turns made before: what motions start from.
+    pub(crate) fn unwound_at(&self, time: Time) -> BodyState {
         self.path().state_at(self.offset(time))
+    }
+
+    /// Lets the angle of a flight start within a turn of zero: numbers tell angles the worse the larger they are, and with them where
+    /// corners are.
+    pub(crate) fn unwind(&mut self) {
+        let angle = self.flight.start().angle;
+        if !self.is_integrated && angle.abs() > TAU {
+            let turns = (angle / TAU).round();
+            // The first product is exact: with that of the rest the difference is as sharp as the angle was.
+            let unwound = turns.mul_add(-TAU, angle) - turns * TAU_REST;
+            self.turns += turns;
+            self.flight.restart(BodyState { angle: unwound, ..*self.flight.start() });
+        }
     }
 
     /// State at the start of the present segment, if it is a flight.
@@ -131,7 +156,7 @@ impl Flyer {
 
     /// Cuts the segment at a time and starts another with changed velocities.
     pub(crate) fn cut(&mut self, time: Time, velocity_change: DVec2, spin_change: f64) {
-        let state = self.state_at(time);
+        let state = self.unwound_at(time);
         let state = BodyState {
             velocity: state.velocity + velocity_change,
             angular_velocity: state.angular_velocity + spin_change,
@@ -162,5 +187,36 @@ fn disc_radius(shape: &Shape) -> Option<f64> {
             (round.radius > 0.0).then_some(round.radius)
         }
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_angle_of_many_turns_is_unwound_and_told_in_full() {
+        let shape = Shape::block(1.0, 0.5).expect("a fine size");
+        let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+        for angle in [0.3, -4.0, 12_345.678, -4_618.926_598_942_697_6, 1e9] {
+            let start = Time::from_seconds(2.0);
+            let state = BodyState { angle, angular_velocity: 3.0, ..BodyState::default() };
+            let mut flyer = Flyer::new(body.clone(), FlightLaw::default(), state, start);
+            let later = start.plus(0.25);
+            let before = flyer.moving_at(later).pose.rotation;
+            // Twice: there is no turn left the second time.
+            for _ in 0..2 {
+                flyer.unwind();
+                assert_eq!(flyer.state_at(start).angle, angle);
+                assert!(flyer.unwound_at(start).angle.abs() <= TAU);
+            }
+            let after = flyer.moving_at(later).pose.rotation;
+            // The sum at the end of a long angle is as sharp as that.
+            let sharp = f64::EPSILON * (1.0 + angle.abs());
+            assert!(
+                (before.cos - after.cos).abs() <= sharp && (before.sin - after.sin).abs() <= sharp,
+                "{angle}"
+            );
+        }
     }
 }

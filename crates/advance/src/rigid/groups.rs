@@ -335,7 +335,7 @@ impl RigidSystem {
         group.end_state.resize(dimension, 0.0);
         for place in 0..count {
             self.restart_flight(group.bodies[place], self.now);
-            let state = self.flyer(group.bodies[place]).state_at(self.now);
+            let state = self.flyer(group.bodies[place]).unwound_at(self.now);
             set_body_state(&mut group.end_state, count, place, &state);
         }
         group.span = 0.0;

@@ -185,14 +185,14 @@ impl RigidSystem {
                 + 0.5 * spin * spin / inertia.inverse_moment
                 - flyer.law().acceleration.dot(state.position) / inertia.inverse_mass
         };
-        energy(&flyer.state_at(time)) - energy(start)
+        energy(&flyer.unwound_at(time)) - energy(start)
     }
 
     /// Books what damping took from a body in flight, which starts another segment at a time.
     pub(crate) fn restart_flight(&mut self, body: BodyId, time: Time) {
         if self.flyer(body).law().is_damped() {
             self.ledger.damping += self.damping_loss(body, time);
-            let state = self.flyer(body).state_at(time);
+            let state = self.flyer(body).unwound_at(time);
             self.flyers[body.index()].fly_from(time, state);
         }
     }

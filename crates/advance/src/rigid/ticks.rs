@@ -118,7 +118,7 @@ impl RigidSystem {
             shifts.resize(work.region.bodies.len(), [0.0; 3]);
             work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
             for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
-                let state = self.flyer(body).state_at(self.now);
+                let state = self.flyer(body).unwound_at(self.now);
                 let position = state.position + DVec2::new(x, y);
                 let moved = BodyState { position, angle: state.angle + turn, ..state };
                 self.flyers[body.index()].fly_from(self.now, moved);
