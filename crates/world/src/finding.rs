@@ -7,6 +7,7 @@ use crate::ledger::Books;
 use crate::near::NearPairs;
 use crate::overlap::overlap_depth;
 use crate::rounded::Rounded;
+use crate::sentry::Sentry;
 use crate::world::World;
 use crate::world_error::ConnectorName;
 use halfgap_collision::{BodyId, ConnectorId};
@@ -22,13 +23,17 @@ const ROUGHLY: f64 = 10.0;
 /// How much of the energy turned over the books may lack, in errors of a step and in roundings of the energies.
 const BOOKS_ERRORS: f64 = 1e3;
 const BOOKS_ROUNDINGS: f64 = 1e6 * f64::EPSILON;
-/// Books that lack so many tolerances, and one more for each step, are another scene's.
-const ASTRAY: f64 = 1e4;
+/// Books that lack so many tolerances, and one more for every other step, are another scene's.
+const ASTRAY: f64 = 5e3;
+const ASTRAY_PER_STEP: f64 = 0.5;
 /// What forces do along so many target gaps is not told from rounding: far from the origin gaps are as wide as that asks for, and
 /// each event may err by a part of one.
 const ROUGH: f64 = 3e4;
 /// Part of the energy that is usual in a scene for which the energy turned over is taken at least.
 const SELDOM: f64 = 1e-2;
+/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin slowly. More is a
+/// blow that was taken for one.
+const CAPTURED: f64 = 5e-2;
 
 /// Something that does not hold in a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +66,15 @@ pub enum Finding {
         /// The energy turned over [J].
         turned_over: f64,
     },
+    /// What counts as slow is not: contacts were stopped without elasticity that took a good part of all energy.
+    Captured {
+        /// How much [J].
+        energy: f64,
+        /// The energy turned over [J].
+        turned_over: f64,
+        /// The speed [m/s] below which a collision is a contact.
+        slow: f64,
+    },
 }
 
 impl std::fmt::Display for Finding {
@@ -77,6 +91,13 @@ impl std::fmt::Display for Finding {
                 out,
                 "the energy books do not close: {} J of {} J turned over are not accounted for",
                 Rounded(*error),
+                Rounded(*turned_over)
+            ),
+            Self::Captured { energy, turned_over, slow } => write!(
+                out,
+                "contacts that close with less than velocity_tol, {} m/s, took {} J of {} J turned over",
+                Rounded(*slow),
+                Rounded(*energy),
                 Rounded(*turned_over)
             ),
         }
@@ -132,7 +153,8 @@ impl Finding {
         let size = |finding: &Self| match finding {
             Self::ConnectorOff { error: size, .. }
             | Self::Overlap { depth: size, .. }
-            | Self::OpenBooks { error: size, .. } => *size,
+            | Self::OpenBooks { error: size, .. }
+            | Self::Captured { energy: size, .. } => *size,
         };
         size(self).total_cmp(&size(other)).is_gt()
     }
@@ -206,22 +228,30 @@ impl World {
         }
     }
 
-    /// Whether the books are open by far more than what is told. Who looks seldom does not see all energy that is turned over: in
-    /// part it is taken for what is usual [J] in such a scene. What is rough [J] is the work of its forces along a target gap.
-    pub(crate) fn books_astray(
-        &self,
-        books: &Books,
-        turned_over: f64,
-        (usual, rough): (f64, f64),
-    ) -> Option<Finding> {
-        if usual == 0.0 {
+    /// Whether the books are open by far more than what is told, or captures take a good part of all energy. Who looks seldom does
+    /// not see all energy that is turned over: in part it is taken for what is usual in such a scene.
+    pub(crate) fn books_astray(&self, books: &Books, turned_over: f64) -> Option<Finding> {
+        let Sentry { scales, is_watchful, slow_is_given, .. } = &self.sentry;
+        if scales.usual == 0.0 {
             // Where nothing moves or falls, there is only rounding.
             return None;
         }
-        let share = (ASTRAY + self.statistics().steps as f64) * self.tolerance();
-        let turned = turned_over.max(SELDOM * usual);
-        let open = open_books(books, turned, share).filter(|error| error.is_nan() || *error > ROUGH * rough);
-        open.map(|error| Finding::OpenBooks { error, turned_over })
+        let share = (ASTRAY + ASTRAY_PER_STEP * self.statistics().steps as f64) * self.tolerance();
+        let allowed = if *is_watchful {
+            let rounding = ASTRAY * f64::EPSILON * books.now.potential.abs().max(books.start.abs());
+            share * turned_over + rounding + scales.lost
+        } else {
+            let turned = turned_over.max(SELDOM * scales.usual);
+            (share * turned + books_rounding(books, turned)).max(ROUGH * scales.rough)
+        };
+        let error = books.error().abs();
+        if error.is_nan() || error > allowed {
+            return Some(Finding::OpenBooks { error, turned_over });
+        }
+        let (energy, slow) = (-books.captures, self.tolerances().velocity_tol);
+        let is_asked_for = *slow_is_given || self.rigid_settings().impulse_step.is_some();
+        let is_blow = energy > CAPTURED * turned_over + allowed;
+        (is_blow && !is_asked_for).then_some(Finding::Captured { energy, turned_over, slow })
     }
 
     /// So many times as much is put up with.
@@ -236,9 +266,14 @@ impl World {
     }
 }
 
+/// What rounding may make of books [J].
+fn books_rounding(books: &Books, turned_over: f64) -> f64 {
+    BOOKS_ROUNDINGS * (turned_over + books.now.potential.abs() + books.start.abs())
+}
+
 /// What the books lack [J], if that is more than a part of the energy turned over [J], and more than rounding.
 fn open_books(books: &Books, turned_over: f64, share: f64) -> Option<f64> {
-    let rounding = BOOKS_ROUNDINGS * (turned_over + books.now.potential.abs() + books.start.abs());
+    let rounding = books_rounding(books, turned_over);
     let error = books.error().abs();
     (error.is_nan() || error > share * turned_over + rounding).then_some(error)
 }

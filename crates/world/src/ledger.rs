@@ -60,6 +60,8 @@ pub(crate) struct Books {
     pub(crate) start: f64,
     /// All changes that are booked [J].
     pub(crate) booked: f64,
+    /// That of captures among them [J].
+    pub(crate) captures: f64,
     /// Sum of the sizes of the works of force laws that have no potential [J].
     pub(crate) works: f64,
 }
@@ -74,8 +76,8 @@ impl Books {
 impl From<&Ledger> for Books {
     fn from(ledger: &Ledger) -> Self {
         let works = ledger.laws.iter().map(|law| law.work.abs()).sum();
-        let Ledger { now, start, .. } = *ledger;
-        Self { now, start, booked: ledger.booked(), works }
+        let Ledger { now, start, captures, .. } = *ledger;
+        Self { now, start, booked: ledger.booked(), captures, works }
     }
 }
 

@@ -15,22 +15,40 @@ use halfgap_collision::Moving;
 
 /// Segments of motion from one look to the next, beside one for each body.
 const SEGMENTS: u64 = 16;
+/// Where it is known how long the world will run, it is looked at so many times on the way, however few segments it makes, and a
+/// stop that rounding puts a little before such a time is one, too.
+const LOOKS: f64 = 50.0;
+const EARLY: f64 = 1e-6;
 
 /// What the sentry remembers, and room for its looks.
 #[derive(Clone, Debug)]
 pub(crate) struct Sentry {
     /// The relative accuracy asked for.
     pub(crate) tolerance: f64,
-    /// How long the world will run [s]; 0 if that is not known.
+    /// When the world starts, and how long it will run [s]; 0 if that is not known.
+    start: f64,
     pub(crate) duration: f64,
-    /// Energy [J] that is usual in such a scene: what is turned over between looks is not seen.
-    usual: f64,
-    /// Work [J] of the forces of the start along a target gap.
-    rough: f64,
+    pub(crate) scales: EnergyScales,
+    /// The user says what counts as slow.
+    pub(crate) slow_is_given: bool,
     turnover: Option<Turnover>,
     /// Segments that had been started at the last look.
     looked: u64,
+    /// How many of the looks of a known duration are behind, and whether none of them was left out.
+    looks: f64,
+    pub(crate) is_watchful: bool,
     room: Room,
+}
+
+/// Energies [J] of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct EnergyScales {
+    /// What is usual in such a scene.
+    pub(crate) usual: f64,
+    /// The work of its forces at the start along a target gap.
+    pub(crate) rough: f64,
+    /// The work of its forces within the tolerance of its bodies' sizes, and the energy of a speed that is rounding.
+    pub(crate) lost: f64,
 }
 
 /// Room for looks, used again and again.
@@ -42,16 +60,19 @@ struct Room {
 }
 
 impl Sentry {
-    /// For a scene in which so much energy [J] is usual, and forces do so much work [J] along a target gap.
-    pub(crate) fn new(settings: &WorldSettings, usual: f64, rough: f64) -> Self {
+    /// For a scene of such energies.
+    pub(crate) fn new(settings: &WorldSettings, scales: EnergyScales) -> Self {
         let duration = settings.duration.unwrap_or_default();
         Self {
             tolerance: settings.tolerance,
+            start: settings.start_time,
             duration,
-            usual,
-            rough,
+            scales,
+            slow_is_given: settings.overrides.velocity_tol.is_some(),
             turnover: None,
             looked: 0,
+            looks: 0.0,
+            is_watchful: duration > 0.0,
             room: Room::default(),
         }
     }
@@ -65,7 +86,8 @@ impl World {
     pub(crate) fn stand_guard(&mut self, outcome: Result<(), RunError>) -> Result<(), RunError> {
         let segments = self.statistics().steps;
         let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
-        if outcome.is_ok() && is_soon || !self.keeps_to_tolerance() {
+        let is_due = self.is_look_due();
+        if outcome.is_ok() && is_soon && !is_due || !self.keeps_to_tolerance() {
             return outcome;
         }
         self.sentry.looked = segments;
@@ -87,8 +109,22 @@ impl World {
         self.find_overlaps(near, &mut found);
         found.into_iter().next().or_else(|| {
             let turned_over = self.sentry.turnover.map_or(0.0, |turnover| turnover.energy);
-            self.books_astray(books, turned_over, (self.sentry.usual, self.sentry.rough))
+            self.books_astray(books, turned_over)
         })
+    }
+
+    /// Whether the time of one of the looks of a known duration has come.
+    fn is_look_due(&mut self) -> bool {
+        let now = self.time();
+        let sentry = &mut self.sentry;
+        if sentry.duration <= 0.0 {
+            return false;
+        }
+        let looks = 1.0 + (LOOKS * (now - sentry.start) / sentry.duration + EARLY).floor();
+        sentry.is_watchful &= looks <= sentry.looks + 1.0;
+        let is_due = looks > sentry.looks;
+        sentry.looks = sentry.looks.max(looks);
+        is_due
     }
 }
 

@@ -208,6 +208,7 @@ impl World {
                 + booked.projections
                 + booked.damping
                 + works(|work| work),
+            captures: booked.captures,
             works: works(f64::abs),
         }
     }

@@ -8,7 +8,7 @@ use crate::rigid_settings::rigid_settings;
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::scales::Scales;
-use crate::sentry::Sentry;
+use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, energy_of, name_among};
@@ -28,6 +28,10 @@ const DEFAULT_START_ERROR: f64 = 1e-6;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
 const CENTROID_ROUNDINGS: f64 = 16.0;
+/// A speed is told from rounding of the coordinates by so many roundings, of its square.
+const LOST_ROUNDINGS: f64 = 1e4;
+/// Forces press what is held to within so many tolerances of a body's size.
+const LOST_TOLERANCES: f64 = 10.0;
 
 /// A body to be added to a world.
 #[derive(Clone, Debug)]
@@ -200,8 +204,12 @@ impl WorldBuilder {
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
-        let rough = tolerances.target_gap * forces;
-        let sentry = Sentry::new(&self.settings, usual_energy(&bodies, forces), rough);
+        let energies = EnergyScales {
+            usual: usual_energy(&bodies, forces),
+            rough: tolerances.target_gap * forces,
+            lost: lost_energy(&bodies, forces, &self.settings),
+        };
+        let sentry = Sentry::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales);
         let parts = RigidParts {
             bodies,
@@ -292,6 +300,19 @@ fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
         0.5 * (v.length_squared() / body.inverse_mass + w * w / body.inverse_moment)
     });
     kinetic.sum::<f64>() + forces * size
+}
+
+/// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have at a speed that is
+/// rounding of their coordinates.
+fn lost_energy(bodies: &[StartParts], forces: f64, settings: &WorldSettings) -> f64 {
+    let movable = || bodies.iter().filter(|(body, ..)| !body.is_fixed());
+    let reach = movable().map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);
+    let farthest =
+        bodies.iter().map(|(body, _, state)| state.position.abs().max_element() + body.shape.reach());
+    let speed = settings.duration.map_or(0.0, |duration| farthest.fold(0.0, f64::max) / duration);
+    let mass: f64 = movable().map(|(body, ..)| body.inverse_mass.recip()).sum();
+    LOST_ROUNDINGS * f64::EPSILON * mass * speed * speed
+        + forces * LOST_TOLERANCES * settings.tolerance * reach
 }
 
 /// Sum of the sizes of the forces [N] on the movable bodies.
