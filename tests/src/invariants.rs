@@ -15,7 +15,8 @@ use std::time::{Duration, Instant};
 
 /// States looked at in each run.
 const LOOKS: u32 = 50;
-/// Stops from one look to the next, at which only the clock is read: what goes on without any event is told from what hangs.
+/// Stops from one look to the next, at which only the clock and the energy are read: what goes on without any event is told from
+/// what hangs, and bodies that pass close by each other turn much energy over in no time.
 const STOPS: u32 = 40;
 /// How far the energy books may be from closing, in tolerances (and one more for each step) and parts of the energy turned
 /// over.
@@ -167,6 +168,7 @@ fn run(json: &str, budget: Budget) -> Verdict {
         if let Err(error @ RunError::Astray { .. }) = outcome {
             return Verdict::Stopped(error.to_string());
         }
+        inspector.note_turnover(&world);
         let is_look = stop % STOPS == 0 || outcome.is_err();
         if let Some(broken) = is_look.then(|| inspector.look(&world)).and_then(Result::err) {
             return Verdict::Broken(broken);
@@ -301,13 +303,18 @@ impl Inspector {
         self.look_at_energy(world).or_else(|(kind, what)| broken(kind, what))
     }
 
-    fn look_at_energy(&mut self, world: &World) -> Result<(), (&'static str, String)> {
+    /// Notes how much energy has been turned over.
+    fn note_turnover(&mut self, world: &World) {
         let ledger = world.ledger();
-        let work: f64 = ledger.laws.iter().map(|law| law.work).sum();
         let turned = ledger.now.kinetic
             + (ledger.now.potential - self.start_potential).abs()
             + ledger.laws.iter().map(|law| law.work.abs()).sum::<f64>();
         self.turned_over = self.turned_over.max(turned);
+    }
+
+    fn look_at_energy(&self, world: &World) -> Result<(), (&'static str, String)> {
+        let ledger = world.ledger();
+        let work: f64 = ledger.laws.iter().map(|law| law.work).sum();
         let potential = ledger.now.potential.abs().max(self.start_potential.abs());
         let tolerances = ENERGY_TOLERANCES + world.statistics().steps as f64;
         let allowed = (tolerances * self.tolerance + ENERGY_ROUNDING) * self.turned_over

@@ -191,6 +191,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     (9_163_025, "a contact that fired although it opened was lowered each time, without end"),
     (9_552_829, "speeds counted as slow by how far from the origin bodies were, and blows became captures"),
     (9_525_492, "the same by how strongly a body was damped"),
+    (
+        9_817_113,
+        "the corners of a block that had spun hundreds of times came down now the one, now the other, and fell through",
+    ),
 ];
 
 /// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or masses too far apart. The
@@ -202,6 +206,13 @@ const BEYOND_ROUNDING: &[(u64, &str)] = &[
     (13_053, "a body a hundred billion times lighter than what crushes it"),
     (114_253, "a light body on a stiff spring, 70 km from the origin"),
     (1_701_163, "two bodies that attract each other whirl so fast that they do not come on"),
+    (
+        9_958_319,
+        "a body on three rails of which none lets it go far, struck where all three let it go a micrometre",
+    ),
+    (9_931_979, "a linkage of 175 tons and of a kilogram at its dead point"),
+    (9_969_260, "a milligram on a stiff spring 500 km from the origin, where ten metres a second are slow"),
+    (9_922_497, "milligrams on a spring of 16 MN/m, beside which four metres a second are slow"),
 ];
 
 #[test]

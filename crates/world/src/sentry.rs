@@ -131,7 +131,7 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BodySpec, ConnectorSpec, WorldBuilder};
+    use crate::{BodySpec, ConnectorSpec, ToleranceOverrides, WorldBuilder};
     use glam::DVec2;
     use halfgap_collision::{Anchor, BodyId, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
@@ -194,5 +194,44 @@ mod tests {
         let before = world.statistics().steps;
         world.advance_to(LATER + 1e-3, &mut |_| ()).expect("nobody looks");
         assert!(world.statistics().steps - before < SEGMENTS);
+    }
+
+    /// A disc that is about to bounce off a floor, where all that it does counts as slow.
+    fn slow_disc() -> World {
+        let overrides = ToleranceOverrides { velocity_tol: Some(10.0), ..ToleranceOverrides::default() };
+        let settings = WorldSettings { overrides, duration: Some(1.0), ..WorldSettings::default() };
+        let mut builder = WorldBuilder::new(settings);
+        let [disc, floor] =
+            [Shape::disc(0.5), Shape::block(10.0, 1.0)].map(|shape| shape.expect("a fine size"));
+        let state = BodyState { position: DVec2::new(0.0, 1.5), ..BodyState::default() };
+        let body = builder.add(BodySpec::movable("disc", disc, 1.0, state));
+        builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+        builder.add_gravity(body, DVec2::new(0.0, -10.0));
+        builder.build().expect("it falls")
+    }
+
+    #[test]
+    fn blows_that_are_taken_for_slow_contacts_end_the_advance_unless_they_are_to_be() {
+        let mut world = slow_disc();
+        world.advance_to(1.0, &mut |_| ()).expect("the user wants it so");
+        let mut world = slow_disc();
+        world.sentry.slow_is_given = false;
+        let outcome = world.advance_to(1.0, &mut |_| ());
+        let Err(RunError::Astray { finding, .. }) = outcome else { panic!("{outcome:?}") };
+        assert!(
+            matches!(finding, Finding::Captured { energy, slow: 10.0, .. } if (energy - 10.0).abs() < 1e-6)
+        );
+    }
+
+    #[test]
+    fn who_looks_often_is_strict() {
+        // What is usual here is some 10 J, but so far next to nothing is turned over.
+        for (first, is_astray) in [(0.02, true), (0.1, false)] {
+            let mut world = slow_disc();
+            world.advance_to(0.0, &mut |_| ()).expect("the first look");
+            world.start.energy += 1e-5;
+            let outcome = world.advance_to(first, &mut |_| ());
+            assert_eq!(outcome.is_err(), is_astray, "{first}: {outcome:?}");
+        }
     }
 }
