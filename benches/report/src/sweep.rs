@@ -79,7 +79,7 @@ impl Effort {
     /// For a report.
     #[must_use]
     pub fn thorough() -> Self {
-        let tolerances = (1..=12).map(|digits| 10_f64.powi(-digits)).collect();
+        let tolerances = (0..=12).map(|digits| 10_f64.powi(-digits)).collect();
         Self {
             repeats: Repeats::THOROUGH,
             longest_run: 8.0,
