@@ -11,7 +11,7 @@ use std::error::Error;
 /// Errors [m] that the axis spans; what is outside is drawn at its end.
 const ERRORS: (f64, f64) = (1e-13, 10.0);
 /// Times [ms per simulated second] that the axis spans.
-const TIMES: (f64, f64) = (5e-4, 2e3);
+const TIMES: (f64, f64) = (2e-4, 2e3);
 /// Engines and their colours, which people with any colour vision can tell apart.
 const ENGINES: [(&str, RGBColor); 3] =
     [("halfgap", RGBColor(0, 114, 178)), ("rapier", RGBColor(213, 94, 0)), ("box2d", RGBColor(0, 158, 115))];
