@@ -1,14 +1,14 @@
 //! The automatic choice of a method.
 //!
 //! Unsymmetric problems go to Lemke's method. Of the others, independent islands are solved one by one, each by the
-//! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight: then by the
-//! proximal method. If the first choice fails its check, the others are tried, the quadratic program last. The
+//! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight, or were made: then by the
+//! proximal method, which begins from inside in the second case. If the first choice fails its check, the others are tried, the quadratic program last. The
 //! reasons and the measurements are in the project's `docs/contact.md`.
 
 use crate::check::Checker;
-use crate::dual_active_set::DualActiveSet;
+use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::{SettingsError, SolveError};
-use crate::islands::Islands;
+use crate::islands::{Islands, KEPT};
 use crate::lemke::Lemke;
 use crate::problem::Problem;
 use crate::proximal_newton::ProximalNewton;
@@ -23,9 +23,6 @@ use crate::warm::WarmStart;
 /// Rows below which looking for islands costs more than it gains: the factor of a few islands is as narrow.
 const SPLIT_ROWS: usize = 48;
 
-/// Islands that keep buffers of their own, and with them a factor for the next step; later ones share the last.
-const KEPT_ISLANDS: usize = 64;
-
 /// Rows up to which Lemke's method is worth a last try on a symmetric problem.
 const LAST_RESORT_ROWS: usize = 400;
 
@@ -36,6 +33,8 @@ pub struct Auto {
     islands: Islands,
     part: Solution,
     part_start: WarmStart,
+    /// Rows that carry force in an island that was solved.
+    carries: Vec<bool>,
     methods: Methods,
     /// The same for each of the first islands.
     by_island: Vec<Methods>,
@@ -74,6 +73,8 @@ impl Auto {
             return self.methods.solve(problem, warm, solution, self.settings.selection);
         }
         solution.reset(problem.len(), Method::Auto);
+        self.carries.clear();
+        self.carries.resize(problem.len(), false);
         for island in 0..islands {
             match self.solve_island(problem, island, warm, solution) {
                 // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
@@ -83,7 +84,7 @@ impl Auto {
                 other => other?,
             }
         }
-        solution.active.sort_unstable();
+        solution.active.extend((0..problem.len()).filter(|&row| self.carries[row]));
         solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
         if solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
@@ -104,7 +105,7 @@ impl Auto {
             &self.part_start
         });
         let problem_part = self.islands.part(problem, island);
-        let slot = island.min(KEPT_ISLANDS - 1);
+        let slot = island.min(KEPT - 1);
         while self.by_island.len() <= slot {
             self.by_island.push(Methods::new(self.settings).expect("the settings were checked before"));
         }
@@ -115,7 +116,7 @@ impl Auto {
         for (&row, &force) in rows.iter().zip(&self.part.force) {
             solution.force[row as usize] = force;
         }
-        solution.active.extend(self.part.active.iter().map(|&at| rows[at] as usize));
+        self.part.active.iter().for_each(|&at| self.carries[rows[at] as usize] = true);
         solution.iterations += self.part.iterations;
         solution.inconsistency = solution.inconsistency.max(self.part.inconsistency);
         solution.method = match island {
@@ -154,16 +155,17 @@ impl Methods {
         // What was handed over a step ago is so again: the redundancy lies in the rows, which are the same.
         let again = may_hand_over && warm.is_some() && self.proximal.is_loaded(problem);
         let first = if again {
-            Ok(false)
+            Ok(Some(HandOver::Redundant))
         } else if may_hand_over {
             self.dual.run_or_hand_over(problem, start, solution)
         } else {
-            self.dual.run(problem, start, solution).map(|()| true)
+            self.dual.run(problem, start, solution).map(|()| None)
         };
         match first {
-            Ok(true) => Ok(()),
-            Ok(false) => {
+            Ok(None) => Ok(()),
+            Ok(Some(reason)) => {
                 let found = match warm {
+                    _ if reason == HandOver::Pivots => self.proximal.solve_inside(problem, solution),
                     Some(warm) => self.proximal.solve_from(problem, warm, solution),
                     None => self.proximal.solve(problem, solution),
                 };
@@ -219,5 +221,36 @@ impl Solver for Auto {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         self.run(problem, Some(start), solution)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_problems::{crooked_pyramid, pyramid};
+
+    #[test]
+    fn contacts_that_would_take_hundreds_of_pivots_are_handed_over() {
+        let problem = crooked_pyramid(14);
+        let (mut auto, mut dual) = (Auto::default(), DualActiveSet::default());
+        let (mut found, mut pivoted) = (Solution::new(), Solution::new());
+        auto.solve(&problem, &mut found).expect("forces of a pyramid");
+        dual.solve(&problem, &mut pivoted).expect("forces of a pyramid");
+        assert_eq!(found.method, Method::ProximalNewton);
+        assert!(10 * found.iterations < pivoted.iterations, "{}, {}", found.iterations, pivoted.iterations);
+        let errors = found.acceleration.iter().zip(&pivoted.acceleration).map(|(a, b)| (a - b).abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-9);
+        // Forces that are to be those of independent rows are left to pivots.
+        let settings = Settings { selection: ForceSelection::Vertex, ..Settings::default() };
+        let mut auto = Auto::new(settings).expect("fine settings");
+        auto.solve(&problem, &mut found).expect("forces of a pyramid");
+        assert_eq!(found.method, Method::DualActiveSet);
+    }
+
+    #[test]
+    fn what_takes_no_pivots_is_not() {
+        let (mut auto, mut solution) = (Auto::default(), Solution::new());
+        auto.solve(&pyramid(14, 0.5), &mut solution).expect("forces of a pyramid");
+        assert_eq!((solution.method, solution.iterations), (Method::DualActiveSet, 0));
     }
 }

@@ -1,4 +1,4 @@
-//! Sparse Cholesky factor of I + Ĵ_Cᵀ Ĵ_C / ε, the Newton matrix in body space, by faer.
+//! Sparse Cholesky factor of I + Ĵᵀ W Ĵ, the Newton matrix in body space with a weight of each row, by faer.
 //!
 //! Its pattern is that of all rows, closed or not, so that the symbolic analysis (fill-reducing order, elimination
 //! tree) serves as long as the same bodies touch. Buffers are kept: factoring again allocates nothing.
@@ -114,14 +114,14 @@ impl BodyFactor {
         self.analysis = Some(Analysis { symbolic, factor, memory: MemBuffer::new(numeric.or(solve)) });
     }
 
-    /// Factors I + Ĵ_Cᵀ Ĵ_C / ε with the rows C for which `closed` is set. Returns whether that went well.
-    pub(crate) fn factor(&mut self, system: &System, closed: &[bool], epsilon: f64) -> bool {
+    /// Factors I + Ĵᵀ W Ĵ with a weight W of each row. Returns whether that went well.
+    pub(crate) fn factor(&mut self, system: &System, weight: impl Fn(usize) -> f64) -> bool {
         self.value.fill(0.0);
         for begin in &self.column_start[..self.column_start.len() - 1] {
             self.value[*begin] = 1.0;
         }
-        let weight = 1.0 / epsilon;
-        for (i, _) in closed.iter().enumerate().filter(|(_, closed)| **closed) {
+        let rows = (0..self.start.len() - 1).map(|row| (row, weight(row)));
+        for (i, weight) in rows.filter(|(_, weight)| *weight != 0.0) {
             let values = system.row_values(i);
             let mut place = self.place[self.place_start[i]..self.place_start[i + 1]].iter();
             for (x, &v) in values.iter().enumerate() {

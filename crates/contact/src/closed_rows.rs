@@ -85,6 +85,7 @@ impl ClosedRows {
         let plain = self.proximal == 0.0 && self.kept == 0 && self.dependence == dependence;
         self.reusable = same && plain && self.free == problem.bilateral;
         if self.reusable {
+            self.system.form_entries(problem);
             return;
         }
         self.system.prepare_to_gather(problem);

@@ -6,7 +6,8 @@
 //! rows closed; whichever would pull on the way opens, and the rest goes on. Every such pass lowers the value, so that
 //! none comes back. It is the method of C. Lawson, R. Hanson, "Solving Least Squares Problems", 1974, chapter 23, in which rows
 //! close many at once. A row that depends on others keeps its force during a pass; at the end these forces are moved to
-//! independent rows, each along its null direction. Pivots mend what is left.
+//! independent rows, each along its null direction. Pivots mend what is left. Where rows open one by one on the way, as those of
+//! a pyramid that nearly depend on each other, another method is faster, and it stops there if it may.
 
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::DualActiveSet;
@@ -56,6 +57,10 @@ impl DualActiveSet {
             }
             self.close_pushing();
             self.go_to_face(&mut force);
+            if self.is_out_of_patience() {
+                self.admissible = force;
+                return;
+            }
             self.closed.force.copy_from_slice(&force);
             self.closed.accelerate();
         }
@@ -111,8 +116,8 @@ impl DualActiveSet {
     /// Takes the closed forces to where the closed accelerations are zero; rows whose force runs out on the way open. Only
     /// the closed accelerations are followed.
     fn go_to_face(&mut self, force: &mut [f64]) {
-        let closed = &mut self.closed;
-        loop {
+        while !self.is_out_of_patience() {
+            let closed = &mut self.closed;
             let count = closed.len();
             for (at, &row) in closed.rows.iter().enumerate() {
                 closed.step[at] = -closed.acceleration[row];
@@ -125,8 +130,9 @@ impl DualActiveSet {
             let Some(first) = first else { break };
             // Of those that had none and would pull none can stay.
             for at in (0..count).rev() {
-                if at == first || (force[closed.rows[at]] == 0.0 && closed.step[at] < 0.0) {
-                    closed.open_at(at);
+                if at == first || (force[self.closed.rows[at]] == 0.0 && self.closed.step[at] < 0.0) {
+                    self.closed.open_at(at);
+                    self.count_work(1);
                 }
             }
         }

@@ -35,6 +35,12 @@ pub(crate) const REFINED: f64 = 0.125;
 /// Part that a dependent row must have in a closed one, in units of its own, to take its place.
 const LARGER: f64 = 2.0;
 
+/// Passes over all rows that a pivot takes beside those of the factor.
+const PASSES: usize = 5;
+
+/// Work, in passes over all rows, for which the interior-point method would be about half done.
+const PATIENCE: usize = 400;
+
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
@@ -55,7 +61,20 @@ pub struct DualActiveSet {
     pub(crate) pivots: usize,
     /// Whether to stop where another method is likely to be faster, and whether that was so.
     pub(crate) may_hand_over: bool,
-    pub(crate) handed_over: bool,
+    pub(crate) handed_over: Option<HandOver>,
+    /// Work of pivots, and of rows opened on the way to where they start, in passes over all rows.
+    work: usize,
+    /// Work after which to stop likewise.
+    patience: Option<usize>,
+}
+
+/// Why another method is likely to be faster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum HandOver {
+    /// So many rows depend on others that the closed ones are an arbitrary choice.
+    Redundant,
+    /// Many pivots were made.
+    Pivots,
 }
 
 /// How dependent rows are treated.
@@ -109,7 +128,7 @@ impl DualActiveSet {
                         .or_else(|_| self.attempt(problem, warm, solution, attempt));
                 }
                 Ok(()) => return Ok(()),
-                Err(error) if self.handed_over => return Err(error),
+                Err(error) if self.handed_over.is_some() => return Err(error),
                 Err(error) => error,
             };
             let proven = self.settings.is_proven(&error, problem);
@@ -147,20 +166,38 @@ impl DualActiveSet {
         self.attempt(problem, start, solution, strict)
     }
 
-    /// As [`run`](Self::run), but returns `Ok(false)` once many pivots are in sight on a large problem.
+    /// As [`run`](Self::run), but stops where many pivots are in sight on a large problem, or were made, and says so.
     pub(crate) fn run_or_hand_over(
         &mut self,
         problem: &Problem,
         start: Start<'_>,
         solution: &mut Solution,
-    ) -> Result<bool, SolveError> {
-        self.may_hand_over = problem.len() >= self.settings.hand_over_rows;
+    ) -> Result<Option<HandOver>, SolveError> {
+        let Settings { hand_over_rows, pivoting_rows, selection, .. } = self.settings;
+        self.may_hand_over = problem.len() >= hand_over_rows;
+        let is_open = selection == ForceSelection::Quickest && problem.len() >= pivoting_rows;
+        self.patience = is_open.then_some(PATIENCE);
         let result = self.run(problem, start, solution);
-        self.may_hand_over = false;
+        (self.may_hand_over, self.patience) = (false, None);
         match result {
-            Err(SolveError::Unsolved { .. }) if self.handed_over => Ok(false),
-            other => other.map(|()| true),
+            Err(SolveError::Unsolved { .. }) if self.handed_over.is_some() => Ok(self.handed_over),
+            other => other.map(|()| None),
         }
+    }
+
+    /// Adds the work of a pivot: some passes over all rows, and one over the factor.
+    pub(crate) fn count_work(&mut self, pivots: usize) {
+        let of_factor = self.closed.factor.envelope() / self.closed.force.len().max(1);
+        self.work += pivots * (PASSES + of_factor);
+    }
+
+    /// Notes that another method is likely to be faster, once so much work was done.
+    pub(crate) fn is_out_of_patience(&mut self) -> bool {
+        let is_out = self.patience.is_some_and(|patience| self.work > patience);
+        if is_out {
+            self.handed_over = Some(HandOver::Pivots);
+        }
+        is_out
     }
 
     /// The ways to treat rows that are dependent or nearly so, in order.
@@ -189,7 +226,7 @@ impl DualActiveSet {
         let certificate = if goes_down { None } else { self.find_start(problem) };
         let end = match certificate {
             Some(certificate) => End::Infeasible(certificate),
-            None if self.handed_over => End::Stopped,
+            None if self.handed_over.is_some() => End::Stopped,
             None => {
                 if goes_down {
                     self.descend()
@@ -197,7 +234,7 @@ impl DualActiveSet {
                     self.untangle()
                 }
                 self.make_forces_admissible();
-                self.pivot(problem, attempt)
+                if self.is_out_of_patience() { End::Stopped } else { self.pivot(problem, attempt) }
             }
         };
         if attempt.is_last {
@@ -222,8 +259,8 @@ impl DualActiveSet {
         self.closed.load(problem, attempt.dependence);
         self.shift.reset();
         self.contacts_contradict = false;
-        self.pivots = 0;
-        self.handed_over = false;
+        (self.pivots, self.work) = (0, 0);
+        self.handed_over = None;
         self.choose_start(problem, warm);
     }
 
@@ -300,7 +337,9 @@ impl DualActiveSet {
     fn drive(&mut self, row: usize, attempt: Attempt) -> End {
         loop {
             self.pivots += 1;
-            if self.pivots > self.settings.pivot_cap(self.closed.force.len()) {
+            self.count_work(1);
+            let is_capped = self.pivots > self.settings.pivot_cap(self.closed.force.len());
+            if is_capped || self.is_out_of_patience() {
                 return End::Stopped;
             }
             let relation = self.closed.consider(row);

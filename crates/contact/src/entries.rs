@@ -63,6 +63,11 @@ impl Entries {
         self.value.clear();
     }
 
+    /// Whether places were looked for.
+    pub(crate) fn are_listed(&self) -> bool {
+        self.listed
+    }
+
     /// Whether there are entries.
     pub(crate) fn are_formed(&self) -> bool {
         !self.value.is_empty()

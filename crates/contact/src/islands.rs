@@ -8,7 +8,10 @@ use crate::problem::Problem;
 
 const NONE: u32 = u32::MAX;
 
-/// The islands of a problem, and room for one of them as a problem of its own.
+/// Islands that are kept as problems of their own, and solved by methods of their own; later ones share the last.
+pub(crate) const KEPT: usize = 64;
+
+/// The islands of a problem, and some of them as problems of their own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
     parent: Vec<u32>,
@@ -18,11 +21,14 @@ pub(crate) struct Islands {
     rows: Vec<u32>,
     start: Vec<u32>,
     island: Vec<u32>,
-    /// The rows of bodies that the islands are those of: offsets, columns, and which columns move.
+    /// The rows of bodies that the islands are those of: offsets, columns, coefficients, and inverse masses.
     known_start: Vec<usize>,
     known_column: Vec<usize>,
-    known_movable: Vec<bool>,
-    part: Problem,
+    known_value: Vec<f64>,
+    known_mass: Vec<f64>,
+    /// The first islands as problems, and which of them have the coefficients of the whole.
+    parts: Vec<Problem>,
+    is_current: Vec<bool>,
     /// Place in the island of each row or column of the whole.
     local: Vec<u32>,
 }
@@ -64,17 +70,21 @@ impl Islands {
     fn is_known(&mut self, problem: &Problem) -> bool {
         let Matrix::Bodies(bodies) = &problem.matrix else {
             self.known_start.clear();
+            self.is_current.fill(false);
             return false;
         };
-        let movable = bodies.inverse_mass.iter().map(|w| *w > 0.0);
         let known = self.known_start == bodies.rows.start
             && self.known_column == bodies.rows.column
-            && movable.clone().eq(self.known_movable.iter().copied());
+            && bodies.inverse_mass.iter().map(|w| *w > 0.0).eq(self.known_mass.iter().map(|w| *w > 0.0));
+        let same = known && self.known_value == bodies.rows.value && self.known_mass == bodies.inverse_mass;
         if !known {
             self.known_start.clone_from(&bodies.rows.start);
             self.known_column.clone_from(&bodies.rows.column);
-            self.known_movable.clear();
-            self.known_movable.extend(movable);
+        }
+        if !same {
+            self.known_value.clone_from(&bodies.rows.value);
+            self.known_mass.clone_from(&bodies.inverse_mass);
+            self.is_current.fill(false);
         }
         known
     }
@@ -132,12 +142,22 @@ impl Islands {
 
     /// An island as a problem of its own, without keys.
     pub(crate) fn part(&mut self, problem: &Problem, island: usize) -> &Problem {
+        let slot = island.min(KEPT - 1);
+        if self.parts.len() <= slot {
+            self.parts.resize_with(slot + 1, Problem::default);
+            self.is_current.resize(slot + 1, false);
+        }
         let rows = &self.rows[self.start[island] as usize..self.start[island + 1] as usize];
-        let part = &mut self.part;
+        let part = &mut self.parts[slot];
         part.offset.clear();
         part.offset.extend(rows.iter().map(|&row| problem.offset[row as usize]));
         part.bilateral.clear();
         part.bilateral.extend(rows.iter().map(|&row| problem.bilateral[row as usize]));
+        // The last room is shared.
+        let was_current = std::mem::replace(&mut self.is_current[slot], island + 1 < KEPT);
+        if was_current {
+            return part;
+        }
         part.keys.clear();
         let (source, masses) = match &problem.matrix {
             Matrix::Bodies(bodies) => (&bodies.rows, Some(&bodies.inverse_mass)),
@@ -150,8 +170,8 @@ impl Islands {
             Matrix::Bodies(bodies) => (&mut bodies.rows, Some(&mut bodies.inverse_mass)),
             Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, None),
         };
-        self.local.clear();
-        self.local.resize(masses.map_or(problem.len(), |masses| masses.len()), NONE);
+        let columns = masses.map_or(problem.len(), |masses| masses.len());
+        self.local.resize(columns.max(self.local.len()), NONE);
         if let Some(masses) = &mut target_masses {
             masses.clear();
         } else {
@@ -174,6 +194,13 @@ impl Islands {
             }
             target.start.push(target.column.len());
         }
+        // Only what was touched, for there may be as many islands as bodies. Of a matrix, rows are columns, too.
+        for &row in rows {
+            source.row(row as usize).0.iter().for_each(|&k| self.local[k] = NONE);
+            if masses.is_none() {
+                self.local[row as usize] = NONE;
+            }
+        }
         part
     }
 }
@@ -192,6 +219,25 @@ mod tests {
         assert_eq!(islands.find(&problem), 2);
         assert_eq!((islands.rows(0), islands.rows(1)), (&[0, 2][..], &[1][..]));
         assert_eq!(islands.part(&problem, 0).offset(), [-1.0, -3.0]);
+        Ok(())
+    }
+
+    #[test]
+    fn parts_follow_the_whole() -> Result<(), ProblemError> {
+        let masses = [1.0, 1.0];
+        let whole = |value: f64, offset: f64| {
+            Problem::from_rows(&[(0, 0, value), (1, 1, 2.0), (2, 0, 3.0)], &masses, &[offset, -2.0, -3.0])
+        };
+        let mut islands = Islands::default();
+        // The offsets change, then a coefficient, then back.
+        for (value, offset) in [(1.0, -1.0), (1.0, -4.0), (5.0, -4.0), (1.0, -1.0)] {
+            let problem = whole(value, offset)?;
+            assert_eq!(islands.find(&problem), 2);
+            let part = Problem::from_rows(&[(0, 0, value), (1, 0, 3.0)], &[1.0], &[offset, -3.0])?;
+            assert_eq!(*islands.part(&problem, 0), part);
+            let other = Problem::from_rows(&[(0, 0, 2.0)], &[1.0], &[-2.0])?;
+            assert_eq!(*islands.part(&problem, 1), other);
+        }
         Ok(())
     }
 }

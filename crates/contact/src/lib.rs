@@ -15,7 +15,7 @@
 //! | `settings`, `error`, `solver` | the numbers that methods decide by, what can go wrong, what a method is |
 //! | `system`, `entries` | the problem scaled to a unit diagonal, which the symmetric methods work on |
 //! | `dual_active_set`, `start`, `descent`, `spread`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
-//! | `proximal_newton`, `body_factor`, `line_search` | [`ProximalNewton`] |
+//! | `proximal_newton`, `interior_point`, `body_factor`, `line_search` | [`ProximalNewton`] |
 //! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
@@ -38,6 +38,7 @@ mod entries;
 mod error;
 mod held_rows;
 mod impact;
+mod interior_point;
 mod islands;
 #[cfg(feature = "json")]
 mod json;
@@ -59,6 +60,8 @@ mod solver;
 mod spread;
 mod start;
 mod system;
+#[cfg(test)]
+mod test_problems;
 mod warm;
 
 pub use auto::Auto;

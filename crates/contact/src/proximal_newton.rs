@@ -16,6 +16,7 @@
 use crate::body_factor::BodyFactor;
 use crate::check::Checker;
 use crate::error::{SettingsError, SolveError};
+use crate::interior_point::InteriorPoint;
 use crate::line_search::PiecewiseLinear;
 use crate::problem::Problem;
 use crate::settings::Settings;
@@ -48,6 +49,18 @@ const INNER_STEPS: usize = 200;
 /// Deviation of a step length from 1 that is rounding.
 const FULL_STEP: f64 = 1e-9;
 
+/// Newton steps after which an interior-point method is likely to end sooner.
+const PATIENCE: usize = 15;
+
+/// Where the iteration begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Begin {
+    /// At an earlier answer, or at nothing.
+    Guess,
+    /// At what the interior-point method finds.
+    Inside,
+}
+
 /// The proximal method with its buffers.
 #[derive(Debug, Default)]
 pub struct ProximalNewton {
@@ -69,7 +82,11 @@ pub struct ProximalNewton {
     force: Vec<f64>,
     derivative: PiecewiseLinear,
     checker: Checker,
+    interior: InteriorPoint,
     steps: usize,
+    /// Newton steps after which it stops for now, and steps that were made before or inside.
+    most_steps: usize,
+    interior_steps: usize,
     /// Factorisations in the last solve.
     pub(crate) factorizations: usize,
 }
@@ -90,10 +107,20 @@ impl ProximalNewton {
         self.system.is_loaded(problem)
     }
 
+    /// As [`solve`](Solver::solve), beginning at what the interior-point method finds: where many pivots or steps are in sight.
+    pub(crate) fn solve_inside(
+        &mut self,
+        problem: &Problem,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        self.run(problem, None, Begin::Inside, solution)
+    }
+
     fn run(
         &mut self,
         problem: &Problem,
         warm: Option<&WarmStart>,
+        begin: Begin,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let method = Method::ProximalNewton;
@@ -105,7 +132,7 @@ impl ProximalNewton {
         self.load(problem, warm);
         let columns = self.motion.len();
         if self.factor.prepare(&self.system, columns) {
-            self.iterate(problem);
+            self.approach(problem, warm, begin);
         }
         for (row, out) in solution.force.iter_mut().enumerate() {
             *out = self.force[row] / self.system.row_scale[row];
@@ -113,12 +140,13 @@ impl ProximalNewton {
                 solution.active.push(row);
             }
         }
-        solution.iterations = self.steps;
+        let steps = self.steps + self.interior_steps;
+        solution.iterations = steps;
         solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
         if solution.residuals.accepted(&self.settings, 0.0) {
             return Ok(());
         }
-        Err(SolveError::Unsolved { method, residuals: solution.residuals, iterations: self.steps })
+        Err(SolveError::Unsolved { method, residuals: solution.residuals, iterations: steps })
     }
 
     fn load(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
@@ -151,6 +179,45 @@ impl ProximalNewton {
             self.guess.push(problem.bilateral[row] || closed);
             self.multiplier[row] = earlier.map_or(0.0, |earlier| earlier.force * self.system.row_scale[row]);
         }
+        self.move_by_multipliers();
+    }
+
+    /// Iterates from where it is to begin; from inside if it does not end soon otherwise.
+    fn approach(&mut self, problem: &Problem, warm: Option<&WarmStart>, begin: Begin) {
+        self.interior_steps = 0;
+        if begin == Begin::Guess {
+            self.most_steps = PATIENCE.min(self.settings.newton_steps);
+            self.iterate(problem);
+            if self.steps < self.most_steps {
+                return;
+            }
+        }
+        self.most_steps = self.settings.newton_steps;
+        let is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral);
+        self.interior_steps = self.interior.steps + self.steps;
+        self.load(problem, warm);
+        self.factored = None;
+        if is_near {
+            self.begin_inside(problem);
+        }
+        if is_near || begin == Begin::Guess {
+            self.iterate(problem);
+        }
+    }
+
+    /// Takes what the interior-point method has found for an earlier answer.
+    fn begin_inside(&mut self, problem: &Problem) {
+        self.epsilon = WARM_TERM;
+        for row in 0..problem.len() {
+            let (force, acceleration) = (self.interior.force[row], self.interior.acceleration[row]);
+            self.guess[row] = problem.bilateral[row] || force > acceleration;
+            self.multiplier[row] = if self.guess[row] { force } else { 0.0 };
+        }
+        self.move_by_multipliers();
+    }
+
+    /// Finds the motion and the accelerations that go with the multipliers.
+    fn move_by_multipliers(&mut self) {
         self.system.push(&self.multiplier, &mut self.motion);
         self.system.pull(&self.motion, &mut self.acceleration);
         self.acceleration.iter_mut().zip(&self.system.b).for_each(|(a, b)| *a += b);
@@ -188,7 +255,7 @@ impl ProximalNewton {
     /// Minimises the augmented Lagrangian. Returns false if that cannot go on.
     fn minimise(&mut self, problem: &Problem, first: bool) -> bool {
         let mut guessed = first;
-        let last = self.settings.newton_steps.min(self.steps + INNER_STEPS);
+        let last = self.most_steps.min(self.steps + INNER_STEPS);
         while self.steps < last {
             self.steps += 1;
             let mut changed = self.factored != Some(self.epsilon);
@@ -202,7 +269,8 @@ impl ProximalNewton {
             if changed {
                 self.factorizations += 1;
                 self.factored = None;
-                if !self.factor.factor(&self.system, &self.inside, self.epsilon) {
+                let (inside, weight) = (&self.inside, self.epsilon.recip());
+                if !self.factor.factor(&self.system, |row| if inside[row] { weight } else { 0.0 }) {
                     return false;
                 }
                 self.factored = Some(self.epsilon);
@@ -228,7 +296,7 @@ impl ProximalNewton {
             }
         }
         // A row on the edge may change sides for ever; the outer iteration moves the edge.
-        self.steps < self.settings.newton_steps
+        self.steps < self.most_steps
     }
 
     /// Whether the gradient, in `step`, is rounding beside the forces.
@@ -299,7 +367,7 @@ impl Solver for ProximalNewton {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
-        self.run(problem, None, solution)
+        self.run(problem, None, Begin::Guess, solution)
     }
 
     fn solve_from(
@@ -308,6 +376,6 @@ impl Solver for ProximalNewton {
         start: &WarmStart,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        self.run(problem, Some(start), solution)
+        self.run(problem, Some(start), Begin::Guess, solution)
     }
 }

@@ -50,6 +50,8 @@ pub struct Settings {
     pub block_tries: usize,
     /// Rows from which the automatic choice hands very redundant problems to the proximal method.
     pub hand_over_rows: usize,
+    /// Rows from which it hands problems that take many pivots to the same, where forces may be any.
+    pub pivoting_rows: usize,
     /// Cap on steps of iterative refinement of the final forces.
     pub refinements: usize,
     /// Cap on outer (multiplier) iterations of the proximal method.
@@ -111,6 +113,7 @@ impl Default for Settings {
             block_rounds: 12,
             block_tries: 0,
             hand_over_rows: 150,
+            pivoting_rows: 80,
             refinements: 3,
             outer_iterations: 60,
             newton_steps: 3000,

@@ -191,37 +191,10 @@ impl DualActiveSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::{Inertia, Problem, Row};
     use crate::solution::Solution;
     use crate::solver::Solver;
+    use crate::test_problems::{crooked_pyramid, pyramid};
     use crate::warm::WarmStart;
-
-    /// Blocks in a pyramid, each on two corners of each block below, which are `arm` [m] from their centres.
-    fn pyramid(layers: usize, arm: f64) -> Problem {
-        let mut problem = Problem::new();
-        let mut below = Vec::new();
-        for layer in 0..layers {
-            let inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
-            let blocks: Vec<_> =
-                (layer..layers).map(|_| problem.add_body(inertia).expect("a body")).collect();
-            for (k, &block) in blocks.iter().enumerate() {
-                if layer == 0 {
-                    for side in [-arm, arm] {
-                        problem.add_row(&Row::new(block, [0.0, 1.0, side], -9.81)).expect("a row");
-                    }
-                    continue;
-                }
-                for (other, lower, upper) in
-                    [(k, 0.0, -arm), (k, arm, 0.0), (k + 1, -arm, 0.0), (k + 1, 0.0, arm)]
-                {
-                    let row = Row::new(block, [0.0, 1.0, upper], 0.0);
-                    problem.add_row(&row.against(below[other], [0.0, -1.0, -lower])).expect("a row");
-                }
-            }
-            below = blocks;
-        }
-        problem
-    }
 
     #[test]
     fn redundant_contacts_of_a_pyramid_carry_force_without_a_pivot() {
@@ -245,13 +218,7 @@ mod tests {
 
     #[test]
     fn contacts_that_are_nearly_redundant_are_solved_by_pivots() {
-        // Each block of its own width: the corners no longer meet, and some of them open.
-        let mut problem = pyramid(8, 0.5);
-        if let crate::matrix::Matrix::Bodies(bodies) = &mut problem.matrix {
-            for (k, value) in bodies.rows.value.iter_mut().enumerate() {
-                *value *= 1.0 + 1e-3 * (k as f64 * 1.7).sin();
-            }
-        }
+        let problem = crooked_pyramid(8);
         let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
         solver.solve(&problem, &mut solution).expect("forces of a pyramid");
         assert!(solution.iterations > 0 && solution.active.len() < problem.len());

@@ -6,7 +6,7 @@
 //! Computation 63, 1994, 625-643); at last rows whose force would pull are opened, so that pivoting can begin.
 
 use crate::closed_rows::ClosedRows;
-use crate::dual_active_set::DualActiveSet;
+use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::Infeasibility;
 use crate::problem::Problem;
 use crate::warm::WarmStart;
@@ -146,7 +146,7 @@ impl DualActiveSet {
                 wrong += usize::from(bad);
             }
             if self.may_hand_over && fewest == usize::MAX && wrong > 0 && self.is_redundant(flagged) {
-                self.handed_over = true;
+                self.handed_over = Some(HandOver::Redundant);
                 return true;
             }
             if !independent && self.closed.kept == 0 {
@@ -194,7 +194,7 @@ impl DualActiveSet {
     /// closed rows, and the accelerations up to date; they are so afterwards.
     pub(crate) fn make_forces_admissible(&mut self) {
         let before = self.closed.len();
-        loop {
+        while !self.is_out_of_patience() {
             let closed = &mut self.closed;
             let pulls = |closed: &ClosedRows, at: usize| {
                 let row = closed.rows[at];
@@ -218,8 +218,9 @@ impl DualActiveSet {
                     }
                 }
             }
-            self.pivots += count;
             closed.solve_closed();
+            self.pivots += count;
+            self.count_work(count);
         }
         if self.closed.len() != before {
             self.closed.accelerate();

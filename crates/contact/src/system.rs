@@ -134,6 +134,16 @@ impl System {
         }
     }
 
+    /// Forms the entries of Â where the same rows are solved again without them.
+    pub(crate) fn form_entries(&mut self, problem: &Problem) {
+        match &problem.matrix {
+            Matrix::Bodies(bodies) if !self.entries.are_listed() && self.entries.load(bodies) => {
+                self.entries.write_by_rows(&self.inverse_scale, &mut self.entry);
+            }
+            _ => {}
+        }
+    }
+
     fn load_matrix(&mut self, matrix: &SparseMatrix, offset: &[f64]) {
         self.bodies = false;
         for (i, &b) in offset.iter().enumerate() {

@@ -91,10 +91,8 @@ impl WarmStart {
         let lookup = whole.lookup(problem);
         (self.by_key, self.is_guess, self.has_forces) = (false, whole.is_guess, whole.has_forces);
         self.entries.clear();
-        self.entries.extend(rows.iter().map(|&row| match lookup.find(row as usize) {
-            Some(Earlier { force, closed }) => Entry { id: 0, force, closed, known: true },
-            None => Entry { id: 0, force: 0.0, closed: false, known: false },
-        }));
+        let unknown = Entry { id: 0, force: 0.0, closed: false, known: false };
+        self.entries.extend(rows.iter().map(|&row| lookup.entry(row as usize).unwrap_or(unknown)));
     }
 
     /// Prepares for looking up the rows of `problem`.
@@ -113,9 +111,17 @@ pub(crate) struct Lookup<'a> {
 
 impl Lookup<'_> {
     /// What is remembered of a row.
+    #[inline]
     pub(crate) fn find(&self, row: usize) -> Option<Earlier> {
+        let entry = self.entry(row).filter(|entry| entry.known);
+        entry.map(|Entry { force, closed, .. }| Earlier { force, closed })
+    }
+
+    /// The entry of a row, known or not.
+    #[inline]
+    fn entry(&self, row: usize) -> Option<Entry> {
         let entries = &self.warm.entries;
-        let entry = match (self.warm.by_key, self.keys) {
+        match (self.warm.by_key, self.keys) {
             (true, Some(keys)) => {
                 let id = keys[row].0;
                 // Contacts mostly keep their order from step to step, so that the place is right at once.
@@ -126,8 +132,7 @@ impl Lookup<'_> {
             }
             (false, None) => entries.get(row).copied(),
             _ => None,
-        };
-        entry.filter(|entry| entry.known).map(|Entry { force, closed, .. }| Earlier { force, closed })
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::cell::Cell;
 
 use halfgap_contact::{
     Auto, BodyId, CollisionRow, ContactKey, DualActiveSet, HeldRows, Impact, ImpactLaw, ImpactOrder, Inertia,
-    Problem, ProximalNewton, Row, Solution, Solver, WarmStart,
+    Method, Problem, ProximalNewton, Row, Solution, Solver, WarmStart,
 };
 
 thread_local! {
@@ -74,6 +74,51 @@ fn a_warm_solve_of_known_size_allocates_nothing() {
         assert_eq!(allocations(&mut ProximalNewton::default(), boxes), 0, "proximal method, {boxes} boxes");
         assert_eq!(allocations(&mut Auto::default(), boxes), 0, "automatic choice, {boxes} boxes");
     }
+}
+
+/// Fills `problem` with boxes in a pyramid of so many layers at one step, each box of its own width: contacts that nearly depend on each
+/// other take many pivots, and are handed over.
+fn fill_crooked(problem: &mut Problem, layers: usize, step: usize) {
+    problem.clear();
+    let (mut first_below, mut bodies) = (0, 0);
+    let mut width = (0..).map(|k| 0.5 * (1.0 + 1e-3 * (1.7 * k as f64 + step as f64).sin()));
+    let mut width = || width.next().unwrap_or(0.5);
+    for layer in 0..layers {
+        let first = bodies;
+        for k in 0..layers - layer {
+            let body = problem.add_body(Inertia { inverse_mass: 0.8, inverse_moment: 3.0 }).unwrap();
+            bodies += 1;
+            if layer == 0 {
+                for side in [-width(), width()] {
+                    problem.add_row(&Row::new(body, [0.0, 1.0, side], -9.81)).unwrap();
+                }
+                continue;
+            }
+            for (other, lower, upper) in
+                [(k, 0.0, -1.0), (k, 1.0, 0.0), (k + 1, -1.0, 0.0), (k + 1, 0.0, 1.0)]
+            {
+                let row = Row::new(body, [0.0, width(), upper * width()], 0.0);
+                let below = BodyId((first_below + other) as u32);
+                problem.add_row(&row.against(below, [0.0, -width(), -lower * width()])).unwrap();
+            }
+        }
+        first_below = first;
+    }
+}
+
+#[test]
+fn contacts_that_are_handed_over_allocate_nothing_either() {
+    let (mut problem, mut solution, mut solver) = (Problem::new(), Solution::new(), Auto::default());
+    let mut before = 0;
+    for step in 0..20 {
+        if step == 10 {
+            before = COUNT.with(Cell::get);
+        }
+        fill_crooked(&mut problem, 10, step % 2);
+        solver.solve(&problem, &mut solution).unwrap();
+        assert_eq!(solution.method, Method::ProximalNewton);
+    }
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
 }
 
 /// The rows of a stack of boxes with two pins beside it, which closes at a speed that differs from step to step.

@@ -1,0 +1,227 @@
+//! A primal-dual interior-point method in body space: what the proximal method starts from where it does not end soon.
+//!
+//! With the scaled quantities of [`System`] and the motion u of the bodies,
+//!
+//! ```text
+//! u = Ĵᵀ f,   a = Ĵ u + b̂,   f_i a_i = μ   (f_i > 0, a_i > 0),   a = -δ (f - f before)  on bilateral rows
+//! ```
+//!
+//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = f/a: positive definite however redundant the contacts are, and
+//! as sparse as the bodies' neighbourhoods. A step predicts how far μ can fall and corrects for what is quadratic. Which rows are closed where
+//! many contacts nearly depend on each other takes an active set a pivot each; here it takes some twenty steps whatever their
+//! number. Source: S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM Journal on
+//! Optimization 2, 1992; for quadratic programs, J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., algorithm 16.4.
+//!
+//! This room finds forces near the answer, and nothing exact: the proximal method ends it.
+
+use crate::body_factor::BodyFactor;
+use crate::system::System;
+
+/// Mean product of force and acceleration, in units of the square of the scale, that ends the iteration.
+const GAP: f64 = 1e-18;
+/// Residual of the accelerations, in units of the scale, that ends it.
+const FEASIBLE: f64 = 1e-9;
+/// The same two up to which what was found is of use.
+const NEAR: f64 = 1e-8;
+/// Cap on steps.
+const STEPS: usize = 50;
+/// Part of the way to the boundary that a step goes at most.
+const WITHIN: f64 = 0.995;
+/// Steps shorter than this part are of no use any more.
+const SHORTEST: f64 = 1e-3;
+/// Power of the part of the gap that a prediction leaves, down to which the corrected step goes.
+const CENTRING: i32 = 3;
+/// Proximal term on bilateral rows, in units of the unit diagonal of Â.
+const BILATERAL_TERM: f64 = 1e-9;
+
+/// The method with its buffers; of each row f and a, their changes, and what the equations are short of.
+#[derive(Debug, Default)]
+pub(crate) struct InteriorPoint {
+    pub(crate) force: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
+    weight: Vec<f64>,
+    residual: Vec<f64>,
+    /// Products of force and acceleration that a step aims at.
+    product: Vec<f64>,
+    force_change: Vec<f64>,
+    acceleration_change: Vec<f64>,
+    motion: Vec<f64>,
+    motion_change: Vec<f64>,
+    /// Steps of the last run.
+    pub(crate) steps: usize,
+}
+
+impl InteriorPoint {
+    /// Follows the path as far as it can. Returns whether it came near the end.
+    pub(crate) fn run(&mut self, system: &System, factor: &mut BodyFactor, bilateral: &[bool]) -> bool {
+        self.open(system, bilateral);
+        let scale = system.scale;
+        let count = bilateral.iter().filter(|is| !**is).count().max(1) as f64;
+        loop {
+            self.measure(system, bilateral);
+            let gap = self.gap_after(0.0, bilateral);
+            let mean = gap / (count * scale * scale);
+            let short = self.residual.iter().fold(0.0, |most: f64, r| most.max(r.abs())) / scale;
+            let is_near = mean <= NEAR && short <= NEAR;
+            if mean <= GAP && short <= FEASIBLE || self.steps >= STEPS || !gap.is_finite() {
+                return is_near;
+            }
+            self.steps += 1;
+            let weight = &self.weight;
+            if !factor.factor(system, |row| weight[row]) {
+                return is_near;
+            }
+            // As if all products could fall to zero, then to what that tells.
+            self.product.fill(0.0);
+            self.find_step(system, factor, bilateral);
+            let after = self.gap_after(self.longest(bilateral), bilateral);
+            let target = gap / count * (after / gap).powi(CENTRING);
+            for (row, product) in self.product.iter_mut().enumerate() {
+                *product = target - self.force_change[row] * self.acceleration_change[row];
+            }
+            self.find_step(system, factor, bilateral);
+            let length = (WITHIN * self.longest(bilateral)).min(1.0);
+            if length < SHORTEST {
+                return is_near;
+            }
+            self.go(length);
+        }
+    }
+
+    /// Starts in the middle: all forces and accelerations of the size of the offsets.
+    fn open(&mut self, system: &System, bilateral: &[bool]) {
+        self.steps = 0;
+        for values in [
+            &mut self.weight,
+            &mut self.residual,
+            &mut self.product,
+            &mut self.force_change,
+            &mut self.acceleration_change,
+        ] {
+            values.clear();
+            values.resize(bilateral.len(), 0.0);
+        }
+        for values in [&mut self.force, &mut self.acceleration] {
+            values.clear();
+            values.extend(bilateral.iter().map(|is| if *is { 0.0 } else { system.scale }));
+        }
+        for values in [&mut self.motion, &mut self.motion_change] {
+            values.clear();
+            values.resize(system.columns(), 0.0);
+        }
+        system.push(&self.force, &mut self.motion);
+    }
+
+    /// Finds weights, and by how much accelerations are not those of the motion.
+    fn measure(&mut self, system: &System, bilateral: &[bool]) {
+        system.pull(&self.motion, &mut self.residual);
+        for (row, residual) in self.residual.iter_mut().enumerate() {
+            *residual += system.b[row] - self.acceleration[row];
+            let of_contact = self.force[row] / self.acceleration[row];
+            self.weight[row] = if bilateral[row] { BILATERAL_TERM.recip() } else { of_contact };
+        }
+    }
+
+    /// Finds the changes that make the equations hold, with the products that are aimed at.
+    fn find_step(&mut self, system: &System, factor: &mut BodyFactor, bilateral: &[bool]) {
+        // What the forces would become if the motion did not change.
+        for (row, &is_bilateral) in bilateral.iter().enumerate() {
+            let kept =
+                if is_bilateral { self.force[row] } else { self.product[row] / self.acceleration[row] };
+            self.force_change[row] = kept - self.weight[row] * self.residual[row];
+        }
+        system.push(&self.force_change, &mut self.motion_change);
+        self.motion_change.iter_mut().zip(&self.motion).for_each(|(change, motion)| *change -= motion);
+        factor.solve(&mut self.motion_change);
+        system.pull(&self.motion_change, &mut self.acceleration_change);
+        for (row, &is_bilateral) in bilateral.iter().enumerate() {
+            let change = self.acceleration_change[row];
+            self.force_change[row] -= self.force[row] + self.weight[row] * change;
+            self.acceleration_change[row] = if is_bilateral { 0.0 } else { change + self.residual[row] };
+        }
+    }
+
+    /// How far along the step no force and no acceleration falls below zero, in steps.
+    fn longest(&self, bilateral: &[bool]) -> f64 {
+        let to_zero = |value: f64, change: f64| if change < 0.0 { -value / change } else { f64::INFINITY };
+        let of_row = |row: usize| {
+            let force = to_zero(self.force[row], self.force_change[row]);
+            force.min(to_zero(self.acceleration[row], self.acceleration_change[row]))
+        };
+        (0..bilateral.len()).filter(|&row| !bilateral[row]).map(of_row).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Sum of the products of the unilateral rows after so many steps, one at most.
+    fn gap_after(&self, steps: f64, bilateral: &[bool]) -> f64 {
+        let steps = steps.min(1.0);
+        let of_row = |row: usize| {
+            (self.force[row] + steps * self.force_change[row])
+                * (self.acceleration[row] + steps * self.acceleration_change[row])
+        };
+        (0..bilateral.len()).filter(|&row| !bilateral[row]).map(of_row).sum()
+    }
+
+    /// Goes a part of the step.
+    fn go(&mut self, part: f64) {
+        for (values, changes) in [
+            (&mut self.force, &self.force_change),
+            (&mut self.acceleration, &self.acceleration_change),
+            (&mut self.motion, &self.motion_change),
+        ] {
+            values.iter_mut().zip(changes).for_each(|(value, change)| *value += part * change);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Inertia, Problem, Row};
+    use crate::test_problems::crooked_pyramid;
+
+    fn run(problem: &Problem) -> (bool, InteriorPoint) {
+        let (mut system, mut factor) = (System::default(), BodyFactor::default());
+        system.load(problem);
+        assert!(factor.prepare(&system, system.columns()));
+        let mut method = InteriorPoint::default();
+        let is_near = method.run(&system, &mut factor, problem.bilateral());
+        (is_near, method)
+    }
+
+    #[test]
+    fn nearly_redundant_contacts_take_few_steps_whatever_their_number() {
+        for layers in [2, 8, 16] {
+            let (is_near, method) = run(&crooked_pyramid(layers));
+            assert!(is_near && method.steps < 30, "{} steps", method.steps);
+            let forces = method.force.iter().zip(&method.acceleration);
+            let kept = forces.clone().filter(|(force, acceleration)| force > acceleration).count();
+            assert!(kept < method.force.len());
+            // What carries force does not open, and what opens carries none.
+            assert!(forces.into_iter().all(|(force, acceleration)| force.min(*acceleration) < 1e-6));
+        }
+    }
+
+    #[test]
+    fn connectors_may_pull() {
+        let mut problem = Problem::new();
+        let body = problem.add_body(Inertia { inverse_mass: 2.0, inverse_moment: 1.0 }).expect("a body");
+        problem.add_row(&Row::new(body, [0.0, 1.0, 0.0], 5.0).bilateral()).expect("a row");
+        problem.add_row(&Row::new(body, [1.0, 0.0, 0.0], -3.0)).expect("a row");
+        let (is_near, method) = run(&problem);
+        // In units in which a row's square is 1: forces times the square root of the inverse mass.
+        let expected = [-5.0, 3.0].map(|force: f64| force / 2.0_f64.sqrt());
+        assert!(is_near);
+        let errors = method.force.iter().zip(expected).map(|(force, expected)| (force - expected).abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-6, "{:?}", method.force);
+    }
+
+    #[test]
+    fn jaws_that_close_on_a_body_have_no_end() {
+        let mut problem = Problem::new();
+        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 1.0 }).expect("a body");
+        for direction in [1.0, -1.0] {
+            problem.add_row(&Row::new(body, [direction, 0.0, 0.0], -1.0)).expect("a row");
+        }
+        assert!(!run(&problem).0);
+    }
+}
