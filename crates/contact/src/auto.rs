@@ -1,9 +1,10 @@
 //! The automatic choice of a method.
 //!
 //! Unsymmetric problems go to Lemke's method. Of the others, independent islands are solved one by one, each by the
-//! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight, or were made: then by the
-//! proximal method, which begins from inside in the second case. If the first choice fails its check, the others are tried, the quadratic program last. The
-//! reasons and the measurements are in the project's `docs/contact.md`.
+//! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight, or were made:
+//! then by the proximal method, which begins from an interior point in the second case. If the first choice fails its
+//! check, the others are tried, the quadratic program last. The reasons and the measurements are in the project's
+//! `docs/contact.md`.
 
 use crate::check::Checker;
 use crate::dual_active_set::{DualActiveSet, HandOver};
@@ -164,10 +165,10 @@ impl Methods {
         match first {
             Ok(None) => Ok(()),
             Ok(Some(reason)) => {
-                let found = match warm {
-                    _ if reason == HandOver::Pivots => self.proximal.solve_inside(problem, solution),
-                    Some(warm) => self.proximal.solve_from(problem, warm, solution),
-                    None => self.proximal.solve(problem, solution),
+                let found = match (reason, warm) {
+                    (HandOver::Pivots, _) => self.proximal.solve_inside(problem, solution),
+                    (HandOver::Redundant, Some(warm)) => self.proximal.solve_from(problem, warm, solution),
+                    (HandOver::Redundant, None) => self.proximal.solve(problem, solution),
                 };
                 found
                     .or_else(|_| self.dual.run(problem, start, solution))

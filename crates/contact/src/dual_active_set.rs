@@ -36,7 +36,7 @@ pub(crate) const REFINED: f64 = 0.125;
 const LARGER: f64 = 2.0;
 
 /// Passes over all rows that a pivot takes beside those of the factor.
-const PASSES: usize = 5;
+const ROW_PASSES: usize = 5;
 
 /// Work, in passes over all rows, for which the interior-point method would be about half done.
 const PATIENCE: usize = 400;
@@ -59,7 +59,7 @@ pub struct DualActiveSet {
     pub(crate) contacts_contradict: bool,
     checker: Checker,
     pub(crate) pivots: usize,
-    /// Whether to stop where another method is likely to be faster, and whether that was so.
+    /// Whether to stop where another method is likely to be faster, and why it did.
     pub(crate) may_hand_over: bool,
     pub(crate) handed_over: Option<HandOver>,
     /// Work of pivots, and of rows opened on the way to where they start, in passes over all rows.
@@ -188,7 +188,7 @@ impl DualActiveSet {
     /// Adds the work of a pivot: some passes over all rows, and one over the factor.
     pub(crate) fn count_work(&mut self, pivots: usize) {
         let of_factor = self.closed.factor.envelope() / self.closed.force.len().max(1);
-        self.work += pivots * (PASSES + of_factor);
+        self.work += pivots * (ROW_PASSES + of_factor);
     }
 
     /// Notes that another method is likely to be faster, once so much work was done.

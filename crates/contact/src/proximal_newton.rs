@@ -182,7 +182,8 @@ impl ProximalNewton {
         self.move_by_multipliers();
     }
 
-    /// Iterates from where it is to begin; from inside if it does not end soon otherwise.
+    /// Iterates from where it is to begin, or from inside where that does not end soon. Where nothing is found inside, a guess
+    /// is gone on with after all.
     fn approach(&mut self, problem: &Problem, warm: Option<&WarmStart>, begin: Begin) {
         self.interior_steps = 0;
         if begin == Begin::Guess {
@@ -195,8 +196,10 @@ impl ProximalNewton {
         self.most_steps = self.settings.newton_steps;
         let is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral);
         self.interior_steps = self.interior.steps + self.steps;
-        self.load(problem, warm);
         self.factored = None;
+        if begin == Begin::Guess {
+            self.load(problem, warm);
+        }
         if is_near {
             self.begin_inside(problem);
         }

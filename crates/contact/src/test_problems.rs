@@ -29,12 +29,17 @@ pub(crate) fn pyramid(layers: usize, arm: f64) -> Problem {
     problem
 }
 
+/// Part of itself by which a coefficient of a crooked pyramid is changed at most.
+const CROOKED: f64 = 1e-3;
+/// Phase [rad] by which that differs from one coefficient to the next.
+const PHASE: f64 = 1.7;
+
 /// The same with each block of its own width: the corners no longer meet, and some of them open.
 pub(crate) fn crooked_pyramid(layers: usize) -> Problem {
     let mut problem = pyramid(layers, 0.5);
     if let Matrix::Bodies(bodies) = &mut problem.matrix {
         for (k, value) in bodies.rows.value.iter_mut().enumerate() {
-            *value *= 1.0 + 1e-3 * (k as f64 * 1.7).sin();
+            *value *= 1.0 + CROOKED * (k as f64 * PHASE).sin();
         }
     }
     problem
