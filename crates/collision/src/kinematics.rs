@@ -51,6 +51,7 @@ pub struct Spin {
 impl GapKinematics {
     /// The kinematics of a measured gap between two moving bodies.
     #[must_use]
+    #[inline(always)]
     pub fn of(sample: &GapSample, primary: &Moving, normal: &Moving) -> Self {
         let n = sample.normal;
         let arms = Arms::of(sample, primary, normal);
@@ -93,6 +94,7 @@ impl GapKinematics {
 impl Arms {
     /// Arms to the feature centres (line: to the foot) of a measured gap.
     #[must_use]
+    #[inline]
     pub fn of(sample: &GapSample, primary: &Moving, normal: &Moving) -> Self {
         Self {
             primary: sample.center_primary - primary.pose.position,

@@ -220,8 +220,21 @@ impl DirectionRange {
         self.ends().map_or(0.0, |[from, to]| angle_between(from, direction).min(angle_between(to, direction)))
     }
 
+    /// An angle [rad] that a unit vector in the range is away from its ends, or less; none at all for one outside, and without
+    /// end for all directions. The straight way to an end is taken for the turn, which is longer.
+    #[must_use]
+    #[inline]
+    pub fn margin(&self, direction: DVec2) -> f64 {
+        let Some([from, to]) = self.ends() else { return f64::INFINITY };
+        if !self.contains(direction) {
+            return 0.0;
+        }
+        (direction - from).length_squared().min((direction - to).length_squared()).sqrt()
+    }
+
     /// The two ends; `None` for all directions.
     #[must_use]
+    #[inline]
     pub fn ends(&self) -> Option<[DVec2; 2]> {
         match *self {
             DirectionRange::Full => None,
@@ -254,8 +267,16 @@ mod tests {
                 let expected_excess = if turn < width { 0.0 } else { (turn - width).min(TAU - turn) };
                 let excess = range.excess(at(1.0 + turn));
                 assert!((excess - expected_excess).abs() < 1e-12, "width {width}, turn {turn}: {excess}");
+                let from_end = if turn < width { turn.min(width - turn) } else { 0.0 };
+                let margin = range.margin(at(1.0 + turn));
+                assert!(margin <= from_end + 1e-12 && margin >= 0.6 * from_end, "{width}, {turn}: {margin}");
             }
         }
+    }
+
+    #[test]
+    fn all_directions_have_no_ends() {
+        assert_eq!(DirectionRange::Full.margin(at(0.3)), f64::INFINITY);
     }
 
     #[test]

@@ -179,7 +179,7 @@ impl GapSample {
     /// As [`GapSample::measure`] for features continued without end: their ranges of directions are not looked at, and both
     /// excesses are 0. Angles cost more than everything else.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn measure_unbounded(a: &Feature, pose_a: &Pose, b: &Feature, pose_b: &Pose) -> Option<Self> {
         let kind = pair_kind(a, b)?;
         Some(match (kind, a, b) {
@@ -224,7 +224,7 @@ impl GapSample {
         self.excess_primary <= 0.0 && self.excess_normal <= 0.0 && self.overrun <= 0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn of_line(
         round: &RoundFeature,
         pose_round: &Pose,
@@ -249,7 +249,7 @@ impl GapSample {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn of_centers(
         primary: &RoundFeature,
         pose_primary: &Pose,

@@ -4,7 +4,7 @@
 //! an end state that was changed after the step; what the change `d` adds is `d (3 x^2 - 2 x^3)`.
 
 use super::explicit::{Explicit, Lane, WIDTH, weighted_sum};
-use super::polynomial::SegmentPolynomial;
+use super::polynomial::{NESTED, SegmentPolynomial};
 use super::{Ode, Point};
 use std::ops::Range;
 
@@ -56,12 +56,15 @@ impl Explicit {
         let start = self.start[lane][place];
         let change = end.state[component] - start;
         let bend = self.length * self.rates[lane][place] - change;
-        let mut nested =
-            [change, bend, change - self.length * end.rates[component] - bend, 0.0, 0.0, 0.0, 0.0];
+        let mut nested = [0.0; NESTED];
+        nested[..HERMITE].copy_from_slice(&[
+            change,
+            bend,
+            change - self.length * end.rates[component] - bend,
+        ]);
         for (nested, row) in nested[HERMITE..].iter_mut().zip(&rows.rows) {
             *nested = self.length * row[place];
         }
-        let count = HERMITE + self.tableau.dense_rows.len();
-        SegmentPolynomial::from_nested(start, &nested[..count], self.length)
+        SegmentPolynomial::from_nested(start, &nested, self.length)
     }
 }

@@ -2,6 +2,8 @@
 
 /// Largest degree: an integrated velocity of degree 7.
 pub(super) const DEGREE: usize = 8;
+/// Most coefficients of the form that dense output has.
+pub(super) const NESTED: usize = 7;
 
 /// A function of time over a step, a polynomial of degree 8 at most.
 ///
@@ -81,13 +83,15 @@ impl SegmentPolynomial {
 
     /// The value `start + x (c2 + z (c3 + x (c4 + z (c5 + ...))))`, where `x` is the part of the step that has passed,
     /// and `z = 1 - x`.
-    pub(super) fn from_nested(start: f64, nested: &[f64], step: f64) -> Self {
+    ///
+    /// Loops go as far as there are powers, though many are zero: so all of it stays in registers.
+    pub(super) fn from_nested(start: f64, nested: &[f64; NESTED], step: f64) -> Self {
         let mut motion = [0.0; DEGREE + 1];
-        for (index, coefficient) in nested.iter().enumerate().rev() {
-            motion[0] += coefficient;
+        for index in (0..NESTED).rev() {
+            motion[0] += nested[index];
             // times (1 + s) / 2 or (1 - s) / 2
             let sign = if index % 2 == 0 { 0.5 } else { -0.5 };
-            for power in (1..=nested.len() - index).rev() {
+            for power in (1..=NESTED).rev() {
                 motion[power] = 0.5 * motion[power] + sign * motion[power - 1];
             }
             motion[0] *= 0.5;
@@ -157,6 +161,20 @@ impl SegmentPolynomial {
             sum = sum * s + POWERS[power] * POWERS[power - 1] * self.coefficients[power];
         }
         self.rate * self.rate * sum
+    }
+
+    /// Value and first derivative at an offset [s], to the bit those of [`SegmentPolynomial::jet_at`].
+    #[must_use]
+    #[inline]
+    pub fn value_and_rate_at(&self, offset: f64) -> (f64, f64) {
+        let s = self.centered(offset);
+        let (mut motion, mut slope) = (self.coefficients[DEGREE], 0.0);
+        for power in (1..DEGREE).rev() {
+            slope = slope * s + motion;
+            motion = motion * s + self.coefficients[power];
+        }
+        slope = slope * s + motion;
+        (self.coefficients[0] + s * motion, self.rate * slope)
     }
 
     /// Value and first derivatives at an offset [s], for less than one by one.

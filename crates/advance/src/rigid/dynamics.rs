@@ -11,7 +11,7 @@ use super::watch::Samples;
 use crate::ode::Ode;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, Moving, Spin};
+use halfgap_collision::{BodyId, BodyState, MotionBounds, Moving, Spin};
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -74,6 +74,8 @@ pub(crate) struct Stage {
     /// A state along the segment, and its rates.
     pub(crate) trial: Vec<f64>,
     pub(crate) trial_rates: Vec<f64>,
+    /// Bounds on the motion of the group's bodies along the segment.
+    pub(crate) bounds: Vec<MotionBounds>,
     /// Values of watched functions at the nodes.
     pub(crate) samples: Samples,
     /// Their values at the earliest event found so far.
@@ -187,6 +189,17 @@ impl Stage {
     }
 }
 
+/// What a unit force of a row does to the body on one side of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Response {
+    /// Place of the body in its group; `None` if it cannot move.
+    place: Option<u32>,
+    /// M^-1 J^T of the body.
+    acceleration: [f64; 3],
+    /// J M^-1 J^T of the body.
+    square: f64,
+}
+
 /// State of a body in a group's state.
 pub(crate) fn body_state(state: &[f64], bodies: usize, place: usize) -> BodyState {
     let (q, v) = (&state[3 * place..3 * place + 3], &state[3 * (bodies + place)..3 * (bodies + place) + 3]);
@@ -260,30 +273,32 @@ impl Dynamics<'_> {
 
     /// Adds what the only row does to the accelerations: many groups have no other, and need no factor of equations.
     fn accelerate_by_row(&mut self) {
-        let Stage { jacobians, offsets, forces, accelerations, solves, .. } = &mut *self.stage;
-        let (jacobian, sides) = (&jacobians[0], &self.group.sides[0]);
-        let mut responses = [[0.0; 3]; 2];
-        let mut square = 0.0;
-        for (side, response) in responses.iter_mut().enumerate() {
-            let Some(place) = sides[side] else { continue };
-            let inertia = self.physics.mechanism.flyers[self.group.bodies[place as usize].index()].body();
-            let inverse = [inertia.inverse_mass, inertia.inverse_mass, inertia.inverse_moment];
-            for k in 0..3 {
-                let entry = jacobian[3 * side + k];
-                response[k] = inverse[k] * entry;
-                square += response[k] * entry;
-            }
-        }
+        let (first, second) = (self.response_to_row(0), self.response_to_row(1));
+        let Stage { offsets, forces, accelerations, solves, .. } = &mut *self.stage;
+        let square = first.square + second.square;
         let force = if square > 0.0 { -offsets[0] / square } else { 0.0 };
-        for (response, place) in responses.iter().zip(sides) {
-            if let Some(place) = *place {
-                let acceleration = &mut accelerations[place as usize];
-                (0..3).for_each(|k| acceleration[k] += force * response[k]);
+        for Response { place, acceleration, .. } in [first, second] {
+            if let Some(place) = place {
+                let sum = &mut accelerations[place as usize];
+                (0..3).for_each(|k| sum[k] += force * acceleration[k]);
             }
         }
         forces.clear();
         forces.push(force);
         *solves += 1;
+    }
+
+    /// How the body on a side of the only row responds to its force.
+    #[inline(always)]
+    fn response_to_row(&self, side: usize) -> Response {
+        let Some(place) = self.group.sides[0][side] else { return Response::default() };
+        let inertia = self.physics.mechanism.flyers[self.group.bodies[place as usize].index()].body();
+        let jacobian = &self.stage.jacobians[0];
+        let [x, y, turning] = [0, 1, 2].map(|k: usize| jacobian[3 * side + k]);
+        let acceleration =
+            [inertia.inverse_mass * x, inertia.inverse_mass * y, inertia.inverse_moment * turning];
+        let square = acceleration[0] * x + acceleration[1] * y + acceleration[2] * turning;
+        Response { place: Some(place), acceleration, square }
     }
 
     fn solve_rows(&mut self) {
@@ -323,30 +338,24 @@ impl Dynamics<'_> {
     /// Takes accelerations that are only rounding of the forces of contacts from the bodies that have them: what stands
     /// does not creep because its sides are level up to rounding only.
     fn level(&mut self) {
-        let Stage { forces, jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
+        let all: f64 = self.stage.forces.iter().map(|force| force.abs()).sum();
+        let mut bodies = self.stage.accelerations.iter().zip(&self.group.bodies);
+        if !bodies.any(|(acceleration, &body)| self.is_level(acceleration, body, LEVEL * all)) {
+            return;
+        }
+        let Stage { forces, gross, .. } = &mut *self.stage;
         gross.clear();
         gross.resize(self.group.bodies.len(), 0.0);
-        for ((sides, force), jacobian) in self.group.sides.iter().zip(forces.iter()).zip(jacobians.iter()) {
-            for (side, place) in sides.iter().enumerate() {
-                if let Some(place) = *place {
-                    let direction = DVec2::new(jacobian[3 * side], jacobian[3 * side + 1]);
-                    gross[place as usize] += (force * direction).length();
-                }
-            }
+        for (sides, force) in self.group.sides.iter().zip(forces.iter()) {
+            sides.iter().flatten().for_each(|&place| gross[place as usize] += force.abs());
         }
+        let mut levels = std::mem::take(&mut self.stage.levels);
         levels.clear();
-        levels.extend(accelerations.iter().zip(&self.group.bodies).zip(gross.iter_mut()).map(
-            |((acceleration, &body), gross)| {
-                let flyer = &self.physics.mechanism.flyers[body.index()];
-                let (inertia, reach) = (flyer.body(), flyer.reach());
-                let linear = DVec2::new(acceleration[0], acceleration[1]).length();
-                let turning = acceleration[2].abs() / reach;
-                let least = LEVEL * *gross;
-                // From here on the acceleration that is rounding.
-                *gross = least * inertia.inverse_mass;
-                linear <= *gross && turning <= least * inertia.inverse_moment
-            },
-        ));
+        let bodies = self.stage.accelerations.iter().zip(&self.group.bodies).zip(&self.stage.gross);
+        levels.extend(
+            bodies.map(|((acceleration, &body), gross)| self.is_level(acceleration, body, LEVEL * gross)),
+        );
+        self.stage.levels = levels;
         self.keep_pushed();
         let Stage { accelerations, levels, .. } = &mut *self.stage;
         for (acceleration, _) in accelerations.iter_mut().zip(levels).filter(|(_, is_level)| **is_level) {
@@ -354,9 +363,19 @@ impl Dynamics<'_> {
         }
     }
 
+    /// True if an acceleration is no more than so small a force [N] gives a body.
+    #[inline]
+    fn is_level(&self, &[x, y, angular]: &[f64; 3], body: BodyId, force: f64) -> bool {
+        let flyer = &self.physics.mechanism.flyers[body.index()];
+        let (inertia, reach) = (flyer.body(), flyer.reach());
+        let linear = force * inertia.inverse_mass;
+        x * x + y * y <= linear * linear && angular.abs() <= force * inertia.inverse_moment * reach
+    }
+
     /// Takes those bodies out of the level ones that rows push along with others that are not: what is rounding of the forces
     /// on a light body may be how a heavy one moves that it is tied to.
     fn keep_pushed(&mut self) {
+        let flyers = self.physics.mechanism.flyers;
         let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
         let mut any = levels.contains(&true) && levels.contains(&false);
         while std::mem::take(&mut any) {
@@ -369,7 +388,8 @@ impl Dynamics<'_> {
                 }
                 let row = &jacobian[3 * side..3 * side + 3];
                 let pushed: f64 = row.iter().zip(&accelerations[level]).map(|(j, a)| j * a).sum();
-                if pushed.abs() > gross[other] {
+                let inertia = flyers[self.group.bodies[other].index()].body();
+                if pushed.abs() > LEVEL * gross[other] * inertia.inverse_mass {
                     levels[level] = false;
                     any = true;
                 }
@@ -388,6 +408,10 @@ impl Dynamics<'_> {
 
 impl ExtraAcceleration {
     /// Acceleration [m/s^2] that is added to a gap's own, for a gap too large by `gap` [m] that grows at `rate` [m/s].
+    ///
+    /// Kept out of loops over rows, which else compute with `time` where there is none: what memory then holds is often a
+    /// denormal number, which takes long.
+    #[inline(never)]
     fn acceleration(&self, gap: f64, rate: f64) -> f64 {
         if self.distance {
             (2.0 * rate * self.time + gap) / (self.time * self.time)

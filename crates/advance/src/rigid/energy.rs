@@ -12,14 +12,23 @@ use halfgap_collision::BodyId;
 const LOST_ERRORS: f64 = 1e2;
 const LOST_ROUNDINGS: f64 = 1e3;
 
+/// Energy [J] of a group's bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Energy {
+    /// All of it, as far as it has a potential.
+    total: f64,
+    /// Of the motion alone.
+    kinetic: f64,
+}
+
 impl Dynamics<'_> {
-    /// Projects the end onto the held rows and notes what energy that took.
-    pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) {
+    /// Projects the end onto the held rows and notes what energy that took. Returns the energy there, if anybody had to look.
+    pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) -> Option<Energy> {
         let settings = tools.settings;
         self.group.projected = 0.0;
         let needs_none = self.group.rows.is_empty() || self.group.tree.holds_all();
         if needs_none || !(settings.projection || settings.joint_small_impacts) {
-            return;
+            return None;
         }
         let before = self.end_energy();
         if settings.projection {
@@ -27,53 +36,59 @@ impl Dynamics<'_> {
         } else {
             self.fit_joint_velocities();
         }
-        self.group.projected = self.end_energy() - before;
+        let after = self.end_energy();
+        self.group.projected = after.total - before.total;
+        Some(after)
     }
 
-    fn end_energy(&mut self) -> f64 {
+    fn end_energy(&mut self) -> Energy {
         let end = std::mem::take(&mut self.group.end_state);
         let energy = self.energy(&end);
         self.group.end_state = end;
         energy
     }
 
-    /// Energy that the last step has lost or made, in units of what it may; 0 where errors of steps are all there is.
-    pub(crate) fn lost_energy(&mut self, control: &StepControl) -> f64 {
+    /// Energy that the last step has lost or made, in units of what it may; 0 where errors of steps are all there is. The energy
+    /// at its end, where it is known.
+    pub(crate) fn lost_energy(&mut self, control: &StepControl, end: Option<Energy>) -> f64 {
         let holds = !self.group.rows.is_empty() && !self.group.tree.holds_all();
         if !holds && self.group.force_length >= control.length {
             return 0.0;
         }
         let start = std::mem::take(&mut self.group.state);
-        let (before, moving) = (self.energy(&start), self.kinetic_energy(&start));
+        let before = self.energy(&start);
         self.group.state = start;
-        let after = self.end_energy() - self.group.projected;
+        let end = end.unwrap_or_else(|| self.end_energy());
+        let after = end.total - self.group.projected;
         let works: f64 = self.group.end_state[2 * self.group.velocities()..].iter().sum();
-        let lost = (after - before - works).abs();
+        let lost = (after - before.total - works).abs();
         if lost == 0.0 {
             return 0.0;
         }
         let masses = self.group.bodies.iter().map(|&body| self.mass(body));
         let usual = control.speed * control.speed * masses.sum::<f64>();
-        let moving = usual + moving + self.kinetic_energy(&self.group.end_state);
-        let rounding = f64::EPSILON * (before.abs() + after.abs());
+        let moving = usual + before.kinetic + end.kinetic;
+        let rounding = f64::EPSILON * (before.total.abs() + after.abs());
         lost / (LOST_ERRORS * control.local_error * moving + LOST_ROUNDINGS * rounding)
     }
 
-    /// Energy [J] of the group's bodies in a state, as far as it has a potential.
-    fn energy(&mut self, state: &[f64]) -> f64 {
+    /// Energy of the group's bodies in a state.
+    fn energy(&mut self, state: &[f64]) -> Energy {
         let count = self.group.bodies.len();
-        let mut energy = self.kinetic_energy(state);
+        let kinetic = self.kinetic_energy(state);
+        let mut total = kinetic;
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let pull = self.physics.mechanism.flyers[body.index()].law().acceleration;
-            energy -= self.mass(body) * pull.dot(body_state(state, count, place).position);
+            total -= self.mass(body) * pull.dot(body_state(state, count, place).position);
         }
         if self.group.laws.is_empty() {
-            return energy;
+            return Energy { total, kinetic };
         }
         self.stage.load(&self.group.bodies, state);
         let now = Snapshot::new(self.start.seconds(), &self.stage.movings);
         let laws = self.group.laws.iter().map(|&law| &self.physics.laws[law]);
-        energy + laws.filter_map(|law| law.potential(&now)).sum::<f64>()
+        total += laws.filter_map(|law| law.potential(&now)).sum::<f64>();
+        Energy { total, kinetic }
     }
 
     fn kinetic_energy(&self, state: &[f64]) -> f64 {

@@ -69,7 +69,7 @@ impl Dynamics<'_> {
         let (mut proposed, mut before) = (None, f64::INFINITY);
         for tries in 0.. {
             self.extend(tools.stepper, &steps, tools.scales)?;
-            self.end_on_rows(tools);
+            let energy = self.end_on_rows(tools);
             self.follow_rails();
             self.evaluate_end();
             self.make_dense(tools.stepper);
@@ -80,7 +80,7 @@ impl Dynamics<'_> {
                 return Ok(told);
             }
             let swing = told.map_or(0.0, |told| told.dense_error);
-            let excess = excess.max(swing).max(self.lost_energy(&steps));
+            let excess = excess.max(swing).max(self.lost_energy(&steps, energy));
             let most = if excess < WORTHWHILE * before { MOST_SHORTENINGS } else { DEEP_SHORTENINGS };
             let is_worthwhile = excess > DEEP && tries < most;
             before = excess;
@@ -210,11 +210,11 @@ mod tests {
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         let [kept, lost] = system.with_group(&mut group, |dynamics, tools| {
             dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it swings");
-            dynamics.end_on_rows(tools);
-            let kept = dynamics.lost_energy(&tools.settings.steps);
+            let energy = dynamics.end_on_rows(tools);
+            let kept = dynamics.lost_energy(&tools.settings.steps, energy);
             // As what does work where rows all but depend on each other.
             dynamics.group.end_state[4] *= 1.0 - 1e-6;
-            [kept, dynamics.lost_energy(&tools.settings.steps)]
+            [kept, dynamics.lost_energy(&tools.settings.steps, None)]
         });
         assert!(kept < 1.0 && lost > 1.0, "{kept}, {lost}");
     }

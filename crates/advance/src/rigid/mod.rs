@@ -47,6 +47,7 @@ mod rows;
 mod rules;
 mod segment;
 mod settle;
+mod staying;
 mod stiff;
 mod storms;
 mod system;

@@ -1,9 +1,29 @@
 //! The motion of a body along its segment: a flight in closed form, or the dense output of an integrator's step.
 
-use crate::ode::{Jet, SegmentPolynomial};
+use crate::ode::{Jet, SegmentPolynomial, Spread};
 use glam::DVec2;
 use halfgap_collision::{Ball, BodyState, Flight, Motion, MotionBounds, Moving, Polynomial};
 use halfgap_geometry::Aabb;
+
+/// Bounds over a whole segment on what polynomials say: x, y, angle.
+pub(crate) fn bounds_along(polynomials: &[SegmentPolynomial; 3]) -> MotionBounds {
+    let [x, y, angle] = polynomials;
+    let ball = |x: Spread, y: Spread| Ball {
+        center: DVec2::new(x.center, y.center),
+        radius: DVec2::new(x.radius, y.radius).length(),
+    };
+    MotionBounds {
+        velocity: ball(x.derivative_spread(), y.derivative_spread()),
+        acceleration: ball(x.second_derivative_spread(), y.second_derivative_spread()),
+        angular_speed: angle.derivative_spread().largest(),
+        angular_acceleration: angle.second_derivative_spread().largest(),
+    }
+}
+
+/// Largest size of a vector, by the spreads of its components.
+fn largest(x: Spread, y: Spread) -> f64 {
+    DVec2::new(x.largest(), y.largest()).length()
+}
 
 /// Dense output: polynomials in time for the centre of mass and the angle.
 #[derive(Clone, Debug, Default)]
@@ -23,11 +43,8 @@ impl DensePath {
     pub(crate) fn set(&mut self, polynomials: &[SegmentPolynomial; 3]) {
         let [x, y, angle] = *polynomials;
         *self = Self {
-            acceleration: x
-                .second_derivative_spread()
-                .largest()
-                .hypot(y.second_derivative_spread().largest()),
-            jerk: x.third_derivative_spread().largest().hypot(y.third_derivative_spread().largest()),
+            acceleration: largest(x.second_derivative_spread(), y.second_derivative_spread()),
+            jerk: largest(x.third_derivative_spread(), y.third_derivative_spread()),
             angular_acceleration: angle.second_derivative_spread().largest(),
             angular_jerk: angle.third_derivative_spread().largest(),
             x,
@@ -38,7 +55,7 @@ impl DensePath {
 
     /// A speed [m/s] that the centre of mass does not exceed during the segment.
     pub(crate) fn top_speed(&self) -> f64 {
-        self.x.derivative_spread().largest().hypot(self.y.derivative_spread().largest())
+        largest(self.x.derivative_spread(), self.y.derivative_spread())
     }
 
     /// The box in which the centre of mass stays during the segment.
@@ -55,18 +72,14 @@ impl DensePath {
 
 impl Motion for DensePath {
     fn state_at(&self, offset: f64) -> BodyState {
-        let [x, y, angle] = self.jets_at(offset);
-        BodyState {
-            position: DVec2::new(x.value, y.value),
-            angle: angle.value,
-            velocity: DVec2::new(x.derivative, y.derivative),
-            angular_velocity: angle.derivative,
-        }
+        let (position, velocity) = self.center_at(offset);
+        let (angle, angular_velocity) = self.angle.value_and_rate_at(offset);
+        BodyState { position, angle, velocity, angular_velocity }
     }
 
     fn center_at(&self, offset: f64) -> (DVec2, DVec2) {
-        let [x, y] = [self.x.jet_at(offset), self.y.jet_at(offset)];
-        (DVec2::new(x.value, y.value), DVec2::new(x.derivative, y.derivative))
+        let ((x, x_rate), (y, y_rate)) = (self.x.value_and_rate_at(offset), self.y.value_and_rate_at(offset));
+        (DVec2::new(x, y), DVec2::new(x_rate, y_rate))
     }
 
     fn bounds(&self, from: f64, to: f64) -> MotionBounds {

@@ -67,6 +67,12 @@ impl Mechanism<'_> {
         &self.flyers[body.index()].body().shape
     }
 
+    /// A feature of a body.
+    #[inline]
+    pub(crate) fn feature(&self, body: BodyId, feature: FeatureId) -> &Feature {
+        self.shape(body).feature(feature)
+    }
+
     /// Gap and kinematics of a row.
     #[inline]
     pub(crate) fn measure(&self, row: &HeldRow, movings: &[Moving]) -> RowMoment {
@@ -76,22 +82,38 @@ impl Mechanism<'_> {
                 let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
                 RowMoment { gap: sample.gap, kinematics: sample.kinematics }
             }
-            RowSource::Contact(features) => {
-                let sample = self.sample(row.bodies, features, [a, b]);
-                RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, a, b) }
-            }
+            RowSource::Contact(features) => self.measure_contact(row.bodies, features, [a, b]),
         }
     }
 
+    /// Gap and kinematics of a contact; inlined with all that it calls, so that what is not asked for is not computed and what
+    /// is does not go through memory.
+    #[inline(always)]
+    fn measure_contact(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> RowMoment {
+        let sample = self.sample_here(bodies, features, movings);
+        RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, movings[0], movings[1]) }
+    }
+
     /// As [`Mechanism::measure`], of rows in turn: the second row of a pin is measured with the first.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn measure_next(
         &self,
         row: &HeldRow,
         movings: &[Moving],
         twin: &mut Option<(ConnectorId, RowMoment)>,
     ) -> RowMoment {
-        let RowSource::Connector(id, index) = row.source else { return self.measure(row, movings) };
+        let (id, index) = match row.source {
+            RowSource::Connector(id, index) => (id, index),
+            RowSource::Contact(features) => {
+                let sides = row.bodies.map(|body| moving_of(movings, body));
+                return self.measure_contact(row.bodies, features, sides);
+            }
+        };
         if let (1, Some((of, moment))) = (index, *twin)
             && of == id
         {
@@ -110,13 +132,17 @@ impl Mechanism<'_> {
     }
 
     /// The gap of the features of a row, wherever on them it is.
-    #[inline]
     pub(crate) fn sample(
         &self,
         bodies: [BodyId; 2],
         features: [FeatureId; 2],
         movings: [&Moving; 2],
     ) -> GapSample {
+        self.sample_here(bodies, features, movings)
+    }
+
+    #[inline(always)]
+    fn sample_here(&self, bodies: [BodyId; 2], features: [FeatureId; 2], movings: [&Moving; 2]) -> GapSample {
         let [a, b] = [0, 1].map(|side: usize| self.shape(bodies[side]).feature(features[side]));
         GapSample::measure_unbounded(a, &movings[0].pose, b, &movings[1].pose)
             .expect("a contact was made from features that touch")

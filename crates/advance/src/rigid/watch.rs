@@ -25,7 +25,8 @@ const INNER_SHARE: f64 = 0.5;
 const INNER_ERRORS: f64 = 50.0;
 /// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
 /// more for contacts.
-const INNER: [f64; 3] = [0.5, 0.3, 0.7];
+const MIDDLE: f64 = 0.5;
+const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
 
 /// A force may begin to fall this many times as fast as it varies along a step.
 const STEEP: f64 = 4.0;
@@ -236,31 +237,46 @@ impl Dynamics<'_> {
     /// Samples what places tell of the rows at the nodes.
     fn sample_rows(&mut self) -> Samples {
         let mut samples = std::mem::take(&mut self.stage.samples);
-        let group = &*self.group;
-        let can_change = group.rows.iter().any(|row| self.physics.mechanism.can_change(row));
-        fill(&mut samples.rooms, if can_change { group.rows.len() } else { 0 });
-        fill(&mut samples.heights, group.leaning.len());
-        samples.early.clear();
-        samples.early.resize(group.leaning.len(), [0.0; EARLY]);
-        let any_place = can_change || !samples.heights.is_empty();
-        for index in 0..NODES {
-            if any_place {
-                self.place_at(node(index, self.group.span));
-            }
-            for (row, sample) in samples.rooms.iter_mut().enumerate() {
+        let Samples { rooms, heights, early, .. } = &mut samples;
+        self.find_who_may_leave(rooms);
+        fill(heights, self.group.leaning.len());
+        early.clear();
+        early.resize(heights.len(), [0.0; EARLY]);
+        for index in 0..if rooms.is_empty() && heights.is_empty() { 0 } else { NODES } {
+            self.place_at(node(index, self.group.span));
+            for (row, sample) in rooms.iter_mut().enumerate().filter(|(_, sample)| sample[0].is_finite()) {
                 sample[index] = self.room(row);
             }
-            for (row, sample) in samples.heights.iter_mut().enumerate() {
+            for (row, sample) in heights.iter_mut().enumerate() {
                 sample[index] = self.height(row);
             }
         }
-        for index in 0..if samples.early.is_empty() { 0 } else { EARLY } {
+        for index in 0..if early.is_empty() { 0 } else { EARLY } {
             self.place_at(early_node(index, self.group.span));
-            for (row, sample) in samples.early.iter_mut().enumerate() {
+            for (row, sample) in early.iter_mut().enumerate() {
                 sample[index] = self.height(row);
             }
         }
         samples
+    }
+
+    /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell that all of them
+    /// stay; else the samples of those that do are without end.
+    fn find_who_may_leave(&mut self, rooms: &mut Vec<[f64; NODES]>) {
+        rooms.clear();
+        let mechanism = &self.physics.mechanism;
+        if !self.group.rows.iter().any(|row| mechanism.can_change(row)) {
+            return;
+        }
+        self.find_bounds();
+        self.place_at(MIDDLE * self.group.span);
+        rooms.extend((0..self.group.rows.len()).map(|row| {
+            let sample = if self.stays(row) { f64::INFINITY } else { 0.0 };
+            [sample; NODES]
+        }));
+        if rooms.iter().all(|sample| sample[0].is_infinite()) {
+            rooms.clear();
+        }
     }
 
     /// The earliest contact that sinks before the first node.

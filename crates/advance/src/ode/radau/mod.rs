@@ -7,7 +7,7 @@
 mod coefficients;
 
 use super::linear::{Factors, dot};
-use super::polynomial::SegmentPolynomial;
+use super::polynomial::{NESTED, SegmentPolynomial};
 use super::{Ode, Point};
 use coefficients::{BACK, ERROR, FORTH, NODES, PAIR, REAL, STAGES};
 use std::ops::Range;
@@ -116,7 +116,8 @@ impl Radau {
             let start = self.start[component];
             // What the end was changed by is put in as 3 x^2 - 2 x^3 of it.
             let change = end.state[component] - (start + way);
-            let nested = [way + change, bend - first * twist - change, twist + 2.0 * change];
+            let mut nested = [0.0; NESTED];
+            nested[..3].copy_from_slice(&[way + change, bend - first * twist - change, twist + 2.0 * change]);
             *out = SegmentPolynomial::from_nested(start, &nested, self.length);
         }
     }
