@@ -6,8 +6,9 @@
 //! few entries a row: A. George, J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4.
 //!
 //! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot and no
-//! force, unless it is soft: see [`HeldRows::soften`]. Without soft rows there is no refinement: the factor leaves a = A f + b at rounding of the terms A_ij f_j, and a step of refinement
-//! could not better that without sums of higher precision.
+//! force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of the terms A_ij f_j. Where
+//! earlier rows leave little of one, as of a heavy body on a light one, that is much beside what moves the heavy one, and a
+//! step of refinement follows: a comes from the motions of the bodies, whose rounding all rows share.
 
 mod dependence;
 mod refining;
@@ -81,6 +82,8 @@ pub struct HeldRows {
     /// What the square of each row is raised by, in parts of itself.
     raise: Vec<f64>,
     is_soft: bool,
+    /// Earlier rows leave little of an independent one.
+    is_delicate: bool,
     refining: Refining,
     /// Ĵ = J M^(-1/2).
     jacobian: Vec<[f64; 6]>,
@@ -121,6 +124,7 @@ impl HeldRows {
             shares: Vec::new(),
             raise: Vec::new(),
             is_soft: false,
+            is_delicate: false,
             refining: Refining::default(),
             jacobian: Vec::new(),
             work: Vec::new(),
@@ -173,18 +177,21 @@ impl HeldRows {
     pub fn factorize(&mut self, jacobians: &[[f64; 6]]) -> usize {
         assert_eq!(jacobians.len(), self.len(), "coefficients of every row");
         let mut dependent = 0;
+        self.is_delicate = false;
         self.shares.fill(false);
         for place in 0..self.len() {
             let coefficients = &jacobians[self.order.rows[place] as usize];
             let diagonal = self.scale_row(place, coefficients);
             let raised = self.raise[place] * diagonal;
             let mut left = (diagonal + raised) - self.eliminate(place);
-            if raised == 0.0 && left <= DOUBTFUL * diagonal {
+            let is_doubtful = raised == 0.0 && left <= DOUBTFUL * diagonal;
+            if is_doubtful {
                 left = self.measure_rest(place);
             }
             let independent = left > self.dependence * diagonal
                 || (raised == 0.0 && left > RESOLVED * diagonal && self.moves_by_itself(place));
             self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
+            self.is_delicate |= is_doubtful && independent;
             if !independent {
                 dependent += 1;
                 self.note_shares(place, diagonal);
@@ -219,12 +226,13 @@ impl HeldRows {
         let (before, rest) = self.factor.split_at_mut(begin);
         let row = &mut rest[..place - first];
         row.fill(0.0);
-        let own = &self.jacobian[place];
+        let of_side = |row: &[f64; 6], side: u8| row.as_chunks::<3>().0[usize::from(side & 1)];
+        let (earlier, later) = self.jacobian.split_at(place);
+        let own = &later[0];
         for shared in &self.shared[self.shared_start[place]..self.shared_start[place + 1]] {
-            let (p, q) = (shared.own as usize, shared.theirs as usize);
-            let theirs = &self.jacobian[shared.place as usize];
-            row[shared.place as usize - first] +=
-                own[p] * theirs[q] + own[p + 1] * theirs[q + 1] + own[p + 2] * theirs[q + 2];
+            let other = shared.place as usize;
+            let (own, theirs) = (of_side(own, shared.own), of_side(&earlier[other], shared.theirs));
+            row[other - first] += own[0] * theirs[0] + own[1] * theirs[1] + own[2] * theirs[2];
         }
         // Row i of L D by a forward substitution, u_j = A_ij - sum over k < j of L_jk u_k.
         for j in first + 1..place {
@@ -266,11 +274,16 @@ impl HeldRows {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
         self.solve_raised(offset, force);
-        if self.is_soft {
-            let mut refining = std::mem::take(&mut self.refining);
-            self.refine(offset, force, &mut refining);
-            self.refining = refining;
+        if !self.is_soft && !self.is_delicate {
+            return;
         }
+        let mut refining = std::mem::take(&mut self.refining);
+        if self.is_soft {
+            self.refine(offset, force, &mut refining);
+        } else {
+            self.correct(offset, force, &mut refining);
+        }
+        self.refining = refining;
     }
 
     fn solve_raised(&mut self, offset: &[f64], force: &mut [f64]) {

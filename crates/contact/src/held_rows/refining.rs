@@ -1,5 +1,5 @@
-//! What the raised squares of soft rows leave lacking in their forces is made good here. Which rows are soft, and the
-//! factor, are the parent's.
+//! What the raised squares of soft rows leave lacking in their forces is made good here, and what rounding of the factor
+//! does where little is left of a row. Which rows are soft, and the factor, are the parent's.
 
 use super::{HeldRows, NONE};
 use crate::skyline::dot;
@@ -73,6 +73,18 @@ impl HeldRows {
         force.copy_from_slice(best);
     }
 
+    /// Corrects forces by what they leave of the equations, once.
+    pub(super) fn correct(&mut self, offset: &[f64], force: &mut [f64], refining: &mut Refining) {
+        let Refining { residual, lacking, .. } = refining;
+        for buffer in [&mut *residual, lacking] {
+            buffer.clear();
+            buffer.resize(force.len(), 0.0);
+        }
+        self.measure_residual(offset, force, residual);
+        self.solve_raised(residual, lacking);
+        force.iter_mut().zip(&*lacking).for_each(|(force, lacking)| *force += lacking);
+    }
+
     /// What the raised squares of soft rows make of some forces: f R f.
     fn softness_of(&self, force: &[f64]) -> f64 {
         let soft = self.raise.iter().enumerate().filter(|(_, raise)| **raise > 0.0);
@@ -115,6 +127,32 @@ fn largest(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::problem::Inertia;
+
+    #[test]
+    fn a_light_body_passes_on_what_a_heavy_one_weighs_to_rounding() {
+        // A light body on two contacts, and a heavy one on it, by all that rounding may make of their arms.
+        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 6.0 / mass };
+        let sides = [[Some(0), None], [Some(0), None], [Some(1), Some(0)], [Some(1), Some(0)]];
+        for heavy in [1e5, 1e6, 1e9] {
+            for arm in [0.5, 1.0 / 3.0, 0.7, 0.123] {
+                let rows: Vec<[f64; 6]> = [-arm, 1.1 * arm]
+                    .iter()
+                    .map(|&at| [0.0, 1.0, at, 0.0, 0.0, 0.0])
+                    .chain([-0.9 * arm, arm].iter().map(|&at| [0.0, 1.0, at, 0.0, -1.0, -at]))
+                    .collect();
+                let mut held = HeldRows::default();
+                held.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
+                assert_eq!(held.factorize(&rows), 0);
+                let offset: Vec<f64> = rows.iter().map(|row| -9.81 * (row[1] + row[4])).collect();
+                let mut force = [0.0; 4];
+                held.solve(&offset, &mut force);
+                let weight = 9.81 * heavy;
+                let off = |sum: f64, weight: f64| (sum / weight - 1.0).abs();
+                let errors = [off(force[2] + force[3], weight), off(force[0] + force[1], weight + 9.81)];
+                assert!(errors.iter().all(|error| *error < 1e-13), "{heavy:e}, {arm}: {errors:?}");
+            }
+        }
+    }
 
     #[test]
     fn a_light_disc_on_two_long_arms_is_held_to_rounding() {

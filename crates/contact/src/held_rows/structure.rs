@@ -4,7 +4,7 @@
 use super::{HeldRows, NONE};
 use crate::problem::Inertia;
 
-/// An earlier row on a common body, with the first coefficients of that body in both rows.
+/// An earlier row on a common body, with the side of that body in both rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shared {
     pub(super) place: u32,
@@ -70,8 +70,7 @@ impl HeldRows {
             for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
                 let mut at = self.head[body as usize];
                 while at != NONE {
-                    let (place, theirs) = (at / 2, 3 * (at % 2) as u8);
-                    self.shared.push(Shared { place, own: 3 * side as u8, theirs });
+                    self.shared.push(Shared { place: at / 2, own: side as u8, theirs: (at % 2) as u8 });
                     at = self.previous[at as usize];
                 }
             }
