@@ -300,7 +300,10 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
                 None => {
                     let mut window = over(span);
                     let wanted = self.first_length(&window);
-                    window.end_at(end_after(wanted));
+                    let end = end_after(wanted);
+                    if end < span {
+                        window.end_at(end);
+                    }
                     (wanted, window)
                 }
             };

@@ -26,10 +26,11 @@ use crate::motion::{Ball, Motion, MotionBounds, Moving};
 use crate::tolerances::rounding;
 use glam::DVec2;
 use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, Pose, RoundFeature};
+use std::cell::OnceCell;
 use std::f64::consts::PI;
 
 /// Two bodies' motions over a window, with bounds that hold in all of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Window<'a, A, B> {
     pub(crate) motion_a: &'a A,
     pub(crate) motion_b: &'a B,
@@ -37,7 +38,7 @@ pub(crate) struct Window<'a, A, B> {
     pub(crate) offsets: [f64; 2],
     /// The time [s] at which the window begins, and where the bodies are then: every march looks there first.
     start: f64,
-    at_start: (Moving, Moving),
+    at_start: OnceCell<(Moving, Moving)>,
     /// Bounds over the window on the relative velocity and acceleration of the centres of mass, of a against b.
     pub(crate) speed: f64,
     pub(crate) acceleration: Ball,
@@ -124,7 +125,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             motion_b,
             offsets,
             start,
-            at_start: (motion_a.moving_at(offsets[0] + start), motion_b.moving_at(offsets[1] + start)),
+            at_start: OnceCell::new(),
             speed: 0.0,
             acceleration: Ball::default(),
             spin_a: SpinBound::default(),
@@ -173,7 +174,8 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     }
 
     fn look(&self, pair: &Pair<'_>, time: f64, ahead: f64) -> Look {
-        let (a, b) = if time == self.start { self.at_start } else { self.at(time) };
+        let (a, b) =
+            if time == self.start { *self.at_start.get_or_init(|| self.at(time)) } else { self.at(time) };
         match (pair.kind, pair.feature_a, pair.feature_b) {
             (PairKind::RoundLine, Feature::Round(round), Feature::Line(line)) => {
                 let slack = pair.slack[0];
@@ -211,7 +213,6 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let a_max = self.acceleration.largest() + of_arms;
         // While the centres keep half of their distance the direction turns by at most u/(d/2).
         let direction_turn = quotient(2.0 * u_max, gap.center_distance);
-        let direction_rate = turning_rate(&gap, u, inner);
         let turned =
             if quotient(0.5 * gap.center_distance, u_max) >= ahead { direction_turn * ahead } else { PI };
         let downward = fastest_against(&self.acceleration, gap.normal, turned) + of_arms;
@@ -226,14 +227,13 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             value_rounding: rounding(size),
             rate_rounding: rounding(u.length()).max(pair.rest),
             resolution: quotient(rounding(size), u_max),
-            outside_for: self.outside_ranges(
-                pair,
-                &gap,
-                (round_a, a),
-                (round_b, b),
-                (direction_rate, u.length(), u_max, a_max),
-            ),
+            outside_for: None,
         };
+        if !inner && look.is_clear_for(ahead) {
+            return look;
+        }
+        let rates = (turning_rate(&gap, u, inner), u.length(), u_max, a_max);
+        look.outside_for = self.outside_ranges(pair, &gap, (round_a, a), (round_b, b), rates);
         if inner || look.is_behind(pair.depth) {
             // In terms of H = +-(|d|^2 - reach^2), whose acceleration +-2 (|u|^2 + d.d'') is bounded at the centre too.
             let distance = gap.center_distance;
@@ -274,8 +274,21 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             of_turning + fastest_against(acceleration, n, spin_b.speed * ahead)
         };
         let rate = n.dot(e_rate) + w * n.perp().dot(e);
-        let along_rate = n.perp().dot(e_rate) - w * n.dot(e);
         let size = gap.center.abs().max(b.pose.position.abs()).max_element() + e.length() + round.radius;
+        let look = Look {
+            value: height,
+            rate,
+            curvature,
+            height,
+            value_rounding: rounding(size),
+            rate_rounding: rounding(e_rate.length() + w.abs() * e.length()).max(pair.rest),
+            resolution: quotient(rounding(size), e_speed + spin_b.speed * e_max),
+            outside_for: None,
+        };
+        if look.is_clear_for(ahead) {
+            return look;
+        }
+        let along_rate = n.perp().dot(e_rate) - w * n.dot(e);
         let beyond =
             overrun_for(gap.along, along_rate, line, in_any_direction, rounding(size).max(pair.overrun));
         let excess = gap.excess(round, &a.pose);
@@ -285,16 +298,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             let by_speed = quotient(room, spin_a.speed + spin_b.speed);
             by_speed.max(first_descent(room, -turning, spin_a.acceleration + spin_b.acceleration))
         });
-        Look {
-            value: height,
-            rate,
-            curvature,
-            height,
-            value_rounding: rounding(size),
-            rate_rounding: rounding(e_rate.length() + w.abs() * e.length()).max(pair.rest),
-            resolution: quotient(rounding(size), e_speed + spin_b.speed * e_max),
-            outside_for: longer(beyond, askew),
-        }
+        Look { outside_for: longer(beyond, askew), ..look }
     }
 
     /// For how long [s] the direction between two centres surely stays outside of one of the ranges.
@@ -366,6 +370,12 @@ impl Look {
 
     fn is_behind(&self, depth: f64) -> bool {
         self.height < -depth
+    }
+
+    /// True if the gap alone tells that nothing happens for so long [s]: where the contact point is does not matter then.
+    #[inline]
+    fn is_clear_for(&self, ahead: f64) -> bool {
+        self.value > self.value_rounding && first_descent(self.value, self.rate, self.curvature) >= ahead
     }
 
     /// At or below the target and within both features.

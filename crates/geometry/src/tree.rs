@@ -40,7 +40,13 @@ pub(crate) enum Below {
 #[derive(Clone, Debug)]
 pub struct FeatureTree {
     nodes: Vec<Node>,
+    /// The nodes that are leaves, in their order.
+    leaves: Vec<usize>,
 }
+
+/// Two trees of no more leaves are compared leaf by leaf: those of one with the root of the other, then what is left of both
+/// with each other.
+const FEW: usize = 16;
 
 impl FeatureTree {
     /// The tree over the features, each in its box.
@@ -48,10 +54,12 @@ impl FeatureTree {
         let id = |index: usize| FeatureId(u32::try_from(index).unwrap_or(u32::MAX));
         let mut items: Vec<Item> =
             boxes.iter().enumerate().map(|(index, &bounds)| Item { id: id(index), bounds }).collect();
-        let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()) };
+        let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()), leaves: Vec::new() };
         if !items.is_empty() {
             tree.add(&mut items, features);
         }
+        let is_leaf = |&node: &usize| matches!(tree.nodes[node].content, Content::Leaf(_));
+        tree.leaves = (0..tree.nodes.len()).filter(is_leaf).collect();
         tree
     }
 
@@ -117,7 +125,11 @@ impl FeatureTree {
     ) {
         if !self.nodes.is_empty() && !other.nodes.is_empty() {
             let pair = PosedTrees { a: self, b: other, a_in_b: pose.seen_from(other_pose), distance };
-            pair.descend(pair.of_a(0), pair.of_b(0), visit);
+            if self.leaves.len().max(other.leaves.len()) <= FEW {
+                pair.visit_leaves(visit);
+            } else {
+                pair.descend(pair.of_a(0), pair.of_b(0), visit);
+            }
         }
     }
 
@@ -234,13 +246,73 @@ struct Placed {
     center: DVec2,
 }
 
+/// Leaves of a tree that are near another tree.
+struct NearLeaves {
+    leaves: [Placed; FEW],
+    count: usize,
+}
+
+impl NearLeaves {
+    /// Those of a tree of few leaves that `place` does not leave out.
+    #[inline]
+    fn find(tree: &FeatureTree, place: impl Fn(usize) -> Option<Placed>) -> Self {
+        let mut near = Self { leaves: [Placed { node: 0, center: DVec2::ZERO }; FEW], count: 0 };
+        for placed in tree.leaves.iter().take(FEW).filter_map(|&node| place(node)) {
+            near.leaves[near.count] = placed;
+            near.count += 1;
+        }
+        near
+    }
+
+    fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    fn iter(&self) -> std::slice::Iter<'_, Placed> {
+        self.leaves[..self.count].iter()
+    }
+}
+
 impl PosedTrees<'_> {
+    #[inline]
     fn of_a(&self, node: usize) -> Placed {
         Placed { node, center: self.a_in_b.point_to_world(self.a.nodes[node].center) }
     }
 
+    #[inline]
     fn of_b(&self, node: usize) -> Placed {
         Placed { node, center: self.a_in_b.point_to_body(self.b.nodes[node].center) }
+    }
+
+    /// Visits the pairs of near leaves of two trees of few.
+    fn visit_leaves(&self, visit: &mut impl FnMut(FeatureId, FeatureId)) {
+        let (root_a, root_b) = (&self.a.nodes[0], &self.b.nodes[0]);
+        let (at_a, at_b) = (self.of_a(0).center, self.of_b(0).center);
+        if self.are_apart((root_a, at_a), (root_b, at_b)) {
+            return;
+        }
+        let of_a = NearLeaves::find(self.a, |node| {
+            let placed = self.of_a(node);
+            (!self.are_apart((&self.a.nodes[node], placed.center), (root_b, at_b))).then_some(placed)
+        });
+        if of_a.is_empty() {
+            return;
+        }
+        let of_b = NearLeaves::find(self.b, |node| {
+            let placed = self.of_b(node);
+            (!self.are_apart((root_a, at_a), (&self.b.nodes[node], placed.center))).then_some(placed)
+        });
+        for at_a in of_a.iter() {
+            let a = &self.a.nodes[at_a.node];
+            for at_b in of_b.iter() {
+                let b = &self.b.nodes[at_b.node];
+                if let (Content::Leaf(feature_a), Content::Leaf(feature_b)) = (a.content, b.content)
+                    && !self.are_apart((a, at_a.center), (b, at_b.center))
+                {
+                    visit(feature_a, feature_b);
+                }
+            }
+        }
     }
 
     fn descend(&self, at_a: Placed, at_b: Placed, visit: &mut impl FnMut(FeatureId, FeatureId)) {
@@ -287,4 +359,57 @@ impl PosedTrees<'_> {
 #[inline]
 fn square(x: f64) -> f64 {
     x * x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Shape;
+    use std::f64::consts::TAU;
+
+    /// A polygon of so many corners on a circle of radius 1 m.
+    fn polygon(corners: u32) -> Shape {
+        let at = |index: u32| DVec2::from_angle(TAU * f64::from(index) / f64::from(corners));
+        Shape::polygon(&(0..corners).map(at).collect::<Vec<_>>()).expect("a convex polygon")
+    }
+
+    #[test]
+    fn all_near_corners_are_visited_and_few_that_are_far() {
+        // Two trees of few leaves, and trees that are descended.
+        for [few, many] in [[3, 8], [8, 9], [5, 60], [60, 70]] {
+            let (a, b) = (polygon(few), polygon(many));
+            for step in 0..40 {
+                let turn = 0.37 * f64::from(step);
+                let pose_a = Pose::new(DVec2::new(-3.0, 2.0), turn);
+                let pose_b = Pose::new(DVec2::new(-3.0, 2.0) + 1.9 * DVec2::from_angle(1.3 * turn), -turn);
+                for distance in [0.0, 0.05, 0.5] {
+                    let mut visited = Vec::new();
+                    let mut visit = |a, b| visited.push((a, b));
+                    a.tree().visit_near_pairs(&pose_a, b.tree(), &pose_b, distance, &mut visit);
+                    let corner =
+                        |shape: &Shape, pose: &Pose, index: u32| match shape.feature(FeatureId(index)) {
+                            Feature::Round(round) => Some(pose.point_to_world(round.center)),
+                            Feature::Line(_) => None,
+                        };
+                    let count = |shape: &Shape| u32::try_from(shape.features().len()).unwrap_or(u32::MAX);
+                    for index_a in 0..count(&a) {
+                        for index_b in 0..count(&b) {
+                            let corners = (corner(&a, &pose_a, index_a), corner(&b, &pose_b, index_b));
+                            let (Some(p), Some(q)) = corners else { continue };
+                            let is_near = p.distance(q) <= distance;
+                            let is_visited = visited.contains(&(FeatureId(index_a), FeatureId(index_b)));
+                            assert_eq!(
+                                is_visited, is_near,
+                                "{few} and {many} corners, step {step}, {distance} m"
+                            );
+                        }
+                    }
+                    let pairs = visited.len();
+                    visited.sort_unstable();
+                    visited.dedup();
+                    assert_eq!(visited.len(), pairs, "each pair once");
+                }
+            }
+        }
+    }
 }
