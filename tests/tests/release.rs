@@ -235,6 +235,21 @@ fn pushed_at_a_wall(push: fn(f64) -> f64) -> (World, BodyId) {
 }
 
 #[test]
+fn a_force_that_comes_and_goes_while_nothing_moves_is_missed_by_no_step() {
+    // It is there for three rounds, each time by less, before it is gone in the fourth.
+    let push = |time: f64| 1.2 + time.sin() - 0.01 * time;
+    let (mut world, _) = pushed_at_a_wall(push);
+    let (mut held, mut gone) = (22.0f64, 23.56f64);
+    assert!(push(held) > 0.0 && push(gone) < 0.0);
+    while gone - held > 1e-12 {
+        let middle = 0.5 * (held + gone);
+        *if push(middle) > 0.0 { &mut held } else { &mut gone } = middle;
+    }
+    let ends = ends(&mut world, 24.0);
+    assert!(ends.len() == 1 && (ends[0].0 - gone).abs() < 1e-7, "{ends:?}, expected at {gone} s");
+}
+
+#[test]
 fn a_contact_without_force_is_held_when_it_is_pressed() {
     let (mut world, ball) = pushed_at_a_wall(f64::sin);
     let accuracy = world.tolerances().accuracy;

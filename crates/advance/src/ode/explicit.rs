@@ -131,9 +131,7 @@ impl Explicit {
     pub(super) fn move_along(&mut self, terms: &[Term]) {
         for (lane, (trial, start)) in self.trial.iter_mut().zip(&self.start).enumerate() {
             let sum = weighted_sum(&self.rates, self.lanes, lane, terms);
-            for ((trial, start), sum) in trial.iter_mut().zip(start).zip(sum) {
-                *trial = start + self.length * sum;
-            }
+            *trial = std::array::from_fn(|k| start[k] + self.length * sum[k]);
         }
     }
 

@@ -63,7 +63,7 @@ impl SegmentPolynomial {
         let mut end_motion = 0.0;
         // The highest power of the velocity is zero, whose integral would not fit; highest powers are the smallest.
         for power in (0..DEGREE).rev() {
-            let term = half_step * velocity.coefficients[power] / POWERS[power + 1];
+            let term = half_step * velocity.coefficients[power] * SHARES[power + 1];
             motion[power + 1] = term;
             if power % 2 == 0 {
                 motion[0] += term;
@@ -242,6 +242,10 @@ impl SegmentPolynomial {
 
 /// Part of a value at an end that is its rounding: of the sum that it is, and of a projection after it.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// One over the powers, which are the shares that integrals have of their integrands; the first is not read.
+const SHARES: [f64; DEGREE + 1] =
+    [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0, 1.0 / 8.0];
 
 /// The powers as numbers.
 const POWERS: [f64; DEGREE + 1] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];

@@ -15,6 +15,10 @@ const BRIEF: f64 = 4.0;
 /// A brief step is at least this part of a full one: to be cut short later costs less than to go on too often.
 const BRIEFEST: f64 = 1.0 / 32.0;
 
+/// Where a step is expected to be cut short, it is made shorter by this factor: its error is then so small that it can be cut
+/// by its dense output, and need not be repeated up to the event.
+const CUT_SHARE: f64 = 0.6;
+
 /// A group stays brief while its steps may grow by this factor.
 const BRIEF_GROWTH: f64 = 1.9;
 
@@ -115,11 +119,14 @@ impl RigidSystem {
             RowSource::Connector(id, _) => self.connector(id).path().is_some_and(|path| path.is_spline()),
             RowSource::Contact(_) => false,
         });
-        let soon = BRIEF * pasts.map(|past| past.lasted).fold(0.0, f64::max);
+        let lasted = pasts.map(|past| past.lasted).fold(0.0, f64::max);
+        let soon = BRIEF * lasted;
         let is_brief = |step: f64| !group.has_kinks && BRIEF * soon < step && group.stiffness.allows(soon);
         if let Some(step) = group.next_step.filter(|&step| is_brief(step)) {
             group.is_brief = true;
             (group.next_step, group.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));
+        } else if let Some(step) = group.next_step.filter(|&step| lasted < step) {
+            group.next_step = Some(CUT_SHARE * step);
         }
     }
 }

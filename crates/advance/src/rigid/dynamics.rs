@@ -6,7 +6,7 @@
 use super::flyer::Flyer;
 use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
-use super::rows::Mechanism;
+use super::rows::{HeldRow, Mechanism, RowMoment, RowSource, moving_of};
 use super::watch::Samples;
 use crate::ode::Ode;
 use crate::time::Time;
@@ -139,6 +139,34 @@ impl Stage {
         if let Some(place) = damping {
             powers[place] = damped;
         }
+    }
+
+    /// Takes in what was measured of the next row, whose bodies have the accelerations that they have without it.
+    #[inline(always)]
+    fn take_row(
+        &mut self,
+        row: &HeldRow,
+        sides: [Option<u32>; 2],
+        moment: &RowMoment,
+        extra: Option<&ExtraAcceleration>,
+    ) {
+        let [first, second] = sides.map(|place| self.spin_at(place));
+        let mut offset = moment.kinematics.acceleration(&first, &second);
+        let error = moment.gap - row.gap;
+        if let Some(extra) = extra.filter(|extra| row.bilateral || !extra.joints_only) {
+            offset += extra.acceleration(error, moment.kinematics.rate);
+        }
+        self.gap_error = self.gap_error.max(error.abs());
+        self.offsets.push(offset);
+        self.jacobians.push(moment.kinematics.jacobian);
+    }
+
+    #[inline]
+    pub(crate) fn spin_at(&self, place: Option<u32>) -> Spin {
+        place.map_or(Spin::default(), |place| {
+            let [x, y, angular] = self.accelerations[place as usize];
+            Spin { linear: DVec2::new(x, y), angular }
+        })
     }
 
     /// Notes the largest acceleration of a point of some bodies, before the forces of rows are added.
@@ -305,17 +333,18 @@ impl Dynamics<'_> {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
         self.stage.gap_error = 0.0;
+        let Physics { mechanism, extra, .. } = self.physics;
         let mut twin = None;
-        for (row, sides) in self.group.rows.iter().zip(&self.group.sides) {
-            let moment = self.physics.mechanism.measure_next(row, &self.stage.movings, &mut twin);
-            let spins = sides.map(|place| self.spin_at(place));
-            let mut offset = moment.kinematics.acceleration(&spins[0], &spins[1]);
-            if let Some(extra) = self.physics.extra.filter(|extra| row.bilateral || !extra.joints_only) {
-                offset += extra.acceleration(moment.gap - row.gap, moment.kinematics.rate);
+        for (row, &sides) in self.group.rows.iter().zip(&self.group.sides) {
+            // Told apart here, too, so that what is measured of a contact does not go through memory.
+            if let RowSource::Contact(features) = row.source {
+                let movings = row.bodies.map(|body| moving_of(&self.stage.movings, body));
+                let moment = mechanism.measure_contact(row.bodies, features, movings);
+                self.stage.take_row(row, sides, &moment, extra.as_ref());
+            } else {
+                let moment = mechanism.measure_next(row, &self.stage.movings, &mut twin);
+                self.stage.take_row(row, sides, &moment, extra.as_ref());
             }
-            self.stage.gap_error = self.stage.gap_error.max((moment.gap - row.gap).abs());
-            self.stage.offsets.push(offset);
-            self.stage.jacobians.push(moment.kinematics.jacobian);
         }
         if self.is_held_by_one() {
             self.accelerate_by_row();
@@ -396,14 +425,6 @@ impl Dynamics<'_> {
             }
         }
     }
-
-    #[inline]
-    pub(crate) fn spin_at(&self, place: Option<u32>) -> Spin {
-        place.map_or(Spin::default(), |place| {
-            let [x, y, angular] = self.stage.accelerations[place as usize];
-            Spin { linear: DVec2::new(x, y), angular }
-        })
-    }
 }
 
 impl ExtraAcceleration {
@@ -436,8 +457,8 @@ impl Dynamics<'_> {
         let bodies = self.group.bodies.len();
         self.stage.evaluations += 1;
         self.stage.load(&self.group.bodies, state);
-        rates[..3 * bodies].copy_from_slice(&state[3 * bodies..6 * bodies]);
-        let (velocity_rates, powers) = rates[3 * bodies..].split_at_mut(3 * bodies);
+        let (position_rates, rest) = rates.split_at_mut(3 * bodies);
+        let (velocity_rates, powers) = rest.split_at_mut(3 * bodies);
         let time = self.start.seconds() + offset;
         let of_group = (self.group.bodies.as_slice(), self.group.laws.as_slice());
         self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
@@ -448,9 +469,9 @@ impl Dynamics<'_> {
         if !self.group.rows.is_empty() {
             constrain(self);
         }
-        for (place, acceleration) in self.stage.accelerations.iter().enumerate() {
-            velocity_rates[3 * place..3 * place + 3].copy_from_slice(acceleration);
-        }
+        let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;
+        position_rates.as_chunks_mut::<3>().0.copy_from_slice(velocities);
+        velocity_rates.as_chunks_mut::<3>().0.copy_from_slice(&self.stage.accelerations);
     }
 
     /// Rates of a state of the group, stepped as a tree or not.

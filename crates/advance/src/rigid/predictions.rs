@@ -183,7 +183,8 @@ impl RigidSystem {
 
     /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
     fn drop_rules(&mut self, pair: PairId, time: Time) {
-        if !self.pairs.get(pair).has_rules {
+        let may_open = |rule: &FeatureRule| rule.target.is_some();
+        if !self.pairs.get(pair).has_rules || !self.pairs.rules(pair).iter().any(may_open) {
             return;
         }
         let [a, b] = self.pairs.bodies(pair);

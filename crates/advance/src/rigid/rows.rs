@@ -86,10 +86,16 @@ impl Mechanism<'_> {
         }
     }
 
+    /// Gap [m] of a row; of the bodies only the placements matter.
+    pub(crate) fn gap(&self, row: &HeldRow, movings: &[Moving]) -> f64 {
+        let RowSource::Contact(features) = row.source else { return self.measure(row, movings).gap };
+        self.sample_here(row.bodies, features, row.bodies.map(|body| moving_of(movings, body))).gap
+    }
+
     /// Gap and kinematics of a contact; inlined with all that it calls, so that what is not asked for is not computed and what
     /// is does not go through memory.
     #[inline(always)]
-    fn measure_contact(
+    pub(crate) fn measure_contact(
         &self,
         bodies: [BodyId; 2],
         features: [FeatureId; 2],
@@ -100,20 +106,14 @@ impl Mechanism<'_> {
     }
 
     /// As [`Mechanism::measure`], of rows in turn: the second row of a pin is measured with the first.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn measure_next(
         &self,
         row: &HeldRow,
         movings: &[Moving],
         twin: &mut Option<(ConnectorId, RowMoment)>,
     ) -> RowMoment {
-        let (id, index) = match row.source {
-            RowSource::Connector(id, index) => (id, index),
-            RowSource::Contact(features) => {
-                let sides = row.bodies.map(|body| moving_of(movings, body));
-                return self.measure_contact(row.bodies, features, sides);
-            }
-        };
+        let RowSource::Connector(id, index) = row.source else { return self.measure(row, movings) };
         if let (1, Some((of, moment))) = (index, *twin)
             && of == id
         {

@@ -51,6 +51,8 @@ const CLEAR_SHARE: f64 = 0.5;
 
 /// Error norm of a step up to which its dense output counts as exact.
 const DENSE_ERROR: f64 = 0.1;
+/// What is smooth and begins with the square of the part of a step is at most this times that square of what it is in the middle.
+const EARLY_SHARE: f64 = 16.0;
 
 /// Part of its reach by which a body with contacts may move in one step.
 const WATCHED_SHARE: f64 = 0.5;
@@ -156,7 +158,23 @@ impl Dynamics<'_> {
     /// decayed steps are much longer at once.
     fn largest_growth(&self) -> f64 {
         let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
-        if is_smooth && self.group.stepping() != Stepping::Stiff { STEADY_GROWTH } else { f64::INFINITY }
+        if is_smooth && self.group.stepping() != Stepping::Stiff {
+            STEADY_GROWTH
+        } else {
+            self.growth_by_forces()
+        }
+    }
+
+    /// The factor by which a step may grow so that no contact's force varies along it by more than it is, if it goes on to vary as
+    /// along the last. Forces that hold bodies where they are show in no error, and along a step that is longer than they
+    /// take to come and go, none could tell when they vanish.
+    fn growth_by_forces(&self) -> f64 {
+        let contacts = self.group.rows.iter().zip(&self.stage.force_ranges).filter(|(row, _)| !row.bilateral);
+        let growths = contacts.map(|(_, &[least, largest])| {
+            let (size, spread) = (least.abs().max(largest.abs()), largest - least);
+            if spread > 0.0 { (size / spread).max(1.0) } else { f64::INFINITY }
+        });
+        growths.fold(f64::INFINITY, f64::min)
     }
 
     /// The next step is at most by a factor longer than the one just made.
@@ -177,11 +195,14 @@ impl Dynamics<'_> {
         self.group.span = offset;
     }
 
-    /// True if dense output errs by little of what a step may err by: that of explicit methods is of the order of the error
-    /// estimate.
-    pub(crate) fn is_dense_exact(&self) -> bool {
+    /// True if dense output errs at an offset [s] by little of what a step may err by: that of explicit methods is of the order
+    /// of the error estimate, and since it has the values and the rates at the start, near that by less with the square of
+    /// the offset.
+    pub(crate) fn is_dense_exact(&self, offset: f64) -> bool {
+        let part = offset / self.group.span;
+        let share = (EARLY_SHARE * part * part).min(1.0);
         self.group.stepping() != Stepping::Stiff
-            && self.group.accepted.is_some_and(|step| step.error <= DENSE_ERROR)
+            && self.group.accepted.is_some_and(|step| share * step.error <= DENSE_ERROR)
     }
 
     /// Ends the segment at an offset [s] within it, by its dense output.

@@ -139,3 +139,58 @@ fn stays_between_ends(sample: &GapSample, primary: &Side<'_>, other: &Side<'_>, 
     stays(primary, round.range.margin(toward(primary, sample.normal * -round.sign())))
         && stays(other, other_round.range.margin(toward(other, sample.normal * other_round.sign())))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::system::RigidSystem;
+    use super::super::test_scene::{block_on_its_corner, resting_discs};
+    use halfgap_collision::BodyId;
+
+    /// Length of a segment [s].
+    const SPAN: f64 = 0.125;
+
+    /// Whether the contact of body 1, which sets out at a speed [m/s] along the floor and turns [rad/s], is said to stay on its
+    /// features along a segment, and whether it does.
+    fn said_and_done(mut system: RigidSystem, speed: f64, spin: f64) -> [bool; 2] {
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        (group.state[3], group.state[5], group.next_step) = (speed, spin, Some(SPAN));
+        system.with_group(&mut group, |dynamics, tools| {
+            dynamics.set_out();
+            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it slides");
+            dynamics.evaluate_end();
+            dynamics.make_dense(tools.stepper);
+            let span = dynamics.group.span;
+            dynamics.find_bounds();
+            dynamics.place_at(0.5 * span);
+            let said = dynamics.stays(0);
+            let done = (0..=64).all(|part| {
+                dynamics.place_at(span * f64::from(part) / 64.0);
+                dynamics.room(0) >= 0.0
+            });
+            [said, done]
+        })
+    }
+
+    #[test]
+    fn what_slides_along_a_floor_stays_up_to_its_end() {
+        // The floor ends 1 m from the disc, which neither speeds up nor turns.
+        for speed in [-150.0, 0.0, 1.0, 7.5, 7.99, 8.01, 9.0, 50.0] {
+            let expected = speed * SPAN < 1.0;
+            assert_eq!(said_and_done(resting_discs(&[9.0]), speed, 0.0), [expected; 2], "{speed} m/s");
+        }
+    }
+
+    #[test]
+    fn what_rolls_over_a_round_corner_stays_up_to_its_ends() {
+        let spins = (0..=60).map(|index| 0.25 * f64::from(index));
+        let answers = spins.map(|spin| {
+            let [said, done] = said_and_done(block_on_its_corner(), 0.0, spin);
+            assert!(done || !said, "{spin} rad/s");
+            [said, done]
+        });
+        let counts = answers
+            .fold([0, 0], |[said, done], answer| [said + i32::from(answer[0]), done + i32::from(answer[1])]);
+        // Bounds tell so of most that stay.
+        assert!(counts[1] < 60 && 4 * counts[0] > 3 * counts[1], "{counts:?}");
+    }
+}

@@ -9,6 +9,7 @@ use glam::DVec2;
 use halfgap_collision::{Body, BodyState, SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Shape;
+use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 /// Half-width of the target zone, in target gaps.
 const ZONE: f64 = 0.6;
@@ -55,6 +56,26 @@ const DISCS: RigidSettings = RigidSettings {
 
 /// Discs of radius 0.5 m and 1 kg at rest on a floor, which is body 0, under gravity, with their centres at the given places [m].
 pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
+    let disc = Shape::disc(0.5).expect("a fine radius");
+    let on_floor = |&place: &f64| {
+        let position = DVec2::new(place, 0.5 + DISCS_GAP);
+        (disc.clone(), BodyState { position, ..BodyState::default() })
+    };
+    resting(places.iter().map(on_floor))
+}
+
+/// A rounded block of 1 kg that stands on one of its corners, of radius 0.1 m, on such a floor, tilted to where 0.2 rad are
+/// left to the end of the corner.
+pub(super) fn block_on_its_corner() -> RigidSystem {
+    let shape = Shape::rounded_block(1.0, 1.0, 0.1).expect("a fine size");
+    let tilt = FRAC_PI_4 - 0.2;
+    let position = DVec2::new(0.0, 0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP);
+    let state = BodyState { position, angle: FRAC_PI_4 + tilt, ..BodyState::default() };
+    resting([(shape, state)].into_iter())
+}
+
+/// Bodies of 1 kg and as much inertia as a disc of radius 0.5 m at rest on a floor.
+fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> RigidSystem {
     let floor = Body {
         shape: Shape::block(20.0, 1.0).expect("a fine size"),
         inverse_mass: 0.0,
@@ -63,13 +84,11 @@ pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
     };
     let below = BodyState { position: DVec2::new(0.0, -0.5), ..BodyState::default() };
     let mut bodies = vec![(floor, FlightLaw::default(), below)];
-    bodies.extend(places.iter().map(|&place| {
-        let shape = Shape::disc(0.5).expect("a fine radius");
+    bodies.extend(placed.map(|(shape, state)| {
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
         let gravity = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
-        let position = DVec2::new(place, 0.5 + DISCS_GAP);
-        (body, gravity, BodyState { position, ..BodyState::default() })
+        (body, gravity, state)
     }));
     RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
-        .expect("discs that rest on a floor")
+        .expect("bodies that rest on a floor")
 }

@@ -193,7 +193,7 @@ impl Dynamics<'_> {
         for &part in if any_contact { &INNER[..] } else { &INNER[..1] } {
             self.place_at(part * self.group.span);
             for row in &self.group.rows {
-                let error = self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap;
+                let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
                 match row.source {
                     RowSource::Contact(_) => excess = excess.max(-error / least),
                     RowSource::Connector(..) => {
@@ -382,14 +382,14 @@ impl Dynamics<'_> {
     }
 
     /// How far a row is from running off its features, without end for one that cannot.
-    fn room(&self, row: usize) -> f64 {
+    pub(crate) fn room(&self, row: usize) -> f64 {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
     /// Distance [m] of a contact that is touched without force from its least gap.
     fn height(&self, row: usize) -> f64 {
         let row = &self.group.leaning[row];
-        self.physics.mechanism.measure(row, &self.stage.movings).gap - row.gap
+        self.physics.mechanism.gap(row, &self.stage.movings) - row.gap
     }
 
     /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
@@ -402,7 +402,7 @@ impl Dynamics<'_> {
         self.stage.load(bodies, end_state);
         let mechanism = &self.physics.mechanism;
         for row in leaning {
-            let gap = mechanism.measure(row, &self.stage.movings).gap;
+            let gap = mechanism.gap(row, &self.stage.movings);
             row.gap = row.gap.min(gap - mechanism.tolerances.sink());
         }
     }

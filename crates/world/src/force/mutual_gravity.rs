@@ -59,8 +59,8 @@ impl ForceLaw for MutualGravity {
 
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
         self.visit_pairs(now, |[i, j], offset, strength| {
-            let distance = offset.length();
-            let force = offset / distance * (strength / (distance * distance));
+            let square = offset.length_squared();
+            let force = offset * (strength / (square * square.sqrt()));
             wrenches.add_force(self.bodies[i], force, DVec2::ZERO);
             wrenches.add_force(self.bodies[j], -force, DVec2::ZERO);
         });

@@ -206,7 +206,7 @@ impl Dynamics<'_> {
         for &row in &self.group.tree.rest.rows {
             let held = &self.group.rows[row];
             let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
-            let spins = self.group.sides[row].map(|place| self.spin_at(place));
+            let spins = self.group.sides[row].map(|place| self.stage.spin_at(place));
             self.stage.offsets.push(moment.kinematics.acceleration(&spins[0], &spins[1]));
             self.stage.jacobians.push(moment.kinematics.jacobian);
         }
