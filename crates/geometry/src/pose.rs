@@ -18,7 +18,6 @@ impl Rotation {
 
     /// The rotation by `angle` [rad], counter-clockwise.
     #[must_use]
-    #[inline]
     pub fn from_angle(angle: f64) -> Self {
         // Most bodies of most scenes do not turn: spare them the reduction of the argument.
         if angle == 0.0 {
