@@ -202,6 +202,13 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         is_only && self.rules.iter().any(|rule| rule.target.is_none())
     }
 
+    /// True if both centres of mass follow parabolas: of other motions no feature pair has a closed form.
+    fn is_parabolic(&self, from: f64) -> bool {
+        let (a, b) = (self.a, self.b);
+        a.motion.polynomial_from(a.offset + from).is_some()
+            && b.motion.polynomial_from(b.offset + from).is_some()
+    }
+
     /// At least one: every call makes progress.
     fn march_steps(&self) -> u32 {
         self.settings.march_steps.max(1)
@@ -216,7 +223,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
     fn directly(&self, from: f64, span: f64) -> Option<Search> {
         let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
-        if features_a.len() * features_b.len() > self.settings.direct_pairs {
+        if features_a.len() * features_b.len() > self.settings.direct_pairs || !self.is_parabolic(from) {
             return None;
         }
         let mut progress = Progress::none_before(span);
@@ -404,7 +411,9 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         progress: &mut Progress,
     ) {
         let limit = progress.clear;
-        if let Some(found) = self.closed_form(pair, ids, start) {
+        if self.is_parabolic(start)
+            && let Some(found) = self.closed_form(pair, ids, start)
+        {
             if let Some(contact) = found.filter(|contact| contact.time < limit) {
                 progress.offer(contact);
             }

@@ -100,6 +100,7 @@ impl Flight {
 
     /// True if the body neither moves nor is accelerated.
     #[must_use]
+    #[inline]
     pub fn is_at_rest(&self) -> bool {
         self.start.velocity == DVec2::ZERO
             && self.start.angular_velocity == 0.0
@@ -136,6 +137,9 @@ impl Flight {
     }
 
     fn velocity_at(&self, t: f64) -> DVec2 {
+        if t == 0.0 {
+            return self.start.velocity;
+        }
         if self.linear_rate == 0.0 {
             return self.start.velocity + self.acceleration * t;
         }
@@ -160,7 +164,7 @@ impl Flight {
 
     /// What damping leaves of the turning, where there is any.
     fn angular_decay(&self, t: f64) -> Decay {
-        let is_damped = self.angular_rate != 0.0 && self.start.angular_velocity != 0.0;
+        let is_damped = t != 0.0 && self.angular_rate != 0.0 && self.start.angular_velocity != 0.0;
         if is_damped { Decay::new(self.angular_rate * t) } else { Decay::NONE }
     }
 }
@@ -178,12 +182,16 @@ impl Motion for Flight {
     #[inline]
     fn moving_at(&self, t: f64) -> Moving {
         let start = &self.start;
+        if t == 0.0 || self.is_at_rest() {
+            let pose = Pose { position: start.position, rotation: self.start_rotation };
+            return Moving { pose, velocity: start.velocity, angular_velocity: start.angular_velocity };
+        }
         let linear = if self.linear_rate == 0.0 { None } else { Some(Decay::new(self.linear_rate * t)) };
         let (position, velocity) = match &linear {
             Some(decay) => (self.decayed_position(decay, t), self.decayed_velocity(decay, t)),
             None => (self.position_at(t), self.velocity_at(t)),
         };
-        if start.angular_velocity == 0.0 || t == 0.0 {
+        if start.angular_velocity == 0.0 {
             let pose = Pose { position, rotation: self.start_rotation };
             return Moving { pose, velocity, angular_velocity: start.angular_velocity };
         }
@@ -200,6 +208,9 @@ impl Motion for Flight {
 
     #[inline]
     fn center_at(&self, t: f64) -> (DVec2, DVec2) {
+        if t == 0.0 || self.is_at_rest() {
+            return (self.start.position, self.start.velocity);
+        }
         if self.linear_rate == 0.0 {
             return (self.position_at(t), self.velocity_at(t));
         }
@@ -208,6 +219,9 @@ impl Motion for Flight {
     }
 
     fn bounds(&self, from: f64, to: f64) -> MotionBounds {
+        if self.is_at_rest() {
+            return MotionBounds::default();
+        }
         // Both curves of velocities are straight in the plane (a ray towards the final velocity when damped), so the
         // ball over the two end velocities holds all between them.
         let (first, last) = (self.velocity_at(from), self.velocity_at(to));

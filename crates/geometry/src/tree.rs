@@ -291,20 +291,19 @@ impl PosedTrees<'_> {
         if self.are_apart((root_a, at_a), (root_b, at_b)) {
             return;
         }
-        let of_a = NearLeaves::find(self.a, |node| {
-            let placed = self.of_a(node);
-            (!self.are_apart((&self.a.nodes[node], placed.center), (root_b, at_b))).then_some(placed)
-        });
-        if of_a.is_empty() {
-            return;
-        }
-        let of_b = NearLeaves::find(self.b, |node| {
+        let near = NearLeaves::find(self.b, |node| {
             let placed = self.of_b(node);
             (!self.are_apart((root_a, at_a), (&self.b.nodes[node], placed.center))).then_some(placed)
         });
-        for at_a in of_a.iter() {
-            let a = &self.a.nodes[at_a.node];
-            for at_b in of_b.iter() {
+        if near.is_empty() {
+            return;
+        }
+        for &leaf in &self.a.leaves {
+            let (a, at_a) = (&self.a.nodes[leaf], self.of_a(leaf));
+            if self.are_apart((a, at_a.center), (root_b, at_b)) {
+                continue;
+            }
+            for at_b in near.iter() {
                 let b = &self.b.nodes[at_b.node];
                 if let (Content::Leaf(feature_a), Content::Leaf(feature_b)) = (a.content, b.content)
                     && !self.are_apart((a, at_a.center), (b, at_b.center))

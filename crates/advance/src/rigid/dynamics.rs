@@ -76,6 +76,8 @@ pub(crate) struct Stage {
     pub(crate) trial_rates: Vec<f64>,
     /// Bounds on the motion of the group's bodies along the segment.
     pub(crate) bounds: Vec<MotionBounds>,
+    /// Places in the group of the bodies that are watched along the segment.
+    pub(crate) watched: Vec<u32>,
     /// Values of watched functions at the nodes.
     pub(crate) samples: Samples,
     /// Their values at the earliest event found so far.

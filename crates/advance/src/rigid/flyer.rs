@@ -172,11 +172,11 @@ impl Flyer {
         self.flight.restart(state);
     }
 
-    /// Starts a segment that was integrated: x, y, angle.
-    pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3]) {
+    /// Starts a segment that was integrated: x, y, angle, followed for so long [s].
+    pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3], span: f64) {
         self.start = start;
         self.is_integrated = true;
-        self.dense.get_or_insert_default().set(polynomials);
+        self.dense.get_or_insert_default().set(polynomials, span);
     }
 }
 

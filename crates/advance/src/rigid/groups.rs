@@ -457,8 +457,9 @@ impl RigidSystem {
 
     /// The bodies of a group follow its dense output.
     pub(crate) fn fly_along(&mut self, group: &Group) {
+        let span = group.end().since(group.start);
         for (&body, paths) in group.bodies.iter().zip(&group.paths) {
-            self.flyers[body.index()].follow(group.start, paths);
+            self.flyers[body.index()].follow(group.start, paths, span);
         }
     }
 

@@ -39,6 +39,7 @@ mod marks;
 mod pace;
 mod pairs;
 mod path;
+mod placing;
 mod predictions;
 mod region;
 mod repeats;

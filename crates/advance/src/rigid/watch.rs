@@ -35,6 +35,8 @@ const STEEP: f64 = 4.0;
 struct Watch {
     /// Places the bodies at an offset [s], with all that reading needs.
     place: fn(&mut Dynamics<'_>, f64),
+    /// The same of those on which a row depends.
+    place_for: fn(&mut Dynamics<'_>, usize, f64),
     /// The value of a row there.
     read: fn(&Dynamics<'_>, usize) -> f64,
     /// True if a fall of a row counts, with the bodies in place.
@@ -44,18 +46,21 @@ struct Watch {
 
 const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
+    place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
     read: |dynamics, row| dynamics.pressure(row),
     counts: |_, _| true,
     end: SegmentEnd::Release,
 };
 const CHANGES: Watch = Watch {
-    place: |dynamics, offset| dynamics.place_at(offset),
+    place: |dynamics, offset| dynamics.put_watched_at(offset),
+    place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
     read: |dynamics, row| dynamics.room(row),
     counts: |_, _| true,
     end: SegmentEnd::Change,
 };
 const SINKINGS: Watch = Watch {
-    place: |dynamics, offset| dynamics.place_at(offset),
+    place: |dynamics, offset| dynamics.put_watched_at(offset),
+    place_for: |dynamics, row, offset| dynamics.put_leaning_at(row, offset),
     read: |dynamics, row| dynamics.height(row),
     // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
     counts: |dynamics, row| dynamics.is_within(row),
@@ -160,25 +165,6 @@ impl Dynamics<'_> {
         self.stage.gross = gross;
     }
 
-    /// Places the group's bodies where they are at an offset [s] of the segment.
-    pub(crate) fn place_at(&mut self, offset: f64) {
-        self.find_state_at(offset);
-        let trial = std::mem::take(&mut self.stage.trial);
-        self.stage.load(&self.group.bodies, &trial);
-        self.stage.trial = trial;
-    }
-
-    /// The state of the group at an offset [s] of the segment, left in the stage.
-    fn find_state_at(&mut self, offset: f64) {
-        let trial = &mut self.stage.trial;
-        trial.clear();
-        let paths = self.group.paths.iter().flatten();
-        trial.extend(paths.map(|path| path.value_at(offset)));
-        let velocities = &self.group.rate_paths[..self.group.velocities()];
-        trial.extend(velocities.iter().map(|path| path.value_at(offset)));
-        trial.resize(self.group.dimension(), 0.0);
-    }
-
     /// By how much held contacts are too near between the ends of the segment, where dense output is less exact, in units of
     /// what is allowed so that nothing overlaps, or connectors off, in units of what steps may err by. The largest error of
     /// a connector is noted.
@@ -191,7 +177,7 @@ impl Dynamics<'_> {
         }
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         for &part in if any_contact { &INNER[..] } else { &INNER[..1] } {
-            self.place_at(part * self.group.span);
+            self.put_at(part * self.group.span);
             for row in &self.group.rows {
                 let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
                 match row.source {
@@ -239,11 +225,12 @@ impl Dynamics<'_> {
         let mut samples = std::mem::take(&mut self.stage.samples);
         let Samples { rooms, heights, early, .. } = &mut samples;
         self.find_who_may_leave(rooms);
+        self.watch_rows(|row| rooms.get(row).is_some_and(|sample| sample[0].is_finite()));
         fill(heights, self.group.leaning.len());
         early.clear();
         early.resize(heights.len(), [0.0; EARLY]);
         for index in 0..if rooms.is_empty() && heights.is_empty() { 0 } else { NODES } {
-            self.place_at(node(index, self.group.span));
+            self.put_watched_at(node(index, self.group.span));
             for (row, sample) in rooms.iter_mut().enumerate().filter(|(_, sample)| sample[0].is_finite()) {
                 sample[index] = self.room(row);
             }
@@ -252,7 +239,7 @@ impl Dynamics<'_> {
             }
         }
         for index in 0..if early.is_empty() { 0 } else { EARLY } {
-            self.place_at(early_node(index, self.group.span));
+            self.put_watched_at(early_node(index, self.group.span));
             for (row, sample) in early.iter_mut().enumerate() {
                 sample[index] = self.height(row);
             }
@@ -283,13 +270,13 @@ impl Dynamics<'_> {
     fn find_early_sinking(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, samples: &Samples) {
         for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
             let fall = early_fall(heights[0], early, self.group.span, |offset| {
-                self.place_at(offset);
+                self.put_leaning_at(row, offset);
                 self.height(row)
             });
             let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) else {
                 continue;
             };
-            self.place_at(offset);
+            self.put_leaning_at(row, offset);
             if self.is_within(row) {
                 *earliest = Some((offset, SegmentEnd::Sink(row)));
             }
@@ -301,7 +288,7 @@ impl Dynamics<'_> {
     fn find_early_change(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, rooms: &[[f64; NODES]]) {
         for (row, values) in rooms.iter().enumerate() {
             let fall = fall_after_rise(values, self.group.span, |offset| {
-                self.place_at(offset);
+                self.put_row_at(row, offset);
                 self.room(row)
             });
             if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
@@ -346,17 +333,19 @@ impl Dynamics<'_> {
             {
                 (watch.place)(self, offset);
                 there.clear();
-                there.extend((0..samples.len()).map(|row| (watch.read)(self, row)));
+                let is_sampled = |row: usize| samples[row][0].is_finite();
+                let read = |row| if is_sampled(row) { (watch.read)(self, row) } else { f64::INFINITY };
+                there.extend((0..samples.len()).map(read));
                 read_at = limit;
             }
             let limit = limit.map(|offset| (offset, there[row]));
             let fall = first_fall_before(values, self.group.span, limit, |offset| {
-                (watch.place)(self, offset);
+                (watch.place_for)(self, row, offset);
                 (watch.read)(self, row)
             });
             let is_first = |offset: &f64| limit.is_none_or(|(least, _)| *offset < least);
             let Some(offset) = fall.filter(is_first) else { continue };
-            (watch.place)(self, offset);
+            (watch.place_for)(self, row, offset);
             let counting = if (watch.counts)(self, row) {
                 Some(offset)
             } else {
@@ -374,7 +363,7 @@ impl Dynamics<'_> {
     fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
         let span = self.group.span;
         let mut read = |offset: f64| {
-            self.place_at(offset);
+            self.put_leaning_at(row, offset);
             self.height(row).max(-self.leaning_room(row))
         };
         let values = std::array::from_fn(|index| read(node(index, span)));
