@@ -2,7 +2,7 @@
 
 use halfgap::geometry::DVec2;
 use halfgap::{BodyState, World};
-use halfgap_tests::mechanism::{Workshop, block, disc};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, at_rest, block, disc};
 
 const RADIUS: f64 = 0.25;
 const ELASTICITY: f64 = 0.2;
@@ -57,4 +57,32 @@ fn a_hundred_discs_pile_up_without_harm() {
     let lost = -(ledger.impacts + ledger.captures);
     assert!(lost > 0.1 * start, "{ledger:?}");
     assert!(ledger.projections.abs() + ledger.integration_error().abs() < 1e-6 * start, "{ledger:?}");
+}
+
+#[test]
+fn a_disc_between_two_that_is_nearly_in_line_with_them_rests() {
+    /// How much higher its centre lies [m], and where in their target zones the two lie that touch the walls.
+    const RISE: f64 = 1e-3;
+    const OFF: f64 = 0.4;
+    let mut shop = Workshop::new(1e-6);
+    let radius = 0.5f64;
+    // By the gaps that such discs touch at the contacts of the left wall are the farthest from closed.
+    let gap = 1e-2 * 1e-6 * radius;
+    let across = ((2.0 * radius + gap).powi(2) - RISE * RISE).sqrt();
+    let wall = across + radius + 0.5;
+    shop.fixed("floor", block(8.0, 1.0), DVec2::new(0.0, -0.5));
+    shop.fixed("left", block(1.0, 4.0), DVec2::new(-wall - (1.0 + OFF) * gap, 2.0));
+    shop.fixed("right", block(1.0, 4.0), DVec2::new(wall + gap, 2.0));
+    for (name, x, y) in [("a", -across, 0.0), ("b", 0.0, RISE), ("c", across, 0.0)] {
+        shop.dull(name, disc(radius), 1.0, at_rest(x, y + radius + gap));
+    }
+    let mut world = shop.build();
+    assert_eq!(world.tolerances().target_gap, gap);
+    let middle = world.find("b").expect("it is there");
+    let before = world.state(middle).position;
+    world.advance_to(1.0, &mut |event| panic!("{event:?}")).expect("nothing moves");
+    assert!(world.state(middle).position.distance(before) < gap);
+    let largest = world.contact_forces().iter().fold(0.0f64, |most, row| most.max(row.force));
+    let expected = 0.5 * GRAVITY * (2.0 * radius) / RISE;
+    assert!((largest / expected - 1.0).abs() < 1e-3, "{largest} N, {expected} N");
 }

@@ -20,9 +20,11 @@ const SHORT_HOP_SHARE: f64 = 0.5;
 const HOP_TURN: f64 = 1e-4;
 
 impl RigidSystem {
-    /// True if a contact opens so slowly that it may be no more than a low hop.
-    pub(crate) fn may_hop(&self, record: &Collision) -> bool {
-        (0.0..=record.tolerances.velocity_tol).contains(&record.motion.normal_velocity)
+    /// True if a contact of a region opens so slowly that it may be no more than a low hop. Of a contact without others it is
+    /// told how long it bounces: that is stopped when it lands.
+    pub(crate) fn may_hop(&self, region: &Region, record: &Collision) -> bool {
+        let rate = record.motion.normal_velocity;
+        rate >= 0.0 && (region.records.len() > 1 || rate <= record.tolerances.velocity_tol)
     }
 
     /// True if what acts on the bodies of a contact that opens brings them back before it has opened by much.

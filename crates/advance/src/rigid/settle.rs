@@ -40,6 +40,8 @@ pub(crate) struct Settling {
     lenient: Auto,
     /// Records that enter the problem.
     candidates: Vec<usize>,
+    /// Records left out of it because rows seemed to work against each other.
+    dropped: Vec<usize>,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
     /// Force [N] of each in the last solve of the event, if it was in it; before the first that at which its contact was cut.
@@ -78,6 +80,7 @@ impl Default for Settling {
             solver: solver(settings),
             lenient: solver(lenient),
             candidates: Vec::new(),
+            dropped: Vec::new(),
             likely: Vec::new(),
             forces: Vec::new(),
             ended: Vec::new(),
@@ -149,6 +152,12 @@ impl Settling {
             let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
             Some(self.ended[place].1)
         }));
+    }
+
+    /// Lets in again what was left out.
+    fn take_back_dropped(&mut self) {
+        self.candidates.append(&mut self.dropped);
+        self.candidates.sort_unstable();
     }
 
     fn solve_at_all(&mut self) -> Result<(), SolveError> {
@@ -228,7 +237,7 @@ impl RigidSystem {
         };
         let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
         let may_hold = |record: &Collision| {
-            let may_hop = with_hops && self.may_hop(record);
+            let may_hop = with_hops && self.may_hop(region, record);
             record.parties.bilateral || (self.holds(record) && (is_slow(record) || may_hop))
         };
         if !region.records.iter().any(may_hold) {
@@ -274,10 +283,18 @@ impl RigidSystem {
             settling.solution.force.resize(settling.candidates.len(), 0.0);
             return Ok(Solved::Nothing);
         }
-        if settling.solve_strictly().is_ok() && !self.is_jammed(region, settling, stage) {
+        let is_sound = settling.solve_strictly().is_ok();
+        if is_sound && !self.is_jammed(region, settling, stage) {
             return Ok(Solved::Soundly);
         }
         self.drop_distant(region, settling, stage);
+        if is_sound && settling.solve_strictly().is_ok() && self.presses_dropped(region, settling, stage) {
+            settling.take_back_dropped();
+            self.pose_problem(region, settling, stage);
+            if settling.solve_strictly().is_ok() {
+                return Ok(Solved::Soundly);
+            }
+        }
         if let Err(source) = settling.solve_at_all() {
             // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
             if scale > rest * rest / self.settings.steps.length {
@@ -294,7 +311,7 @@ impl RigidSystem {
     fn add_pressed_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         let rest = self.rest_speed();
         let may_hop = |record: &Collision| {
-            self.holds(record) && self.may_hop(record) && record.motion.normal_velocity > rest
+            self.holds(record) && self.may_hop(region, record) && record.motion.normal_velocity > rest
         };
         if !region.records.iter().any(may_hop) {
             return false;
@@ -340,11 +357,31 @@ impl RigidSystem {
     /// others with little room, it touches at most one of them.
     fn drop_distant(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
         let sink = self.sink();
-        settling.candidates.retain(|&index| {
-            let record = &region.records[index];
+        let Settling { candidates, dropped, .. } = settling;
+        let may_stay = |index: &usize| {
+            let record = &region.records[*index];
             record.parties.bilateral || record.distance_to_target() <= sink
-        });
+        };
+        dropped.clear();
+        dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
+        candidates.retain(may_stay);
         self.pose_problem(region, settling, stage);
+    }
+
+    /// True if what was left out is pressed all the same by the forces found without it. What fits with little room is not: it
+    /// goes the way of what it touches. In an arch that is nearly straight all contacts carry forces that are far
+    /// larger than all loads.
+    fn presses_dropped(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+        if settling.dropped.is_empty() {
+            return false;
+        }
+        self.push_bodies(region, settling, stage);
+        let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        let mut offsets = settling
+            .dropped
+            .iter()
+            .map(|&index| offset_under(region, &region.records[index], &settling.pushed));
+        offsets.any(|offset| offset < -SMALL_CONTRADICTION * scale)
     }
 
     fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {

@@ -17,6 +17,11 @@ const END: f64 = 2.0;
 /// A disc that rests on a floor, and another, as heavy and without weight, that flies at it so as to give it an upward
 /// speed [m/s], small against its own.
 fn kicked(gravity: f64, upward: f64) -> RigidSystem {
+    kicked_where_fast_is(1e-3, gravity, upward)
+}
+
+/// The same where speeds [m/s] are fast from a given one on.
+fn kicked_where_fast_is(velocity_tol: f64, gravity: f64, upward: f64) -> RigidSystem {
     let height = RADII[0] + TOLERANCES.target_gap;
     let mut resting = body(&disc(RADII[0]), moving(DVec2::new(0.0, height), DVec2::ZERO, 0.0));
     resting.1.acceleration = DVec2::new(0.0, -gravity);
@@ -24,7 +29,7 @@ fn kicked(gravity: f64, upward: f64) -> RigidSystem {
     let place = DVec2::new(-1.8, height - lower);
     let mut kicking = body(&disc(RADII[1]), moving(place, DVec2::new(KICK, 0.0), 0.0));
     kicking.0.inverse_mass = resting.0.inverse_mass;
-    let tolerances = Tolerances { velocity_tol: 1e-3, ..TOLERANCES };
+    let tolerances = Tolerances { velocity_tol, ..TOLERANCES };
     let bodies = vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), resting, kicking];
     let settings = RigidSettings { tolerances, ..SETTINGS };
     let mut system = RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, settings, Time::ZERO)
@@ -55,6 +60,13 @@ fn a_short_hop_within_the_target_zone_is_held_from_the_kick_on() {
     let lost = 0.5 * upward * upward / system.flyer(halfgap_collision::BodyId(1)).body().inverse_mass;
     let captures = system.ledger_at(Time::from_seconds(END)).captures;
     assert!((captures / -lost - 1.0).abs() < 1e-6, "{captures} J of {lost} J");
+}
+
+#[test]
+fn a_short_hop_beside_other_contacts_is_held_however_fast_it_begins() {
+    let upward = speed_to(0.3, 10.0);
+    let fast = 1e-2 * upward;
+    assert_eq!(impacts(&kicked_where_fast_is(fast, 10.0, upward)), 1);
 }
 
 #[test]
