@@ -35,6 +35,12 @@ pub(crate) const REFINED: f64 = 0.125;
 /// Part that a dependent row must have in a closed one, in units of its own, to take its place.
 const LARGER: f64 = 2.0;
 
+/// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of one of them for
+/// little. So many times it may: of rows that all but depend on each other now this, now that one closes by more than
+/// noise, for ever.
+const SLIGHT: f64 = 100.0;
+const MOST_SLIGHT: usize = 10;
+
 /// Passes over all rows that a pivot takes beside those of the factor.
 const ROW_PASSES: usize = 5;
 
@@ -59,6 +65,8 @@ pub struct DualActiveSet {
     pub(crate) contacts_contradict: bool,
     checker: Checker,
     pub(crate) pivots: usize,
+    /// Times that a dependent row took the place of a closed one for little.
+    slight_swaps: usize,
     /// Whether to stop where another method is likely to be faster, and why it did.
     pub(crate) may_hand_over: bool,
     pub(crate) handed_over: Option<HandOver>,
@@ -259,7 +267,7 @@ impl DualActiveSet {
         self.closed.load(problem, attempt.dependence);
         self.shift.reset();
         self.contacts_contradict = false;
-        (self.pivots, self.work) = (0, 0);
+        (self.pivots, self.work, self.slight_swaps) = (0, 0, 0);
         self.handed_over = None;
         self.choose_start(problem, warm);
     }
@@ -353,6 +361,7 @@ impl DualActiveSet {
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
             match self.blocking(full, rounding) {
+                Some(_) if relation.dependent && self.swaps_in_circles(row) => return End::Stopped,
                 Some((at, length)) => {
                     self.advance(row, length);
                     self.closed.acceleration[row] += length * relation.complement.max(0.0);
@@ -367,6 +376,13 @@ impl DualActiveSet {
                 }
             }
         }
+    }
+
+    /// Counts that a dependent row takes the place of a closed one, if that is for little; true if it was so too often.
+    fn swaps_in_circles(&mut self, row: usize) -> bool {
+        let is_slight = self.closed.acceleration[row] > -SLIGHT * self.noise();
+        self.slight_swaps += usize::from(is_slight);
+        self.slight_swaps > MOST_SLIGHT
     }
 
     /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on each other, by
@@ -477,5 +493,33 @@ impl Solver for DualActiveSet {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         self.run(problem, Start::Earlier(start), solution)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Inertia, Row};
+
+    #[test]
+    fn rows_that_all_but_depend_on_each_other_do_not_swap_for_ever() {
+        /// How much farther out the second row acts [m]: the square is what it has to itself.
+        const FARTHER: f64 = 2.5e-6;
+        /// Forces [N] of the two.
+        const FORCES: [f64; 2] = [4.0, 6.0];
+        let mut problem = Problem::new();
+        let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 1.0 };
+        let body = problem.add_body(inertia).expect("a body");
+        let together = FORCES[0] + FORCES[1];
+        for (arm, own) in [(0.0, 0.0), (FARTHER, FARTHER * FARTHER * FORCES[1])] {
+            problem.add_row(&Row::new(body, [0.0, 1.0, arm], -together - own)).expect("a row");
+        }
+        let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
+        let [usual, ..] = solver.attempts();
+        assert!(solver.attempt(&problem, Start::Nothing, &mut solution, usual).is_err());
+        assert!(solver.pivots < 40, "{} pivots", solver.pivots);
+        solver.solve(&problem, &mut solution).expect("two independent rows");
+        let errors = [0, 1].map(|row: usize| (solution.force[row] / FORCES[row] - 1.0).abs());
+        assert!(errors.iter().all(|error| *error < 1e-3), "{:?}", solution.force);
     }
 }
