@@ -195,6 +195,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         9_817_113,
         "the corners of a block that had spun hundreds of times came down now the one, now the other, and fell through",
     ),
+    (
+        15_011_546,
+        "dense output had a held contact farther apart than what touches: where it ran off its edge, none took over",
+    ),
 ];
 
 /// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or masses too far apart. The

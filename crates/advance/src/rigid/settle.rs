@@ -160,8 +160,8 @@ impl Settling {
         self.candidates.sort_unstable();
     }
 
-    fn solve_at_all(&mut self) -> Result<(), SolveError> {
-        self.solve_strictly().or_else(|_| self.lenient.solve(&self.problem, &mut self.solution))
+    fn solve_leniently(&mut self) -> Result<(), SolveError> {
+        self.lenient.solve(&self.problem, &mut self.solution)
     }
 
     /// True if a contact is held from now on.
@@ -288,14 +288,13 @@ impl RigidSystem {
             return Ok(Solved::Soundly);
         }
         self.drop_distant(region, settling, stage);
-        if is_sound && settling.solve_strictly().is_ok() && self.presses_dropped(region, settling, stage) {
+        let (mut found, mut solved) = (settling.solve_strictly(), Solved::Somehow);
+        if is_sound && found.is_ok() && self.presses_dropped(region, settling, stage) {
             settling.take_back_dropped();
             self.pose_problem(region, settling, stage);
-            if settling.solve_strictly().is_ok() {
-                return Ok(Solved::Soundly);
-            }
+            (found, solved) = (settling.solve_strictly(), Solved::Soundly);
         }
-        if let Err(source) = settling.solve_at_all() {
+        if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
             // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
             if scale > rest * rest / self.settings.steps.length {
                 return Err(self.settle_error(region, settling, time, source));
@@ -303,7 +302,7 @@ impl RigidSystem {
             settling.solution.force.clear();
             settling.solution.force.resize(settling.candidates.len(), 0.0);
         }
-        Ok(Solved::Somehow)
+        Ok(solved)
     }
 
     /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if

@@ -18,7 +18,7 @@ use crate::ode::Ode;
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
 pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
-/// Part of the accuracy by which a held contact may be too near within a step.
+/// Part of the accuracy by which a held contact may be too near or too far within a step.
 const INNER_SHARE: f64 = 0.5;
 /// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
 /// much more where connectors tell angles by little.
@@ -165,9 +165,9 @@ impl Dynamics<'_> {
         self.stage.gross = gross;
     }
 
-    /// By how much held contacts are too near between the ends of the segment, where dense output is less exact, in units of
-    /// what is allowed so that nothing overlaps, or connectors off, in units of what steps may err by. The largest error of
-    /// a connector is noted.
+    /// By how much held contacts are off between the ends of the segment, where dense output is less exact, in units of what is
+    /// allowed so that nothing overlaps and what touches is seen to, or connectors, in units of what steps may err by. The
+    /// largest error of a connector is noted.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
         self.group.largest_error = 0.0;
         let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
@@ -181,7 +181,7 @@ impl Dynamics<'_> {
             for row in &self.group.rows {
                 let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
                 match row.source {
-                    RowSource::Contact(_) => excess = excess.max(-error / least),
+                    RowSource::Contact(_) => excess = excess.max(error.abs() / least),
                     RowSource::Connector(..) => {
                         self.group.largest_error = self.group.largest_error.max(error.abs());
                     }
