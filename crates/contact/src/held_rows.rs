@@ -316,11 +316,12 @@ impl HeldRows {
     pub fn respond(&self, force: &[f64], change: &mut [[f64; 3]]) {
         assert_eq!(force.len(), self.len(), "one force per row");
         assert_eq!(change.len(), self.body_count, "one acceleration per body");
-        for (place, sides) in self.bodies.iter().enumerate() {
-            let push = force[self.order.rows[place] as usize];
-            let (row, root) = (&self.jacobian[place], &self.root[place]);
-            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
-                let out = &mut change[body as usize];
+        let rows = self.bodies.iter().zip(&self.order.rows).zip(self.jacobian.iter().zip(&self.root));
+        for ((sides, &index), (row, root)) in rows {
+            let push = force[index as usize];
+            for (side, &body) in sides.iter().enumerate() {
+                // `NONE` is the number of no body.
+                let Some(out) = change.get_mut(body as usize) else { continue };
                 for k in 0..3 {
                     out[k] += root[3 * side + k] * row[3 * side + k] * push;
                 }

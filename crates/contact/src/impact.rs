@@ -15,11 +15,12 @@
 //! | `law` | which rows are solved when; errors |
 //! | `together`, `serial` | all rows in one problem, or one after another |
 //! | `patience` | when ricochets end |
-//! | `pair_problem`, `many_rows` | one or two rows in closed form; more by the active-set method |
+//! | `pair_problem`, `few_rows`, `many_rows` | one or two rows in closed form, some more directly; else by the active-set method |
 //! | `couplings` | the Delassus matrix |
 //! | `shuffle` | random orders |
 
 mod couplings;
+mod few_rows;
 mod law;
 mod many_rows;
 mod pair_problem;

@@ -78,13 +78,28 @@ impl Shape {
         search.improve(0, 0, 0.0);
         let (pair, edge_a, edge_b) =
             search.found.expect("shapes have edges, and finite poses finite distances");
+        let touches = pair.distance <= touching_distance(self, other, &relative);
         ShapeDistance {
             distance: pair.distance,
-            relation: relation(self, other, &relative, pair.distance),
+            relation: if touches { Relation::Crossing } else { relation_of_apart(self, other, &relative) },
             point_a: other_pose.point_to_world(pair.point_a),
             point_b: other_pose.point_to_world(pair.point_b),
             edge_a,
             edge_b,
+        }
+    }
+
+    /// How this shape at `pose` lies to another at its own pose: the [`distance`](Self::distance)'s relation, for a part of the
+    /// time, since edges that do not meet need not be measured.
+    #[must_use]
+    pub fn relation(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> Relation {
+        let relative = pose.seen_from(other_pose);
+        let best = touching_distance(self, other, &relative).next_up();
+        let mut search = Search { a: self, b: other, relative, best, found: None };
+        search.improve(0, 0, 0.0);
+        match search.found {
+            Some(_) => Relation::Crossing,
+            None => relation_of_apart(self, other, &relative),
         }
     }
 }
@@ -148,11 +163,13 @@ impl Search<'_> {
     }
 }
 
-fn relation(a: &Shape, b: &Shape, relative: &Pose, distance: f64) -> Relation {
-    let size = a.reach() + b.reach() + relative.position.length();
-    if distance <= ROUNDING * size {
-        return Relation::Crossing;
-    }
+/// Distance [m] of outlines up to which they touch.
+fn touching_distance(a: &Shape, b: &Shape, relative: &Pose) -> f64 {
+    ROUNDING * (a.reach() + b.reach() + relative.position.length())
+}
+
+/// How two shapes lie whose outlines do not touch.
+fn relation_of_apart(a: &Shape, b: &Shape, relative: &Pose) -> Relation {
     let start = |path: &Path| path.edges()[0].from();
     let in_b = |path: &&Path| b.contains(relative.point_to_world(start(path)));
     let in_a = |path: &&Path| a.contains(relative.point_to_body(start(path)));

@@ -11,7 +11,7 @@ const SAMPLES: u32 = 16;
 ///
 /// Exact for a shallow overlap, whose deepest point is a vertex or the touching point of a pair of features.
 pub(crate) fn overlap_depth(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Option<f64> {
-    if a.distance(pose_a, b, pose_b).relation == Relation::Apart {
+    if a.relation(pose_a, b, pose_b) == Relation::Apart {
         return None;
     }
     let touching = feature_points(a, pose_a, b, pose_b);

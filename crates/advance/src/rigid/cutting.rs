@@ -139,8 +139,7 @@ impl RigidSystem {
             let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
             finite
                 && !region.touches.iter().any(touches)
-                && shape(body).distance(&pose(body), shape(other), &pose(other)).relation
-                    == Relation::Crossing
+                && shape(body).relation(&pose(body), shape(other), &pose(other)) == Relation::Crossing
         })
     }
 

@@ -2,6 +2,7 @@
 
 use super::Impact;
 use super::couplings::Couplings;
+use super::few_rows::{FEW, FewRows};
 use super::law::ImpactError;
 use crate::dual_active_set::DualActiveSet;
 use crate::error::SolveError;
@@ -132,6 +133,9 @@ impl Impact {
     /// Solves the rows of an ascending set of any length, each to reach its target rate, and applies the impulses. Of `likely`,
     /// a flag for each row of the impact, the rows to begin with are taken, or none is known.
     pub(super) fn solve_many(&mut self, set: &[usize], likely: Option<&[bool]>) -> Result<(), ImpactError> {
+        if set.len() <= FEW && self.solve_few(set) {
+            return Ok(());
+        }
         let mut many = self.scratch.many.take().unwrap_or_default();
         many.likely.clear();
         if let Some(likely) = likely {
@@ -140,6 +144,33 @@ impl Impact {
         let outcome = self.solve_with(&mut many, set);
         self.scratch.many = Some(many);
         outcome
+    }
+
+    /// Solves a few rows directly and applies the impulses; false if they are not that simple.
+    fn solve_few(&mut self, set: &[usize]) -> bool {
+        let mut few = FewRows { count: set.len(), ..FewRows::default() };
+        for (place, &row) in set.iter().enumerate() {
+            few.offset[place] = self.rates[row] - self.scratch.targets[row];
+            few.bilateral[place] = self.rows[row].bilateral;
+            let mut column = 0;
+            for (other, value) in self.couplings.row(row) {
+                while column < set.len() && set[column] < other {
+                    column += 1;
+                }
+                if column < set.len() && set[column] == other {
+                    few.matrix[place][column] = value;
+                }
+            }
+        }
+        let Some(found) = few.solve() else { return false };
+        self.solves += 1;
+        for (&row, &impulse) in set.iter().zip(&found.impulses) {
+            self.noise = self.noise.max(found.left * self.length(row));
+            if impulse != 0.0 {
+                self.apply(row, impulse);
+            }
+        }
+        true
     }
 
     fn solve_with(&mut self, many: &mut ManyRows, set: &[usize]) -> Result<(), ImpactError> {
@@ -223,6 +254,7 @@ mod tests {
     use crate::problem::Inertia;
     use crate::row::CollisionRow;
     use halfgap_collision::BodyId;
+    use proptest::prelude::*;
 
     #[test]
     fn a_light_body_wedged_into_a_corner_stops_a_heavy_one() -> Result<(), ImpactError> {
@@ -331,5 +363,30 @@ mod tests {
         let violations = rates.map(|(row, rate)| if row.bilateral { rate.abs() } else { -rate });
         assert!(violations.fold(0.0, f64::max) < 1e-7, "{:?}", impact.rates());
         Ok(())
+    }
+
+    proptest! {
+        #[test]
+        fn few_rows_come_to_the_rates_that_many_do(
+            rows in prop::collection::vec((prop::array::uniform6(-1.0..1.0f64), -1.0..0.2f64, 0u32..3), 3..=FEW),
+        ) {
+            let inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+            let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+            let rows = rows.iter().map(|&(jacobian, rate, other)| {
+                let (other, theirs) = if other == 0 { (BodyId::WORLD, fixed) } else { (BodyId(other), inertia) };
+                CollisionRow::new([BodyId(0), other], jacobian, [inertia, theirs], rate, 0.0, 1e-3, false)
+            });
+            let mut direct = Impact::new();
+            direct.set_rows(rows);
+            direct.aim_at_rest();
+            let mut pivoted = direct.clone();
+            let set: Vec<usize> = (0..direct.rows.len()).collect();
+            if direct.solve_few(&set) {
+                pivoted.solve_with(&mut ManyRows::default(), &set)?;
+                for (p, q) in direct.rates.iter().zip(&pivoted.rates) {
+                    prop_assert!((p - q).abs() < 1e-9, "{p}, {q}");
+                }
+            }
+        }
     }
 }

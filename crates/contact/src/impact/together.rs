@@ -131,7 +131,7 @@ impl Impact {
     }
 
     /// Sets each row's target to rest.
-    fn aim_at_rest(&mut self) {
+    pub(super) fn aim_at_rest(&mut self) {
         self.scratch.targets.clear();
         self.scratch.targets.resize(self.rows.len(), 0.0);
     }

@@ -68,6 +68,7 @@ proptest! {
         shift in any_vector(10.0), angle in any_angle(),
     ) {
         let found = a.distance(&pose_a, &b, &pose_b);
+        prop_assert_eq!(a.relation(&pose_a, &b, &pose_b), found.relation);
         let swapped = b.distance(&pose_b, &a, &pose_a);
         let size = scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length() + 20.0;
         prop_assert!((found.distance - swapped.distance).abs() <= ROUNDING * size);

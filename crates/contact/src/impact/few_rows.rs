@@ -1,0 +1,191 @@
+//! The complementarity problem of a few rows, solved directly.
+//!
+//! Rounds of a serial law solve a few rows that close on the same bodies, thousands of times in a heap: all are closed,
+//! and mostly that is the answer. Otherwise all wrong rows are exchanged at once, as long as that leaves fewer of them (Portugal, Júdice
+//! and Vicente 1994). What that does not end, and rows that nearly depend on each other, are left to `many_rows`.
+
+use crate::settings::Settings;
+
+/// Up to so many rows are few.
+pub(super) const FEW: usize = 8;
+
+/// Part of a row's square that it must have to itself: with less, rounding has a say in the impulses.
+const WELL: f64 = 1e-7;
+
+/// Rounding of an acceleration, in parts of its terms.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Residual, in units of the scale, up to which an answer is taken.
+const ACCEPTED: f64 = 1e-14;
+
+/// Times in a row that as many rows may be wrong as before, or more.
+const TRIES: usize = 2;
+
+/// Some rows: their matrix [1/kg], what their rates lack to their targets [m/s], and which of them are bilateral.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FewRows {
+    pub(super) count: usize,
+    pub(super) matrix: [[f64; FEW]; FEW],
+    pub(super) offset: [f64; FEW],
+    pub(super) bilateral: [bool; FEW],
+}
+
+/// Impulses of some rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FewImpulses {
+    /// In the order of the rows [N s].
+    pub(super) impulses: [f64; FEW],
+    /// What they leave, in units of the root of a row's square [sqrt(kg) m/s].
+    pub(super) left: f64,
+}
+
+impl FewRows {
+    /// The impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None` where that is
+    /// not found at once.
+    pub(super) fn solve(mut self) -> Option<FewImpulses> {
+        let length = self.scale()?;
+        let scale = self.offset[..self.count].iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        let limit = Settings::default().start_closed * scale;
+        let mut closed: [bool; FEW] =
+            std::array::from_fn(|row| row < self.count && (self.bilateral[row] || self.offset[row] <= limit));
+        let (mut fewest, mut tries) = (usize::MAX, 0);
+        loop {
+            let mut force = self.hold(&closed)?;
+            let mut wrong = 0;
+            let mut left = 0.0f64;
+            for row in 0..self.count {
+                let terms: [f64; FEW] = std::array::from_fn(|other| self.matrix[row][other] * force[other]);
+                let rate = terms.iter().sum::<f64>() + self.offset[row];
+                let noise = ROUNDING * (terms.iter().map(|term| term.abs()).sum::<f64>() + scale);
+                let is_wrong = if closed[row] {
+                    left = left.max(rate.abs());
+                    force[row] < 0.0 && !self.bilateral[row]
+                } else {
+                    left = left.max(-rate);
+                    rate < -noise
+                };
+                closed[row] ^= is_wrong;
+                wrong += usize::from(is_wrong);
+            }
+            if wrong == 0 {
+                (0..self.count).for_each(|row| force[row] /= length[row]);
+                return (left <= ACCEPTED * scale).then_some(FewImpulses { impulses: force, left });
+            }
+            tries = if wrong < fewest { 0 } else { tries + 1 };
+            fewest = fewest.min(wrong);
+            if tries > TRIES {
+                return None;
+            }
+        }
+    }
+
+    /// Gives all rows a square of 1, and tells the roots of what they had; `None` if one has none.
+    fn scale(&mut self) -> Option<[f64; FEW]> {
+        let length: [f64; FEW] =
+            std::array::from_fn(|row| if row < self.count { self.matrix[row][row].sqrt() } else { 1.0 });
+        if !length.iter().all(|length| *length > 0.0) {
+            return None;
+        }
+        for row in 0..self.count {
+            self.offset[row] /= length[row];
+            for other in 0..self.count {
+                self.matrix[row][other] /= length[row] * length[other];
+            }
+        }
+        Some(length)
+    }
+
+    /// The forces that hold the closed rows, 0 on the others; `None` if one nearly depends on those before it.
+    fn hold(&self, closed: &[bool; FEW]) -> Option<[f64; FEW]> {
+        let mut rows = [0; FEW];
+        let mut count = 0;
+        for row in (0..self.count).filter(|&row| closed[row]) {
+            rows[count] = row;
+            count += 1;
+        }
+        // A = L D L^T by rows, with the forward substitution of the right-hand side.
+        let mut factor = [[0.0; FEW]; FEW];
+        let (mut pivot, mut value) = ([0.0; FEW], [0.0; FEW]);
+        for i in 0..count {
+            let mut square = self.matrix[rows[i]][rows[i]];
+            let mut right = -self.offset[rows[i]];
+            let mut row = [0.0; FEW];
+            for j in 0..i {
+                let known = (0..j).map(|k| row[k] * factor[j][k]).sum::<f64>();
+                row[j] = self.matrix[rows[i]][rows[j]] - known;
+            }
+            for j in 0..i {
+                factor[i][j] = row[j] / pivot[j];
+                square -= factor[i][j] * row[j];
+                right -= factor[i][j] * value[j];
+            }
+            if square.is_nan() || square <= WELL {
+                return None;
+            }
+            (pivot[i], value[i]) = (square, right);
+        }
+        let mut force = [0.0; FEW];
+        for i in (0..count).rev() {
+            let known = (i + 1..count).map(|k| factor[k][i] * force[rows[k]]).sum::<f64>();
+            force[rows[i]] = value[i] / pivot[i] - known;
+        }
+        Some(force)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn few(matrix: &[&[f64]], offset: &[f64]) -> FewRows {
+        let mut few = FewRows { count: offset.len(), ..FewRows::default() };
+        for (row, values) in matrix.iter().enumerate() {
+            few.matrix[row][..values.len()].copy_from_slice(values);
+        }
+        few.offset[..offset.len()].copy_from_slice(offset);
+        few
+    }
+
+    #[test]
+    fn a_row_that_would_pull_opens() {
+        // The second row is driven open by the first.
+        let found = few(&[&[2.0, 1.9], &[1.9, 2.0]], &[-2.0, -0.1]).solve().expect("independent rows");
+        assert_eq!(found.impulses[..2], [1.0, 0.0]);
+    }
+
+    #[test]
+    fn rows_that_nearly_depend_on_each_other_are_left() {
+        assert_eq!(few(&[&[1.0, 1.0 - 1e-9], &[1.0 - 1e-9, 1.0]], &[-1.0, -1.0]).solve(), None);
+        assert_eq!(few(&[&[0.0]], &[-1.0]).solve(), None);
+        assert_eq!(few(&[&[f64::NAN]], &[-1.0]).solve(), None);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_found_satisfies_the_problem(
+            rows in prop::collection::vec(prop::array::uniform8(-1.0..1.0f64), 1..=FEW),
+            offset in prop::array::uniform8(-1.0..1.0f64),
+            bilateral in prop::array::uniform8(prop::bool::weighted(0.2)),
+            unit in prop_oneof![Just(1e-9), Just(1.0), Just(1e9)],
+        ) {
+            let mut problem = FewRows { count: rows.len(), offset, bilateral, ..FewRows::default() };
+            for (i, p) in rows.iter().enumerate() {
+                for (j, q) in rows.iter().enumerate() {
+                    problem.matrix[i][j] = unit * p.iter().zip(q).map(|(p, q)| p * q).sum::<f64>();
+                }
+            }
+            if let Some(found) = problem.solve() {
+                for row in 0..rows.len() {
+                    let products = (0..rows.len()).map(|other| problem.matrix[row][other] * found.impulses[other]);
+                    let rate = products.sum::<f64>() + offset[row];
+                    let impulse = found.impulses[row];
+                    if bilateral[row] || impulse > 0.0 {
+                        prop_assert!(rate.abs() < 1e-12, "{rate}");
+                    }
+                    prop_assert!(bilateral[row] || (impulse >= 0.0 && rate > -1e-12), "{impulse}, {rate}");
+                }
+            }
+        }
+    }
+}
