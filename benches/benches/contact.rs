@@ -5,7 +5,8 @@
 //!
 //! * cold: the automatic choice, from nothing but a workspace that has seen problems of the size, though not this matrix;
 //! * next: cold and warm with the next step's right-hand side, warm from the answer of this step and with its factor;
-//! * J: the same with every coefficient of J changed by up to 1e-3 of itself, so that no factor can be reused;
+//! * J: the same with every coefficient of J changed by up to 1e-3 of itself, so that no factor can be reused, not even one
+//!   that was kept from another solve: between two solves of this J comes one of a J that was changed otherwise;
 //! * clarabel: velocity form, building the solver and solving, tolerances 1e-12.
 //!
 //! Then, with `-- held` or without a filter, the parts of `HeldRows` on chains and pyramids; with `-- impact` or without a
@@ -215,7 +216,7 @@ fn measure(name: &str, file: &ContactFile) -> String {
         next.set_offset(b).unwrap();
         next
     });
-    let perturbed = perturbed(file);
+    let [perturbed, otherwise] = [0, 7].map(|first| perturbed(file, first));
     let (mut solver, mut solution, mut warm) = (Auto::default(), Solution::new(), WarmStart::new());
     solver.solve(&problem, &mut solution).unwrap();
     warm.remember(&problem, &solution);
@@ -223,17 +224,19 @@ fn measure(name: &str, file: &ContactFile) -> String {
     let mut times: [Vec<f64>; 6] = Default::default();
     let begin = Instant::now();
     while times[0].len() < MOST && (times[0].len() < 5 || begin.elapsed().as_secs_f64() < BUDGET) {
-        // Cold solves, and warm ones with another J, follow a solve of another matrix, so that no factor is kept.
-        solver.solve(&perturbed, &mut solution).ok();
+        // Cold solves, and warm ones with another J, follow solves of other matrices, so that no factor is kept.
+        solver.solve(&otherwise, &mut solution).ok();
         times[0].push(time(|| solver.solve(&problem, &mut solution).is_ok()));
         times[1].push(time(|| clarabel(file)));
         if let Some(next) = &next {
-            solver.solve(&perturbed, &mut solution).ok();
+            solver.solve(&otherwise, &mut solution).ok();
             times[2].push(time(|| solver.solve(next, &mut solution).is_ok()));
             times[3].push(time(|| solver.solve_from(next, &warm, &mut solution).is_ok()));
         }
+        solver.solve(&otherwise, &mut solution).ok();
         solver.solve(&problem, &mut solution).ok();
         times[4].push(time(|| solver.solve(&perturbed, &mut solution).is_ok()));
+        solver.solve(&otherwise, &mut solution).ok();
         solver.solve(&problem, &mut solution).ok();
         times[5].push(time(|| solver.solve_from(&perturbed, &warm, &mut solution).is_ok()));
     }
@@ -260,11 +263,12 @@ fn measure(name: &str, file: &ContactFile) -> String {
     )
 }
 
-/// The problem with the next right-hand side, every coefficient changed by up to 1e-3 of itself.
-fn perturbed(file: &ContactFile) -> Problem {
+/// The problem with the next right-hand side, every coefficient changed by up to 1e-3 of itself, by a series of numbers from its
+/// place `first` on.
+fn perturbed(file: &ContactFile, first: usize) -> Problem {
     let RowsField { triplets, .. } = file.j.as_ref().unwrap();
     let golden = f64::midpoint(5.0_f64.sqrt(), 1.0);
-    let change = |e: usize| 1.0 + 1e-3 * (2.0 * ((e + 1) as f64 * golden).fract() - 1.0);
+    let change = |e: usize| 1.0 + 1e-3 * (2.0 * ((e + first + 1) as f64 * golden).fract() - 1.0);
     let rows: Vec<_> = triplets.iter().enumerate().map(|(e, &(i, k, v))| (i, k, v * change(e))).collect();
     let offset = file.b_next.as_ref().unwrap_or(&file.b);
     let mut problem = Problem::from_rows(&rows, file.inverse_mass.as_ref().unwrap(), offset).unwrap();

@@ -50,6 +50,8 @@ struct Methods {
     #[cfg(feature = "qp")]
     qp: Qp,
     lemke: Lemke,
+    /// The last problem was handed over to the proximal method.
+    was_handed_over: bool,
 }
 
 impl Auto {
@@ -138,6 +140,7 @@ impl Methods {
             #[cfg(feature = "qp")]
             qp: Qp::new(settings)?,
             lemke: Lemke::new(settings)?,
+            was_handed_over: false,
         })
     }
 
@@ -154,7 +157,8 @@ impl Methods {
         let start = warm.map_or(Start::Nothing, Start::Earlier);
         let may_hand_over = problem.has_bodies() && selection != ForceSelection::LeastNorm;
         // What was handed over a step ago is so again: the redundancy lies in the rows, which are the same.
-        let again = may_hand_over && warm.is_some() && self.proximal.is_loaded(problem);
+        let was_handed_over = std::mem::take(&mut self.was_handed_over);
+        let again = may_hand_over && was_handed_over && warm.is_some() && self.proximal.is_loaded(problem);
         let first = if again {
             Ok(Some(HandOver::Redundant))
         } else if may_hand_over {
@@ -165,8 +169,10 @@ impl Methods {
         match first {
             Ok(None) => Ok(()),
             Ok(Some(reason)) => {
+                self.was_handed_over = true;
                 let found = match (reason, warm) {
-                    (HandOver::Pivots, _) => self.proximal.solve_inside(problem, solution),
+                    (HandOver::Pivots, Some(warm)) => self.proximal.solve_near(problem, warm, solution),
+                    (HandOver::Pivots, None) => self.proximal.solve_inside(problem, solution),
                     (HandOver::Redundant, Some(warm)) => self.proximal.solve_from(problem, warm, solution),
                     (HandOver::Redundant, None) => self.proximal.solve(problem, solution),
                 };
@@ -228,6 +234,7 @@ impl Solver for Auto {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::{Inertia, Row};
     use crate::test_problems::{crooked_pyramid, pyramid};
 
     #[test]
@@ -245,6 +252,24 @@ mod tests {
         let settings = Settings { selection: ForceSelection::Vertex, ..Settings::default() };
         let mut auto = Auto::new(settings).expect("fine settings");
         auto.solve(&problem, &mut found).expect("forces of a pyramid");
+        assert_eq!(found.method, Method::DualActiveSet);
+    }
+
+    #[test]
+    fn pivots_in_sight_are_not_waited_for() {
+        let (mut dual, mut found) = (DualActiveSet::default(), Solution::new());
+        let outcome = dual.run_or_hand_over(&crooked_pyramid(14), Start::Nothing, &mut found);
+        assert!(matches!(outcome, Ok(Some(HandOver::Pivots))), "{outcome:?}");
+        assert_eq!(dual.pivots, 0);
+        // A box on a floor has many wrong rows, too, but a pivot rights many of them.
+        let mut floor = Problem::new();
+        let body = floor.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
+        for place in 0..200 {
+            let arm = f64::from(place) / 199.0 - 0.5;
+            let unevenness = 1e-3 * f64::from(place % 7);
+            floor.add_row(&Row::new(body, [0.0, 1.0, arm], unevenness - 9.81)).expect("a row");
+        }
+        Auto::default().solve(&floor, &mut found).expect("forces of a box");
         assert_eq!(found.method, Method::DualActiveSet);
     }
 

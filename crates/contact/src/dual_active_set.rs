@@ -46,6 +46,8 @@ const ROW_PASSES: usize = 5;
 
 /// Work, in passes over all rows, for which the interior-point method would be about half done.
 const PATIENCE: usize = 400;
+/// Pivots that are in sight are not waited for if they are so many times more work: some rows come right with others.
+const SURELY: usize = 2;
 
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -81,7 +83,7 @@ pub struct DualActiveSet {
 pub(crate) enum HandOver {
     /// So many rows depend on others that the closed ones are an arbitrary choice.
     Redundant,
-    /// Many pivots were made.
+    /// Many pivots were made, or are in sight.
     Pivots,
 }
 
@@ -193,10 +195,22 @@ impl DualActiveSet {
         }
     }
 
-    /// Adds the work of a pivot: some passes over all rows, and one over the factor.
+    /// Adds the work of so many pivots.
     pub(crate) fn count_work(&mut self, pivots: usize) {
-        let of_factor = self.closed.factor.envelope() / self.closed.force.len().max(1);
-        self.work += pivots * (ROW_PASSES + of_factor);
+        self.work += pivots * self.work_of_pivot();
+    }
+
+    /// The work of a pivot: some passes over all rows, and one over the factor.
+    fn work_of_pivot(&self) -> usize {
+        ROW_PASSES + self.closed.factor.envelope() / self.closed.force.len().max(1)
+    }
+
+    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at least, are more than
+    /// there is patience for.
+    pub(crate) fn look_ahead(&mut self, wrong: usize) {
+        if self.patience.is_some_and(|patience| wrong * self.work_of_pivot() > SURELY * patience) {
+            self.handed_over = Some(HandOver::Pivots);
+        }
     }
 
     /// Notes that another method is likely to be faster, once so much work was done.

@@ -59,6 +59,8 @@ enum Begin {
     Guess,
     /// At what the interior-point method finds.
     Inside,
+    /// The same, which begins at an earlier answer.
+    Near,
 }
 
 /// The proximal method with its buffers.
@@ -114,6 +116,16 @@ impl ProximalNewton {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         self.run(problem, None, Begin::Inside, solution)
+    }
+
+    /// The same where forces are known nearly, all of which may be wrong by a little.
+    pub(crate) fn solve_near(
+        &mut self,
+        problem: &Problem,
+        warm: &WarmStart,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        self.run(problem, Some(warm), Begin::Near, solution)
     }
 
     fn run(
@@ -194,8 +206,17 @@ impl ProximalNewton {
             }
         }
         self.most_steps = self.settings.newton_steps;
-        let is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral);
-        self.interior_steps = self.interior.steps + self.steps;
+        let mut is_near = false;
+        if begin == Begin::Near {
+            let known = Some(self.multiplier.as_slice());
+            is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral, known);
+            self.interior_steps += self.interior.steps;
+        }
+        if !is_near {
+            is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral, None);
+            self.interior_steps += self.interior.steps;
+        }
+        self.interior_steps += self.steps;
         self.factored = None;
         if begin == Begin::Guess {
             self.load(problem, warm);

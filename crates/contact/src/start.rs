@@ -159,6 +159,10 @@ impl DualActiveSet {
                 tries += 1;
             }
             if wrong == 0 || tries > self.settings.block_tries {
+                // Where few are closed, as of a box on a floor, a pivot rights many rows.
+                if self.closed.len() * SUBSTANTIAL >= wrong {
+                    self.look_ahead(wrong);
+                }
                 break;
             }
         }
