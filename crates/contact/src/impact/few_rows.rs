@@ -23,7 +23,7 @@ const ACCEPTED: f64 = 1e-14;
 const TRIES: usize = 2;
 
 /// Some rows: their matrix [1/kg], what their rates lack to their targets [m/s], and which of them are bilateral.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct FewRows {
     pub(super) count: usize,
     pub(super) matrix: [[f64; FEW]; FEW],
@@ -43,7 +43,7 @@ pub(super) struct FewImpulses {
 impl FewRows {
     /// The impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None` where that is
     /// not found at once.
-    pub(super) fn solve(mut self) -> Option<FewImpulses> {
+    pub(super) fn solve(&mut self) -> Option<FewImpulses> {
         let length = self.scale()?;
         let scale = self.offset[..self.count].iter().fold(0.0f64, |most, b| most.max(b.abs()));
         let limit = Settings::default().start_closed * scale;
@@ -55,9 +55,12 @@ impl FewRows {
             let mut wrong = 0;
             let mut left = 0.0f64;
             for row in 0..self.count {
-                let terms: [f64; FEW] = std::array::from_fn(|other| self.matrix[row][other] * force[other]);
-                let rate = terms.iter().sum::<f64>() + self.offset[row];
-                let noise = ROUNDING * (terms.iter().map(|term| term.abs()).sum::<f64>() + scale);
+                let (mut rate, mut terms) = (self.offset[row], scale);
+                for (entry, force) in self.matrix[row].iter().zip(&force).take(self.count) {
+                    let term = entry * force;
+                    (rate, terms) = (rate + term, terms + term.abs());
+                }
+                let noise = ROUNDING * terms;
                 left = left.max(if held[row] || self.bilateral[row] { rate.abs() } else { -rate });
                 let is_wrong = if held[row] {
                     force[row] < 0.0 && !self.bilateral[row]
@@ -187,7 +190,7 @@ mod tests {
                     problem.matrix[i][j] = unit * p.iter().zip(q).map(|(p, q)| p * q).sum::<f64>();
                 }
             }
-            if let Some(found) = problem.solve() {
+            if let Some(found) = problem.clone().solve() {
                 for row in 0..rows.len() {
                     let products = (0..rows.len()).map(|other| problem.matrix[row][other] * found.impulses[other]);
                     let rate = products.sum::<f64>() + offset[row];
