@@ -46,8 +46,6 @@ const ROW_PASSES: usize = 5;
 
 /// Work, in passes over all rows, for which the interior-point method would be about half done.
 const PATIENCE: usize = 400;
-/// Pivots that are in sight are not waited for if they are so many times more work: some rows come right with others.
-const SURELY: usize = 2;
 
 /// The dual active-set method with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -75,7 +73,7 @@ pub struct DualActiveSet {
     /// Work of pivots, and of rows opened on the way to where they start, in passes over all rows.
     work: usize,
     /// Work after which to stop likewise.
-    patience: Option<usize>,
+    pub(crate) patience: Option<usize>,
 }
 
 /// Why another method is likely to be faster.
@@ -201,16 +199,8 @@ impl DualActiveSet {
     }
 
     /// The work of a pivot: some passes over all rows, and one over the factor.
-    fn work_of_pivot(&self) -> usize {
+    pub(crate) fn work_of_pivot(&self) -> usize {
         ROW_PASSES + self.closed.factor.envelope() / self.closed.force.len().max(1)
-    }
-
-    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at least, are more than
-    /// there is patience for.
-    pub(crate) fn look_ahead(&mut self, wrong: usize) {
-        if self.patience.is_some_and(|patience| wrong * self.work_of_pivot() > SURELY * patience) {
-            self.handed_over = Some(HandOver::Pivots);
-        }
     }
 
     /// Notes that another method is likely to be faster, once so much work was done.

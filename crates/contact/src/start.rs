@@ -20,6 +20,10 @@ const SUBSTANTIAL: usize = 4;
 /// which of them are wrong means nothing. Pivots close what has less.
 pub(crate) const WELL: f64 = 1e-7;
 
+/// Pivots that are in sight are not waited for if they are so many times more work than there is patience for: some rows come
+/// right with others.
+const SURELY: usize = 2;
+
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
 const MOVING: usize = 50;
 
@@ -150,7 +154,9 @@ impl DualActiveSet {
                 return true;
             }
             if !independent && self.closed.kept == 0 {
-                return false;
+                // With connectors first the factor would be wide as well.
+                self.look_ahead(wrong);
+                return self.handed_over.is_some();
             }
             if wrong < fewest {
                 fewest = wrong;
@@ -159,14 +165,20 @@ impl DualActiveSet {
                 tries += 1;
             }
             if wrong == 0 || tries > self.settings.block_tries {
-                // Where few are closed, as of a box on a floor, a pivot rights many rows.
-                if self.closed.len() * SUBSTANTIAL >= wrong {
-                    self.look_ahead(wrong);
-                }
+                self.look_ahead(wrong);
                 break;
             }
         }
         true
+    }
+
+    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at least, are more than
+    /// there is patience for. Where few are closed, as of a box on a floor, a pivot rights many of them.
+    fn look_ahead(&mut self, wrong: usize) {
+        let is_much = self.patience.is_some_and(|patience| wrong * self.work_of_pivot() > SURELY * patience);
+        if is_much && self.closed.len() * SUBSTANTIAL >= wrong {
+            self.handed_over = Some(HandOver::Pivots);
+        }
     }
 
     /// Whether a large part of the rows to be closed depends on the rest, which alone keep nearly all others from
@@ -254,5 +266,31 @@ mod tests {
         warm.remember(&problem, &solution);
         solver.solve_from(&problem, &warm, &mut solution).expect("forces of a block");
         assert!(solver.is_warm);
+    }
+
+    #[test]
+    fn connectors_do_not_come_first_where_pivots_would_not_end() {
+        // A chain on a floor, whose links touch it with both ends: what depended on each other is off by a thousandth.
+        const LINKS: usize = 500;
+        let off = |k: usize| 1.0 + 1e-3 * (k as f64 * 2.4).sin();
+        let mut problem = Problem::new();
+        let mut before = None;
+        for link in 0..LINKS {
+            let body = problem.add_body(Inertia { inverse_mass: 5.0, inverse_moment: 57.7 }).expect("a body");
+            let arm = |k: usize| 0.5 * off(5 * link + k);
+            for (k, side) in [(2, -1.0), (3, 1.0)] {
+                let offset = 6.0 * ((7 * link + 3 * k) as f64).sin() - 3.0;
+                problem.add_row(&Row::new(body, [0.0, 1.0, side * arm(k)], offset)).expect("a row");
+            }
+            // The contacts before it hold all of its link.
+            let pin = Row::new(body, [0.0, 1.0, -arm(0)], 0.0);
+            let pin = before.map_or(pin, |before| pin.against(before, [0.0, -1.0, -arm(1)]));
+            problem.add_row(&pin.bilateral()).expect("a row");
+            before = Some(body);
+        }
+        let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
+        let outcome = solver.run_or_hand_over(&problem, Start::Nothing, &mut solution);
+        assert!(matches!(outcome, Ok(Some(HandOver::Pivots))), "{outcome:?}");
+        assert_eq!(solver.closed.kept, 0);
     }
 }

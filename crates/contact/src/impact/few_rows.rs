@@ -42,7 +42,7 @@ pub(super) struct FewImpulses {
 
 impl FewRows {
     /// The impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None` where that is
-    /// not found at once.
+    /// not found at once. Gives the rows another scale.
     pub(super) fn solve(&mut self) -> Option<FewImpulses> {
         let length = self.scale()?;
         let scale = self.offset[..self.count].iter().fold(0.0f64, |most, b| most.max(b.abs()));
@@ -62,14 +62,13 @@ impl FewRows {
                 }
                 let noise = ROUNDING * terms;
                 left = left.max(if held[row] || self.bilateral[row] { rate.abs() } else { -rate });
+                if closed[row] && !held[row] && (rate < -noise || (self.bilateral[row] && rate > noise)) {
+                    return None;
+                }
                 let is_wrong = if held[row] {
                     force[row] < 0.0 && !self.bilateral[row]
-                } else if !closed[row] {
-                    rate < -noise
-                } else if rate < -noise || (self.bilateral[row] && rate > noise) {
-                    return None;
                 } else {
-                    false
+                    !closed[row] && rate < -noise
                 };
                 closed[row] ^= is_wrong;
                 wrong += usize::from(is_wrong);
