@@ -171,8 +171,7 @@ impl Methods {
             Ok(Some(reason)) => {
                 self.was_handed_over = true;
                 let found = match (reason, warm) {
-                    (HandOver::Pivots, Some(warm)) => self.proximal.solve_near(problem, warm, solution),
-                    (HandOver::Pivots, None) => self.proximal.solve_inside(problem, solution),
+                    (HandOver::Pivots, warm) => self.proximal.solve_inside(problem, warm, solution),
                     (HandOver::Redundant, Some(warm)) => self.proximal.solve_from(problem, warm, solution),
                     (HandOver::Redundant, None) => self.proximal.solve(problem, solution),
                 };

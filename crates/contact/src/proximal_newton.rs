@@ -57,10 +57,8 @@ const PATIENCE: usize = 15;
 enum Begin {
     /// At an earlier answer, or at nothing.
     Guess,
-    /// At what the interior-point method finds.
+    /// At what the interior-point method finds, which begins at an earlier answer if there is one.
     Inside,
-    /// The same, which begins at an earlier answer.
-    Near,
 }
 
 /// The proximal method with its buffers.
@@ -109,23 +107,15 @@ impl ProximalNewton {
         self.system.is_loaded(problem)
     }
 
-    /// As [`solve`](Solver::solve), beginning at what the interior-point method finds: where many pivots or steps are in sight.
+    /// As [`solve`](Solver::solve), beginning at what the interior-point method finds, from an earlier answer if there is one: where
+    /// many pivots or steps are in sight.
     pub(crate) fn solve_inside(
         &mut self,
         problem: &Problem,
+        warm: Option<&WarmStart>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        self.run(problem, None, Begin::Inside, solution)
-    }
-
-    /// The same where forces are known nearly, all of which may be wrong by a little.
-    pub(crate) fn solve_near(
-        &mut self,
-        problem: &Problem,
-        warm: &WarmStart,
-        solution: &mut Solution,
-    ) -> Result<(), SolveError> {
-        self.run(problem, Some(warm), Begin::Near, solution)
+        self.run(problem, warm, Begin::Inside, solution)
     }
 
     fn run(
@@ -207,7 +197,7 @@ impl ProximalNewton {
         }
         self.most_steps = self.settings.newton_steps;
         let mut is_near = false;
-        if begin == Begin::Near {
+        if begin == Begin::Inside && warm.is_some() {
             let known = Some(self.multiplier.as_slice());
             is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral, known);
             self.interior_steps += self.interior.steps;

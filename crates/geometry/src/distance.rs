@@ -90,7 +90,7 @@ impl Shape {
     }
 
     /// How this shape at `pose` lies to another at its own pose: the [`distance`](Self::distance)'s relation, for a part of the
-    /// time, since edges that do not meet need not be measured.
+    /// time, since edges that do not meet need not be measured. What is at no finite pose is apart.
     #[must_use]
     pub fn relation(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> Relation {
         let relative = pose.seen_from(other_pose);
