@@ -150,14 +150,15 @@ fn a_block_that_bounces_and_rocks_comes_to_rest_flat() {
 }
 
 /// Eight blocks that attract each other gather in a heap. An impact anywhere makes contacts everywhere open a little; what
-/// presses them back at once, through the others, counts as held.
+/// presses them back at once, through the others, counts as held. Nothing holds a block that slides along another.
 #[test]
-fn a_heap_comes_to_rest_in_few_impacts() {
+fn a_heap_settles_in_few_impacts_and_goes_on_to_slide() {
     let mut world = World::from_scene(&reference_scene("apps__pile_attract")).expect("a reference scene");
     world.advance_to(6.0, &mut |_| {}).expect("it goes on");
-    // Seven hundred if each of them had to be caught again.
+    // Fourteen hundred to nineteen hundred if each of them had to be caught again.
     let impacts = world.statistics().impacts;
-    assert!((50..400).contains(&impacts), "{impacts} impacts");
-    // Of 26 J; how much of it still rocks is a matter of chance: 6e-5 J to 8e-3 J at tolerances about this.
-    assert!(world.energy().kinetic < 2e-2, "{:?}", world.energy());
+    assert!((50..500).contains(&impacts), "{impacts} impacts");
+    // Of 26 J; how much of it still slides is a matter of chance: 0.03 J to 0.4 J from places a nanometre apart.
+    let kinetic = world.energy().kinetic;
+    assert!((1e-2..1.0).contains(&kinetic), "{kinetic} J");
 }

@@ -104,6 +104,19 @@ impl Impact {
         self.solves = 0;
     }
 
+    /// Takes from each row an impulse [N s] that it carries anyway, as the force of a contact does over some time. What is
+    /// resolved afterwards brings back as much of it as is needed: in all, a row that is not bilateral may then have an
+    /// impulse down to minus that.
+    ///
+    /// # Panics
+    /// If there is not one impulse per row.
+    pub fn unload(&mut self, impulses: &[f64]) {
+        assert_eq!(impulses.len(), self.rows.len(), "one impulse per row");
+        for (row, &impulse) in impulses.iter().enumerate().filter(|(_, impulse)| **impulse != 0.0) {
+            self.apply(row, -impulse);
+        }
+    }
+
     /// The rows.
     #[must_use]
     pub fn rows(&self) -> &[CollisionRow] {
@@ -116,8 +129,8 @@ impl Impact {
         &self.rates
     }
 
-    /// Impulse of each row [N s], at least 0 for a row that is not bilateral. Redundant rows leave a choice; the rates do
-    /// not depend on it.
+    /// Impulse of each row [N s], at least 0 for a row that is not bilateral, but for what it was [unloaded](Self::unload) by.
+    /// Redundant rows leave a choice; the rates do not depend on it.
     #[must_use]
     pub fn impulses(&self) -> &[f64] {
         &self.impulses

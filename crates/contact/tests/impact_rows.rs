@@ -501,3 +501,49 @@ fn connectors_that_nearly_depend_on_each_other_have_modest_impulses() {
     let (_, impact) = resolve(ImpactLaw::Simultaneous, &movers, &ties);
     assert!(largest_impulse(&impact) < 1e6, "{}", largest_impulse(&impact));
 }
+
+#[test]
+fn an_impulse_that_is_carried_comes_back_as_far_as_it_is_needed() -> Result<(), ImpactError> {
+    let body = Inertia { inverse_mass: 0.5, inverse_moment: 0.0 };
+    let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
+    let row = CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, fixed], 0.1, 0.0, 1e-3, false);
+    let mut impact = Impact::new();
+    // Two kilograms that rise at 0.1 m/s: an impulse of 0.2 N s stops them.
+    for (carried, rate, impulse) in
+        [(0.0, 0.1, 0.0), (0.05, 0.075, -0.05), (0.2, 0.0, -0.2), (3.0, 0.0, -0.2)]
+    {
+        impact.set_rows([row]);
+        impact.unload(&[carried]);
+        impact.resolve_inelastic()?;
+        assert!((impact.rates()[0] - rate).abs() < 1e-15, "{carried}: {:?}", impact.rates());
+        assert!((impact.impulses()[0] - impulse).abs() < 1e-15, "{carried}: {:?}", impact.impulses());
+    }
+    Ok(())
+}
+
+#[test]
+fn what_slides_over_two_slopes_is_not_stopped_by_what_it_carries() -> Result<(), ImpactError> {
+    // A point of 1 kg rises at 1 mm/s in a hollow of 1e-4 rad, along which it slides at 1 m/s.
+    let body = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+    let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    let (angle, slide, rise): (f64, f64, f64) = (1e-4, 1.0, 1e-3);
+    let side = |angle: f64, body_id: u32| {
+        let normal = [-angle.sin(), angle.cos()];
+        let jacobian = [normal[0], normal[1], 0.0, -normal[0], -normal[1], 0.0];
+        let rate = normal[0] * slide + normal[1] * rise;
+        CollisionRow::new([BodyId(0), BodyId(body_id)], jacobian, [body, fixed], rate, 0.0, 1e-3, false)
+    };
+    let rows = [side(angle, 1), side(-angle, 2)];
+    let mut impact = Impact::new();
+    impact.set_rows(rows);
+    impact.unload(&[0.01, 0.01]);
+    impact.try_inelastic()?;
+    let change = |entry: usize| {
+        rows.iter().zip(impact.impulses()).map(|(row, impulse)| row.response[entry] * impulse).sum::<f64>()
+    };
+    assert!(change(0).abs() < 2e-4, "slowed by {} m/s", change(0));
+    // It goes up the side that it comes to.
+    assert!((rise + change(1) - angle * slide).abs() < 1e-7, "rises at {} m/s", rise + change(1));
+    Ok(())
+}

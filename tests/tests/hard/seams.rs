@@ -127,3 +127,42 @@ fn a_block_slides_from_a_table_onto_carts_of_the_same_height() {
         }
     }
 }
+
+/// Two blocks lie side by side, a third across both. It hops by what counts as contact, and touches both by corners whose normals
+/// hardly differ: to stop them all would stop it.
+#[test]
+fn a_block_that_hops_a_little_goes_on_to_slide_over_two_that_hardly_differ_in_slope() {
+    for angle in [8e-5, -8e-5, 1e-5, -1e-3] {
+        let block = |name: &str, state: &str| {
+            format!(
+                "[[body]]\nname = \"{name}\"\nmass = 1.0\nshape = {{ block = {{ width = 3.0, height = 1.0 }} }}\n{state}\n"
+            )
+        };
+        let lower = |x: f64, angle: f64| {
+            format!("position = [{x}, 0.505]\nangle = {angle:e}\nvelocity = [0.03, 0.0]")
+        };
+        let scene = [
+            "format = \"halfgap-scene-1\"\ntitle = \"sliding across\"\n\
+             force = [{ gravity = { acceleration = [0.0, -3.0] } }]\n\
+             run = { duration = 1.0, target_gap = 0.005, accuracy = 0.003, velocity_tol = 0.5 }\n\
+             [[body]]\nname = \"floor\"\nfixed = true\nshape = { block = { width = 20.0, height = 1.0 } }\n\
+             position = [0.0, -0.5]\n"
+                .to_owned(),
+            block("left", &lower(-1.505, angle)),
+            block("right", &lower(1.505, -angle)),
+            block("top", "position = [0.2, 1.51]\nvelocity = [-0.05, 0.0015]"),
+        ];
+        let mut world = halfgap_tests::world_of(&scene.concat());
+        advance(&mut world, 1.0);
+        for (name, speed) in [("left", 0.03), ("right", 0.03), ("top", -0.05)] {
+            let body = world.find(name).expect("it is there");
+            let changed = world.state(body).velocity.x - speed;
+            // Weight times slope makes so much.
+            within(
+                &format!("{name} block, {angle} rad: change of speed [m/s]"),
+                changed,
+                1e-6 + 0.5 * f64::abs(angle),
+            );
+        }
+    }
+}

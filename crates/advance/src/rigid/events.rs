@@ -12,7 +12,7 @@ use super::settle::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, BodyState, Collision, ConnectorId, Detector, GapKinematics, Tolerances, Zone,
+    Body, BodyId, BodyState, Collision, ConnectorId, Detector, GapKinematics, Tolerances, Zone,
 };
 use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
@@ -21,6 +21,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 const SEAM_ANGLE: f64 = 4e-9;
 /// To stop contacts changes the velocities of their bodies' points by no more than so many times what they closed or opened by.
 const MODEST: f64 = 100.0;
+/// Nor are its impulses greater than so many times what the momentum of some body changes by.
+const MOST_CANCELLING: f64 = 10.0;
 /// Cap on the rounds in which the low hops of one event are stilled.
 const HOP_ROUNDS: u32 = 4;
 
@@ -28,14 +30,14 @@ const HOP_ROUNDS: u32 = 4;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EventWork {
     pub(crate) region: Region,
-    impact: Impact,
+    pub(crate) impact: Impact,
     pub(crate) settling: Settling,
     pub(crate) seeds: Vec<BodyId>,
-    /// Records of held contacts that are stopped because one of them opens in a low hop.
-    pub(crate) stilled: Vec<usize>,
+    /// Impulses that the contacts of the region carry until its low hops have come down [N s].
+    pub(crate) carried: Vec<f64>,
     /// States of the region's bodies before contacts were stopped as bilateral ones, and what that was.
     before: Vec<BodyState>,
-    stop: ImpactReport,
+    pub(crate) stop: ImpactReport,
     /// How often the pair that fired has done so without time going by, beyond what is calm.
     repeats: u32,
     /// The contact that fired does not close: the search takes its rounding for motion.
@@ -127,7 +129,11 @@ impl RigidSystem {
                 let row = group.leaning[row];
                 return self.handle_sinking(work, &row);
             }
-            SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
+            SegmentEnd::Release(row) => {
+                let row = group.rows[row];
+                return self.handle_release(work, &row);
+            }
+            SegmentEnd::Stop | SegmentEnd::Switch => None,
         };
         work.region.run_off = None;
         match changed_row.map(|row| (row.bodies, row.source)) {
@@ -143,6 +149,17 @@ impl RigidSystem {
         }
         let outcome = self.handle_change(work);
         work.region.run_off = None;
+        outcome
+    }
+
+    /// The force of a row has vanished.
+    fn handle_release(&mut self, work: &mut EventWork, row: &HeldRow) -> Result<bool, AdvanceError> {
+        work.region.released = match row.source {
+            RowSource::Contact(features) => Some(Touch::new(row.bodies, features)),
+            RowSource::Connector(..) => None,
+        };
+        let outcome = self.handle_change(work);
+        work.region.released = None;
         outcome
     }
 
@@ -350,7 +367,7 @@ impl RigidSystem {
 
     /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
     /// Where such rows contradict each other, nothing is done, and it says false: as unilateral ones they need not.
-    pub(crate) fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
+    fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
         let now = self.now;
         // At the start there may be blows to come, which are not to be stopped along with the rest.
         if work.region.records.iter().any(closes_fast) {
@@ -380,16 +397,23 @@ impl RigidSystem {
         is_stopped
     }
 
-    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped. Two contacts whose
-    /// normals hardly differ hold all of a body, and to stop what is left between them by their angle would stop it altogether.
+    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped, and by the most
+    /// that its impulses can do. Contacts whose normals hardly differ hold all of a body, and to stop what is left between them by
+    /// their angle would stop it altogether, by large impulses that cancel each other on every body.
     fn is_modest(&self, report: &ImpactReport, region: &Region, before: &[BodyState]) -> bool {
         let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
-        region.bodies.iter().zip(before).all(|(&body, before)| {
+        let impulse = report.rows.iter().fold(0.0f64, |most, row| most.max(row.impulse.abs()));
+        let (mut fastest, mut largest) = (0.0f64, 0.0f64);
+        for (&body, before) in region.bodies.iter().zip(before) {
             let flyer = self.flyer(body);
             let after = flyer.unwound_at(self.now);
-            let turned = (after.angular_velocity - before.angular_velocity).abs() * flyer.reach();
-            after.velocity.distance(before.velocity) + turned <= MODEST * stopped
-        })
+            let moved = after.velocity.distance(before.velocity);
+            let turned = (after.angular_velocity - before.angular_velocity).abs();
+            fastest = fastest.max(moved + turned * flyer.reach());
+            let Body { inverse_mass, inverse_moment, .. } = *flyer.body();
+            largest = largest.max(moved / inverse_mass).max(turned / (inverse_moment * flyer.reach()));
+        }
+        fastest <= MODEST * stopped && impulse <= MOST_CANCELLING * largest
     }
 
     /// True if the contacts of a region that are marked as bilateral rest, and no other closes.
@@ -420,7 +444,7 @@ impl RigidSystem {
         (sample.gap, GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
     }
 
-    fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {
+    pub(crate) fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {
         let fastest = report.rows.iter().fold(0.0f64, |most, row| most.max(-row.rate_before));
         let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };

@@ -5,12 +5,14 @@
 //! its acceleration a are constant meanwhile, a contact that is stopped when it opens comes to the same places and
 //! velocities at T. So a hop may be the higher the less its bodies move in T, up to the half-width of the target zone.
 
+use super::bounces::closes_fast;
 use super::dynamics::Stage;
 use super::events::EventWork;
 use super::region::Region;
 use super::settle::free_offset;
 use super::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
+use halfgap_contact::CollisionRow;
 
 /// Part of the accuracy by which a contact may open and come back, and count as closed all the while.
 const HOP_SHARE: f64 = 1e-4;
@@ -18,6 +20,9 @@ const HOP_SHARE: f64 = 1e-4;
 const SHORT_HOP_SHARE: f64 = 0.5;
 /// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide.
 const HOP_TURN: f64 = 1e-4;
+
+/// A hop that comes down may make others hop: all of them together take no more than so many times the longest.
+const HOPS_IN_TURN: f64 = 10.0;
 
 impl RigidSystem {
     /// True if a contact of a region opens so slowly that it may be no more than a low hop. Of a contact without others it is
@@ -62,16 +67,61 @@ impl RigidSystem {
         held.any(|record| !record.parties.bilateral && record.motion.normal_velocity > self.rest_speed())
     }
 
-    /// Stops the held contacts, all of them at once: what stops some only lets others open. False if they contradict each
-    /// other.
+    /// Brings the bodies of held contacts that open in low hops to the velocities with which they will have landed, and lets those
+    /// leave that open all the same. False if nothing is changed.
+    ///
+    /// The forces at which contacts are held say what impulses they carry until then. Without these the hops come down, and an
+    /// impact without elasticity gives as much of them back as is needed. So contacts are stopped by no more than what presses on
+    /// them: where normals hardly differ, large impulses that cancel each other would stop whatever slides over them, too.
     pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> bool {
-        let records = &mut work.region.records;
-        work.stilled.clear();
-        work.stilled.extend(work.settling.held.iter().map(|&(index, _)| index));
-        work.stilled.retain(|&index| !records[index].parties.bilateral);
-        work.stilled.iter().for_each(|&index| records[index].parties.bilateral = true);
-        let is_stilled = self.stop_bilaterally(work);
-        work.stilled.iter().for_each(|&index| work.region.records[index].parties.bilateral = false);
-        is_stilled
+        // At the start there may be blows to come, which are not to be stopped along with the rest.
+        if work.region.records.iter().any(closes_fast) {
+            return false;
+        }
+        let Some(wait) = self.time_of_hops(work) else { return false };
+        let EventWork { region, impact, settling, carried, stop, .. } = &mut *work;
+        carried.clear();
+        carried.resize(region.records.len(), 0.0);
+        for &(index, _) in &settling.held {
+            let record = &region.records[index];
+            carried[index] = if record.parties.bilateral { 0.0 } else { force_of(record) * wait };
+        }
+        self.set_rows(region, impact);
+        impact.unload(carried);
+        if impact.try_inelastic().is_err() {
+            return false;
+        }
+        self.conclude_impact(region, impact, stop, self.now);
+        self.remeasure(region, self.now);
+        self.book_impact(stop, true);
+        let rest = self.rest_speed();
+        for held in 0..settling.held.len() {
+            let index = settling.held[held].0;
+            let record = &region.records[index];
+            if !record.parties.bilateral && record.motion.normal_velocity > rest {
+                settling.let_leave(index);
+            }
+        }
+        true
     }
+
+    /// How long [s] it takes until what hops is at rest, one after another; `None` if none of those that open comes down by itself.
+    fn time_of_hops(&self, work: &EventWork) -> Option<f64> {
+        let records = &work.region.records;
+        let held = work.settling.held.iter().map(|&(index, _)| &records[index]);
+        let times = held.filter(|record| !record.parties.bilateral).filter_map(|record| {
+            let rate = record.motion.normal_velocity;
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
+            // All forces together leave its gap as it is: without its own it closes.
+            let closing = force_of(record) * row.coupling(&row);
+            (rate > self.rest_speed() && self.is_low_hop(record, -closing)).then(|| 2.0 * rate / closing)
+        });
+        times.max_by(f64::total_cmp).map(|time| HOPS_IN_TURN * time)
+    }
+}
+
+/// Force [N] at which a contact is held.
+fn force_of(record: &Collision) -> f64 {
+    record.response.force.unwrap_or_default()
 }

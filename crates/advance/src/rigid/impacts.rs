@@ -71,6 +71,24 @@ impl RigidSystem {
         time: Time,
         manner: Manner,
     ) -> Result<bool, AdvanceError> {
+        self.set_rows(region, impact);
+        let random = self.counts.impacts;
+        let outcome = match manner {
+            Manner::Lawful => self.settings.law.resolve(impact, self.settings.order, random),
+            Manner::Inelastic => impact.resolve_inelastic(),
+            Manner::Trial => impact.try_inelastic(),
+        };
+        outcome.map_err(|source| impact_error(region, time, source))?;
+        self.conclude_impact(region, impact, report, time);
+        // What comes to rest without closing is a contact that begins, not an impact.
+        Ok(report
+            .rows
+            .iter()
+            .any(|row| row.collision.parties.bilateral || row.rate_before < -self.rest_speed()))
+    }
+
+    /// Gives an impact the rows of a region.
+    pub(crate) fn set_rows(&self, region: &Region, impact: &mut Impact) {
         let dull = self.settings.impulse_step.is_none() && self.bounces_low(region);
         let rows = region.records.iter().map(|record| {
             let sides = [record.parties.primary.body, record.parties.normal.body];
@@ -79,21 +97,19 @@ impl RigidSystem {
             CollisionRow { elasticity, ..row }
         });
         impact.set_rows(rows);
-        let random = self.counts.impacts;
-        let outcome = match manner {
-            Manner::Lawful => self.settings.law.resolve(impact, self.settings.order, random),
-            Manner::Inelastic => impact.resolve_inelastic(),
-            Manner::Trial => impact.try_inelastic(),
-        };
-        outcome.map_err(|source| impact_error(region, time, source))?;
+    }
+
+    /// Gives the bodies of a region, which must be in flight, the velocities that a resolved impact leaves them, and reports it.
+    pub(crate) fn conclude_impact(
+        &mut self,
+        region: &mut Region,
+        impact: &Impact,
+        report: &mut ImpactReport,
+        time: Time,
+    ) {
         self.counts.contact_solves += impact.solves();
         self.apply_impulses(region, impact, time);
         self.write_report(region, impact, report, time);
-        // What comes to rest without closing is a contact that begins, not an impact.
-        Ok(report
-            .rows
-            .iter()
-            .any(|row| row.collision.parties.bilateral || row.rate_before < -self.rest_speed()))
     }
 
     fn apply_impulses(&mut self, region: &mut Region, impact: &Impact, time: Time) {
