@@ -129,11 +129,7 @@ impl RigidSystem {
                 let row = group.leaning[row];
                 return self.handle_sinking(work, &row);
             }
-            SegmentEnd::Release(row) => {
-                let row = group.rows[row];
-                return self.handle_release(work, &row);
-            }
-            SegmentEnd::Stop | SegmentEnd::Switch => None,
+            SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
         };
         work.region.run_off = None;
         match changed_row.map(|row| (row.bodies, row.source)) {
@@ -149,17 +145,6 @@ impl RigidSystem {
         }
         let outcome = self.handle_change(work);
         work.region.run_off = None;
-        outcome
-    }
-
-    /// The force of a row has vanished.
-    fn handle_release(&mut self, work: &mut EventWork, row: &HeldRow) -> Result<bool, AdvanceError> {
-        work.region.released = match row.source {
-            RowSource::Contact(features) => Some(Touch::new(row.bodies, features)),
-            RowSource::Connector(..) => None,
-        };
-        let outcome = self.handle_change(work);
-        work.region.released = None;
         outcome
     }
 

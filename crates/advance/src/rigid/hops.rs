@@ -6,10 +6,8 @@
 //! velocities at T. So a hop may be the higher the less its bodies move in T, up to the half-width of the target zone.
 
 use super::bounces::closes_fast;
-use super::dynamics::Stage;
 use super::events::EventWork;
 use super::region::Region;
-use super::settle::free_offset;
 use super::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::CollisionRow;
@@ -30,11 +28,6 @@ impl RigidSystem {
     pub(crate) fn may_hop(&self, region: &Region, record: &Collision) -> bool {
         let rate = record.motion.normal_velocity;
         rate >= 0.0 && (region.records.len() > 1 || rate <= record.tolerances.velocity_tol)
-    }
-
-    /// True if what acts on the bodies of a contact that opens brings them back before it has opened by much.
-    pub(crate) fn hops_low(&self, region: &Region, record: &Collision, stage: &Stage) -> bool {
-        self.is_low_hop(record, free_offset(region, record, stage))
     }
 
     /// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.

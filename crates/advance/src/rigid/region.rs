@@ -39,8 +39,6 @@ pub(crate) struct Region {
     pub(crate) fired: Option<Touch>,
     /// A contact that has just run off its features: its neighbours take over, if they touch.
     pub(crate) run_off: Option<Touch>,
-    /// A contact whose force has just vanished: it is held again only if the others press on it.
-    pub(crate) released: Option<Touch>,
     fresh: Vec<Collision>,
     /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
     pub(crate) changes: Vec<[f64; 3]>,

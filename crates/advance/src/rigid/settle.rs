@@ -24,10 +24,6 @@ const SMALL_CONTRADICTION: f64 = 1e-3;
 /// Depth of an overlap, in target gaps, from which a contact is lifted.
 const DEEPEST: f64 = 0.5;
 
-/// A contact whose force has vanished is pressed if it would close with more than this part of the acceleration that it has without
-/// the forces of others.
-const PRESSED: f64 = 1e-6;
-
 /// Forces this many times larger than all loads together jam.
 const JAM: f64 = 100.0;
 
@@ -254,28 +250,27 @@ impl RigidSystem {
             _ => self.rest_speed(),
         };
         let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
-        let may_hold = |settling: &Settling, (index, record): (usize, &Collision)| {
+        let may_hold = |(index, record): (usize, &Collision)| {
             let may_hop = with_hops && !settling.leaves(index) && self.may_hop(region, record);
             record.parties.bilateral || (self.holds(record) && (is_slow(record) || may_hop))
         };
-        if !region.records.iter().enumerate().any(|record| may_hold(settling, record)) {
+        if !region.records.iter().enumerate().any(may_hold) {
             return Ok(());
         }
         self.accelerate_region(region, settling, stage, time);
-        for (index, record) in region.records.iter().enumerate() {
-            if !may_hold(settling, (index, record)) {
-                continue;
-            }
-            if record.parties.bilateral || is_slow(record) || self.hops_low(region, record, stage) {
-                settling.candidates.push(index);
-            }
-        }
-        let Some(mut solved) = self.solve_without_released(region, settling, stage, (time, rest))? else {
-            return Ok(());
-        };
-        // Those that are held from now on may press others back.
-        while with_hops && solved == Solved::Soundly && self.add_pressed_hops(region, settling, stage) {
+        let is_candidate =
+            |record: &Collision| record.parties.bilateral || (self.holds(record) && is_slow(record));
+        let records = region.records.iter().enumerate();
+        settling
+            .candidates
+            .extend(records.filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
+        let mut solved = self.solve_candidates(region, settling, stage, (time, rest))?;
+        // What is held presses others back, or keeps what opens from coming back.
+        while with_hops && solved != Solved::Somehow && self.add_hops(region, settling, stage) {
             solved = self.solve_candidates(region, settling, stage, (time, rest))?;
+        }
+        if solved == Solved::Nothing {
+            return Ok(());
         }
         // What carries too little to be held carries nothing: the others do without it.
         while self.drop_idle(region, settling, stage) {
@@ -283,40 +278,6 @@ impl RigidSystem {
         }
         self.choose_rows(region, settling, time);
         Ok(())
-    }
-
-    /// Finds the forces of the candidates, of which the contact whose force has just vanished is one only if it would close
-    /// without. `None` if nothing presses.
-    ///
-    /// Where rows hardly differ, rounding makes much of a force that is zero: it would be held and let go again and again.
-    fn solve_without_released(
-        &self,
-        region: &Region,
-        settling: &mut Settling,
-        stage: &Stage,
-        at: (Time, f64),
-    ) -> Result<Option<Solved>, AdvanceError> {
-        let solve = |settling: &mut Settling| {
-            if settling.candidates.is_empty() {
-                return Ok(None);
-            }
-            self.solve_candidates(region, settling, stage, at).map(Some)
-        };
-        let is_released = |&index: &usize| Touch::of(&region.records[index]) == region.released;
-        let released = region.released.and_then(|_| settling.candidates.iter().copied().find(is_released));
-        settling.candidates.retain(|&index| Some(index) != released);
-        let mut solved = solve(settling)?;
-        if let Some(index) = released {
-            self.push_bodies(region, settling, stage);
-            let record = &region.records[index];
-            let free = free_offset(region, record, stage);
-            if offset_under(region, record, &settling.pushed) < -PRESSED * free.abs() {
-                settling.candidates.push(index);
-                settling.candidates.sort_unstable();
-                solved = solve(settling)?;
-            }
-        }
-        Ok(solved.filter(|solved| *solved != Solved::Nothing))
     }
 
     /// Finds the forces of the candidates; those that jam are thinned out.
@@ -358,7 +319,7 @@ impl RigidSystem {
 
     /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if
     /// there are any.
-    fn add_pressed_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+    fn add_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         let rest = self.rest_speed();
         let may_hop = |settling: &Settling, (index, record): (usize, &Collision)| {
             let opens = record.motion.normal_velocity > rest && !settling.leaves(index);
@@ -591,13 +552,8 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 
 #[cfg(test)]
 mod tests {
-    use super::super::events::EventWork;
-    use super::super::flyer::FlightLaw;
-    use super::super::system::RigidParts;
-    use super::super::test_scene::{FINE, resting_discs};
+    use super::super::test_scene::resting_discs;
     use super::*;
-    use halfgap_collision::{Body, BodyState};
-    use halfgap_geometry::Shape;
 
     #[test]
     fn what_is_cut_is_expected_to_carry_its_force_again() {
@@ -639,47 +595,5 @@ mod tests {
         settling.solve_strictly().expect("independent rows");
         guess.guess_forces(found);
         assert_eq!(settling.guess, guess);
-    }
-
-    /// Which of two tiles, one level and one that rises to the right, hold a disc at their seam that is pushed to the right, by a
-    /// part of its weight: after nothing has happened, and after the force of the second has vanished.
-    fn held_at_a_seam(slope: f64, push: f64) -> [Vec<bool>; 2] {
-        const WEIGHT: f64 = 9.81;
-        let gap = FINE.tolerances.target_gap;
-        let center = DVec2::new(0.0, 0.5 + gap);
-        let tile = |angle: f64| {
-            let shape = Shape::block(2.0, 1.0).expect("a fine size");
-            let position = center - (1.0 + gap) * DVec2::new(-angle.sin(), angle.cos());
-            let tile = Body { shape, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 1.0 };
-            (tile, FlightLaw::default(), BodyState { position, angle, ..BodyState::default() })
-        };
-        let shape = Shape::disc(0.5).expect("a fine radius");
-        let disc = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
-        let law = FlightLaw { acceleration: WEIGHT * DVec2::new(push, -1.0), ..FlightLaw::default() };
-        let state = BodyState { position: center, ..BodyState::default() };
-        let bodies = vec![tile(0.0), tile(slope), (disc, law, state)];
-        let mut system = RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, FINE, Time::ZERO)
-            .expect("it rests");
-        let mut work = system.work.take().expect("the start has made it");
-        system.dissolve(BodyId(2));
-        system.collect_region(&mut work.region, &[BodyId(2)], system.now);
-        let EventWork { region, settling, .. } = &mut *work;
-        let touches: Vec<_> = region.records.iter().filter_map(Touch::of).collect();
-        [None, touches.get(1).copied()].map(|released| {
-            region.released = released;
-            settling.expect(region.records.iter().map(|_| None));
-            let mut stage = std::mem::take(&mut system.stage);
-            system.settle(region, settling, &mut stage, system.now, true).expect("it rests");
-            system.stage = stage;
-            touches.iter().map(|&touch| settling.holds_touch(touch)).collect()
-        })
-    }
-
-    #[test]
-    fn a_contact_whose_force_has_vanished_is_held_again_only_if_it_is_pressed() {
-        // The second tile carries a hundredth of the weight, and without it the disc comes down on it.
-        assert_eq!(held_at_a_seam(0.1, 1e-3), [[true, true], [true, true]]);
-        // It carries a ten-thousandth, but the disc hardly comes nearer.
-        assert_eq!(held_at_a_seam(1e-4, 1e-8), [[true, true], [true, false]]);
     }
 }
