@@ -552,8 +552,13 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_scene::resting_discs;
+    use super::super::events::EventWork;
+    use super::super::flyer::FlightLaw;
+    use super::super::system::RigidParts;
+    use super::super::test_scene::{FINE, resting_discs};
     use super::*;
+    use halfgap_collision::{Body, BodyState};
+    use halfgap_geometry::Shape;
 
     #[test]
     fn what_is_cut_is_expected_to_carry_its_force_again() {
@@ -595,5 +600,51 @@ mod tests {
         settling.solve_strictly().expect("independent rows");
         guess.guess_forces(found);
         assert_eq!(settling.guess, guess);
+    }
+
+    /// Whether a beam on two posts holds a disc, too, that lies against it from below, comes away at 1e-8 m/s, and is pushed up with
+    /// an acceleration [m/s^2].
+    fn beam_holds_disc_below(push: f64) -> bool {
+        const GAP: f64 = FINE.tolerances.target_gap;
+        let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
+        let post = |x: f64| {
+            let tall = shape(Shape::block(0.2, 1.0));
+            let post = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
+            let position = DVec2::new(x, -0.5 - GAP);
+            (post, FlightLaw::default(), BodyState { position, ..BodyState::default() })
+        };
+        let mover = |shape: Shape, y: f64, acceleration: f64| {
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 3.0, elasticity: 0.0 };
+            let law = FlightLaw { acceleration: DVec2::new(0.0, acceleration), ..FlightLaw::default() };
+            (body, law, BodyState { position: DVec2::new(0.0, y), ..BodyState::default() })
+        };
+        let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
+        let disc = mover(shape(Shape::disc(0.1)), -0.1 - GAP, push);
+        let bodies = vec![post(-1.0), post(1.0), beam, disc];
+        let parts = RigidParts { bodies, ..RigidParts::default() };
+        let mut system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it rests");
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(2));
+        let position = system.flyer(BodyId(3)).state_at(system.now).position;
+        let leaving = BodyState { position, velocity: DVec2::new(0.0, -1e-8), ..BodyState::default() };
+        system.flyer_mut(BodyId(3)).fly_from(Time::ZERO, leaving);
+        let EventWork { region, settling, .. } = &mut *work;
+        region.at_start = true;
+        system.collect_region(region, &[BodyId(2), BodyId(3)], system.now);
+        region.at_start = false;
+        let touch = |record: &&Collision| record.involves_body(BodyId(3));
+        let touch = region.records.iter().find(touch).and_then(Touch::of).expect("they touch");
+        settling.expect(region.records.iter().map(|_| None));
+        let mut stage = std::mem::take(&mut system.stage);
+        system.settle(region, settling, &mut stage, system.now, true).expect("it rests");
+        assert!(settling.held.len() >= 2, "the posts hold the beam");
+        settling.holds_touch(touch)
+    }
+
+    #[test]
+    fn what_others_keep_from_coming_back_does_not_hop() {
+        assert!(beam_holds_disc_below(1.0));
+        // The beam would come down on it at once, but for the posts.
+        assert!(!beam_holds_disc_below(1e-7));
     }
 }
