@@ -16,7 +16,8 @@ use halfgap_contact::CollisionRow;
 const HOP_SHARE: f64 = 1e-4;
 /// The same of a hop in which nothing moves much.
 const SHORT_HOP_SHARE: f64 = 0.5;
-/// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide.
+/// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide; more where that is
+/// less than the same share of the accuracy, which is all that is asked of where they are.
 const HOP_TURN: f64 = 1e-4;
 
 /// A hop that comes down may make others hop: all of them together take no more than so many times the longest.
@@ -33,8 +34,12 @@ impl RigidSystem {
     /// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.
     pub(crate) fn is_low_hop(&self, record: &Collision, acceleration: f64) -> bool {
         let rate = record.motion.normal_velocity;
-        let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * record.tolerances.accuracy;
-        let is_short = || 2.0 * rate * self.turning(record) <= -acceleration * HOP_TURN;
+        let accuracy = record.tolerances.accuracy;
+        let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * accuracy;
+        let is_short = || {
+            let turn = HOP_TURN.max(SHORT_HOP_SHARE * accuracy / self.largest_reach(record));
+            2.0 * rate * self.turning(record) <= -acceleration * turn
+        };
         acceleration < 0.0 && (is_within(HOP_SHARE) || (is_within(SHORT_HOP_SHARE) && is_short()))
     }
 
@@ -51,6 +56,13 @@ impl RigidSystem {
         };
         let parties = &record.parties;
         record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)
+    }
+
+    /// Reach [m] of the larger of the movable bodies of a contact.
+    fn largest_reach(&self, record: &Collision) -> f64 {
+        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let movable = bodies.into_iter().filter(|&body| self.is_movable(body));
+        movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))
     }
 
     /// True if any held contact opens.
@@ -117,4 +129,29 @@ impl RigidSystem {
 /// Force [N] at which a contact is held.
 fn force_of(record: &Collision) -> f64 {
     record.response.force.unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn bodies_may_move_in_a_hop_by_as_much_as_is_asked_of_where_they_are() {
+        const GRAVITY: f64 = 9.81;
+        let mut system = resting_discs(&[0.0]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(1));
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [record] = &mut work.region.records[..] else { panic!("one disc, one contact") };
+        // It is down again after 1 ms.
+        record.motion.normal_velocity = 5e-4 * GRAVITY;
+        for (accuracy, slide, is_low) in
+            [(1e-4, 1e-5, true), (1e-4, 1e-4, false), (1e-3, 1e-4, true), (1e-3, 1e-3, false)]
+        {
+            record.motion.lateral_velocity = slide / 1e-3;
+            record.tolerances.accuracy = accuracy;
+            assert_eq!(system.is_low_hop(record, -GRAVITY), is_low, "{slide} m of {accuracy} m");
+        }
+    }
 }
