@@ -248,6 +248,30 @@ fn books_that_rounding_opens_are_told() {
     assert!(findings.iter().any(|found| matches!(found, Finding::OpenBooks { .. })), "{findings:?}");
 }
 
+/// Scenes whose zones are coarse: the target gap and the accuracy [m] that each is given.
+const COARSE: &[(u64, [f64; 2], &str)] = &[
+    (
+        31_000_003,
+        [4.6e-4, 2.8e-4],
+        "a rope without force was longer by a part of its zone, and ended the run",
+    ),
+    (31_000_127, [6.0, 3.6], "the same, among bodies of a kilometre"),
+];
+
+#[test]
+fn ropes_are_taut_within_a_coarse_zone() {
+    for &(seed, [target_gap, accuracy], what) in COARSE {
+        let mut scene = scene_of_seed(seed);
+        scene["run"]["target_gap"] = target_gap.into();
+        scene["run"]["accuracy"] = accuracy.into();
+        let scene = Scene::parse(&scene.to_string(), SceneFormat::Json).expect("scenes of seeds are scenes");
+        let mut world = World::from_scene(&scene).expect("it can be built");
+        let outcome = world.advance_to(scene.run.end_time(), &mut |_| ());
+        assert!(outcome.is_ok(), "{seed}, {what}: {outcome:?}");
+        assert_eq!(world.findings(f64::INFINITY), [], "{seed}, {what}");
+    }
+}
+
 #[test]
 fn what_was_broken_once_holds() {
     let mut broken = Vec::new();

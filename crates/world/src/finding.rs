@@ -178,7 +178,7 @@ impl World {
         }
     }
 
-    /// Connectors that are off by more than a part of the largest coordinate.
+    /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut within their zone.
     fn connectors_off(&self, share: f64, findings: &mut Vec<Finding>) {
         if self.connectors().is_empty() {
             return;
@@ -187,9 +187,11 @@ impl World {
             let state = self.state(body);
             state.position.abs().max_element() + self.shape(body).reach()
         });
-        let allowed = share * farthest.fold(0.0, f64::max);
+        let at_target = share * farthest.fold(0.0, f64::max);
         for (index, connector) in (0..).map(ConnectorId).zip(self.connectors()) {
             let error = self.connector_error(index);
+            let zone = if connector.is_bilateral() { 0.0 } else { self.tolerances().accuracy };
+            let allowed = at_target.max(zone);
             if error.is_nan() || error > allowed {
                 let name = |body: BodyId| (!body.is_world()).then(|| self.name(body));
                 let connector = ConnectorName::new(index.index(), connector, name);
