@@ -6,7 +6,7 @@ use super::predictions::LONGEST_SPAN;
 use super::region::Region;
 use super::repeats::is_same_time;
 use super::rows::{RowSource, knot_rooms};
-use super::settle::Settling;
+use super::settling::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{

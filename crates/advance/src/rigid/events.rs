@@ -8,7 +8,7 @@ use super::pairs::PairId;
 use super::region::{Region, Touch};
 use super::repeats::{CALM_REPEATS, is_same_time};
 use super::rows::{HeldRow, RowSource, has_left};
-use super::settle::Settling;
+use super::settling::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{

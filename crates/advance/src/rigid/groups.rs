@@ -10,7 +10,7 @@ use super::pairs::Prediction;
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
-use super::settle::Settling;
+use super::settling::Settling;
 use super::system::RigidSystem;
 
 use halfgap_collision::{BodyId, ConnectorId, RailHint};

@@ -48,6 +48,7 @@ mod rows;
 mod rules;
 mod segment;
 mod settle;
+mod settling;
 mod staying;
 mod stiff;
 mod storms;

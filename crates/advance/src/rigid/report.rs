@@ -5,7 +5,7 @@ use super::group::{Group, Work};
 use super::ledger::Ledger;
 use super::region::Region;
 use super::rows::{HeldRow, RowSource, moving_of};
-use super::settle::Settling;
+use super::settling::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
