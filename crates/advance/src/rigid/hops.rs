@@ -27,8 +27,8 @@ impl RigidSystem {
     /// True if a contact of a region opens so slowly that it may be no more than a low hop. Of a contact without others it is
     /// told how long it bounces: that is stopped when it lands.
     pub(crate) fn may_hop(&self, region: &Region, record: &Collision) -> bool {
-        let rate = record.motion.normal_velocity;
-        rate >= 0.0 && (region.records.len() > 1 || rate <= record.tolerances.velocity_tol)
+        let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
+        self.opens(record) && (region.records.len() > 1 || is_slow)
     }
 
     /// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.
@@ -65,11 +65,15 @@ impl RigidSystem {
         movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))
     }
 
+    /// True if a contact opens.
+    fn opens(&self, record: &Collision) -> bool {
+        !record.parties.bilateral && record.motion.normal_velocity > self.rest_speed()
+    }
+
     /// True if any held contact opens.
     pub(crate) fn any_held_hops(&self, work: &EventWork) -> bool {
         let records = &work.region.records;
-        let mut held = work.settling.held.iter().map(|&(index, _)| &records[index]);
-        held.any(|record| !record.parties.bilateral && record.motion.normal_velocity > self.rest_speed())
+        work.settling.held.iter().any(|&(index, _)| self.opens(&records[index]))
     }
 
     /// Brings the bodies of held contacts that open in low hops to the velocities with which they will have landed, and lets those
@@ -99,14 +103,7 @@ impl RigidSystem {
         self.conclude_impact(region, impact, stop, self.now);
         self.remeasure(region, self.now);
         self.book_impact(stop, true);
-        let rest = self.rest_speed();
-        for held in 0..settling.held.len() {
-            let index = settling.held[held].0;
-            let record = &region.records[index];
-            if !record.parties.bilateral && record.motion.normal_velocity > rest {
-                settling.let_leave(index);
-            }
-        }
+        settling.let_leave(|index| self.opens(&region.records[index]));
         true
     }
 
@@ -114,13 +111,13 @@ impl RigidSystem {
     fn time_of_hops(&self, work: &EventWork) -> Option<f64> {
         let records = &work.region.records;
         let held = work.settling.held.iter().map(|&(index, _)| &records[index]);
-        let times = held.filter(|record| !record.parties.bilateral).filter_map(|record| {
+        let times = held.filter(|record| self.opens(record)).filter_map(|record| {
             let rate = record.motion.normal_velocity;
             let sides = [record.parties.primary.body, record.parties.normal.body];
             let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
             // All forces together leave its gap as it is: without its own it closes.
             let closing = force_of(record) * row.coupling(&row);
-            (rate > self.rest_speed() && self.is_low_hop(record, -closing)).then(|| 2.0 * rate / closing)
+            self.is_low_hop(record, -closing).then(|| 2.0 * rate / closing)
         });
         times.max_by(f64::total_cmp).map(|time| HOPS_IN_TURN * time)
     }

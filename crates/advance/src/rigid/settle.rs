@@ -53,21 +53,19 @@ impl RigidSystem {
             Region { in_storm: true, .. } => self.storm_rest(),
             _ => self.rest_speed(),
         };
-        let is_slow = |record: &Collision| record.motion.normal_velocity.abs() <= rest;
-        let may_hold = |(index, record): (usize, &Collision)| {
-            let may_hop = with_hops && !settling.leaves(index) && self.may_hop(region, record);
-            record.parties.bilateral || (self.holds(record) && (is_slow(record) || may_hop))
+        let is_candidate = |record: &Collision| {
+            let is_slow = record.motion.normal_velocity.abs() <= rest;
+            record.parties.bilateral || (self.holds(record) && is_slow)
         };
-        if !region.records.iter().enumerate().any(may_hold) {
+        let records = || region.records.iter().enumerate();
+        settling
+            .candidates
+            .extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
+        let may_hop = |settling: &Settling| records().any(|record| self.could_hop(region, settling, record));
+        if settling.candidates.is_empty() && !(with_hops && may_hop(settling)) {
             return Ok(());
         }
         self.accelerate_region(region, settling, stage, time);
-        let is_candidate =
-            |record: &Collision| record.parties.bilateral || (self.holds(record) && is_slow(record));
-        let records = region.records.iter().enumerate();
-        settling
-            .candidates
-            .extend(records.filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
         let mut solved = self.solve_candidates(region, settling, stage, (time, rest))?;
         // What is held presses others back, or keeps what opens from coming back.
         while with_hops && solved != Solved::Somehow && self.add_hops(region, settling, stage) {
@@ -124,18 +122,14 @@ impl RigidSystem {
     /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if
     /// there are any.
     fn add_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
-        let rest = self.rest_speed();
-        let may_hop = |settling: &Settling, (index, record): (usize, &Collision)| {
-            let opens = record.motion.normal_velocity > rest && !settling.leaves(index);
-            opens && self.holds(record) && self.may_hop(region, record)
-        };
-        if !region.records.iter().enumerate().any(|record| may_hop(settling, record)) {
+        let mut records = region.records.iter().enumerate();
+        if !records.any(|record| self.could_hop(region, settling, record)) {
             return false;
         }
         self.push_bodies(region, settling, stage);
         let before = settling.candidates.len();
         for (index, record) in region.records.iter().enumerate() {
-            if !may_hop(settling, (index, record)) {
+            if !self.could_hop(region, settling, (index, record)) {
                 continue;
             }
             let is_new = settling.candidates[..before].binary_search(&index).is_err();
@@ -146,6 +140,11 @@ impl RigidSystem {
         }
         settling.candidates.sort_unstable();
         settling.candidates.len() > before
+    }
+
+    /// True if a record of a region, given with its place, may hop, and is not let go.
+    fn could_hop(&self, region: &Region, settling: &Settling, (index, record): (usize, &Collision)) -> bool {
+        !settling.leaves(index) && self.holds(record) && self.may_hop(region, record)
     }
 
     /// Finds the accelerations of a region's bodies under the forces of the candidates.

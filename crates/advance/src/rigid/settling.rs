@@ -117,9 +117,11 @@ impl Settling {
         self.forces.clear();
     }
 
-    /// Lets a record open from now on, however low it hops.
-    pub(crate) fn let_leave(&mut self, record: usize) {
-        self.leaving[record] = true;
+    /// Lets those held records open from now on that do so, however low they hop.
+    pub(crate) fn let_leave(&mut self, opens: impl Fn(usize) -> bool) {
+        for &(record, _) in &self.held {
+            self.leaving[record] |= opens(record);
+        }
     }
 
     pub(super) fn leaves(&self, record: usize) -> bool {
