@@ -5,13 +5,15 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --scene 4711      # prints the scene of a seed
 //! cargo run --release -p halfgap-tests --example fuzz -- --billiard 4711   # the same without forces, ties and loss
 //! cargo run --release -p halfgap-tests --example fuzz -- --shrink 4711     # prints a smaller one that fails alike
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --coarse   # with zones that one can see
 //! ```
 //!
 //! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.
 
-use halfgap_tests::generate::{billiard_of_seed, scene_of_seed};
+use halfgap_tests::generate::{billiard_of_seed, coarse_of_seed, scene_of_seed};
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
 use halfgap_tests::shrink::shrink;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -31,18 +33,20 @@ Runs generated scenes and counts what became of them.
   --jobs N      so many at a time (2)
   --scene S     prints the scene of a seed
   --billiard S  the same without forces, ties and loss
-  --shrink S    prints a smaller one that fails alike";
+  --shrink S    prints a smaller one that fails alike
+  --coarse      in all of this, scenes with zones that one can see";
 
 /// Options that a number follows, and those of the processes that this one starts.
 const WITH_NUMBER: [&str; 6] = ["--count", "--seed", "--jobs", "--scene", "--billiard", "--shrink"];
 const WORKER: &str = "--worker";
+const COARSE: &str = "--coarse";
 
 /// What is wrong with the arguments, if something is.
 fn complaint(arguments: &[String]) -> Option<String> {
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let takes_number = WITH_NUMBER.contains(&argument.as_str());
-        if !takes_number && argument != WORKER {
+        if !takes_number && ![WORKER, COARSE].contains(&argument.as_str()) {
             return Some(format!("\"{argument}\" is no option"));
         }
         if takes_number && rest.next().is_none_or(|number| number.parse::<u64>().is_err()) {
@@ -68,29 +72,47 @@ fn main() {
     };
     let has = |name: &str| arguments.iter().any(|argument| argument == name);
     let (first, count) = (number("--seed", 1), number("--count", 1000));
+    let scenes = if has(COARSE) { Scenes::Coarse } else { Scenes::Fine };
     if has("--scene") {
-        println!("{:#}", scene_of_seed(number("--scene", 1)));
+        println!("{:#}", scenes.of_seed(number("--scene", 1)));
     } else if has("--billiard") {
         println!("{:#}", billiard_of_seed(number("--billiard", 1)));
     } else if has("--shrink") {
-        print_shrunk(number("--shrink", 1));
+        print_shrunk(&scenes.of_seed(number("--shrink", 1)));
     } else if has(WORKER) {
-        work(first, count);
+        work(scenes, first, count);
     } else {
-        let failed = supervise(first, count, number("--jobs", 2));
+        let failed = supervise(scenes, first, count, number("--jobs", 2));
         std::process::exit(i32::from(failed));
     }
 }
 
-fn print_shrunk(seed: u64) {
+/// What scenes are run.
+#[derive(Clone, Copy, Debug)]
+enum Scenes {
+    Fine,
+    /// With zones that one can see.
+    Coarse,
+}
+
+impl Scenes {
+    fn of_seed(self, seed: u64) -> Value {
+        match self {
+            Self::Fine => scene_of_seed(seed),
+            Self::Coarse => coarse_of_seed(seed),
+        }
+    }
+}
+
+fn print_shrunk(scene: &Value) {
     silence_panics();
-    let least = shrink(&scene_of_seed(seed), Budget::default());
+    let least = shrink(scene, Budget::default());
     eprintln!("{:?}", trial(&least.to_string(), Budget::default()));
     println!("{least:#}");
 }
 
 /// Runs scenes and writes a line before and after each.
-fn work(first: u64, count: u64) {
+fn work(scenes: Scenes, first: u64, count: u64) {
     silence_panics();
     let mut out = std::io::stdout().lock();
     let mut say = |line: String| {
@@ -99,7 +121,7 @@ fn work(first: u64, count: u64) {
     };
     for seed in first..first + count {
         say(format!("start {seed}"));
-        let verdict = trial(&scene_of_seed(seed).to_string(), Budget::default());
+        let verdict = trial(&scenes.of_seed(seed).to_string(), Budget::default());
         let what = match &verdict {
             Verdict::Broken(broken) => format!("\t{}", broken.what.replace('\n', " ")),
             Verdict::Shallow(why)
@@ -118,14 +140,14 @@ fn work(first: u64, count: u64) {
 type Found = BTreeMap<String, Vec<(u64, String)>>;
 
 /// Lets processes run all scenes; true if one failed.
-fn supervise(first: u64, count: u64, jobs: u64) -> bool {
+fn supervise(scenes: Scenes, first: u64, count: u64, jobs: u64) -> bool {
     let started = Instant::now();
     let share = count.div_ceil(jobs);
     let threads: Vec<_> = (0..jobs)
         .map(|job| {
             let from = first + job * share;
             let to = (from + share).min(first + count);
-            std::thread::spawn(move || run_all(from, to))
+            std::thread::spawn(move || run_all(scenes, from, to))
         })
         .collect();
     let mut found = Found::new();
@@ -152,10 +174,10 @@ fn report(found: &Found) {
 }
 
 /// Runs the scenes of the seeds from one up to another, in as many processes as it takes.
-fn run_all(mut from: u64, to: u64) -> Found {
+fn run_all(scenes: Scenes, mut from: u64, to: u64) -> Found {
     let mut found = Found::new();
     while from < to {
-        let (mut child, lines) = spawn(from, to - from);
+        let (mut child, lines) = spawn(scenes, from, to - from);
         let mut running = None;
         loop {
             match lines.recv_timeout(HANGS) {
@@ -195,10 +217,11 @@ fn add(found: &mut Found, seed: u64, kind: &str, what: &str) {
     found.entry(kind.to_owned()).or_default().push((seed, what.to_owned()));
 }
 
-fn spawn(first: u64, count: u64) -> (Child, Receiver<String>) {
+fn spawn(scenes: Scenes, first: u64, count: u64) -> (Child, Receiver<String>) {
     let program = std::env::current_exe().expect("this program has a path");
     let mut child = Command::new(program)
         .args([WORKER, "--seed", &first.to_string(), "--count", &count.to_string()])
+        .args(matches!(scenes, Scenes::Coarse).then_some(COARSE))
         .stdout(Stdio::piped())
         .spawn()
         .expect("a process can be started");

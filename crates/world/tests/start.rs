@@ -2,8 +2,8 @@
 
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, World,
-    WorldBuilder, WorldError, WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec,
+    ToleranceOverrides, World, WorldBuilder, WorldError, WorldSettings,
 };
 
 fn disc(name: &str, mass: f64, position: DVec2) -> BodySpec {
@@ -84,6 +84,20 @@ fn larger_errors_are_refused_by_name() {
         builder.add_connector(rod(at(0.0, 4.0), center(bob), 1.875));
         builder.build().expect_err("two rods cannot span 4 m with 3.875 m")
     };
+    assert!(matches!(error, WorldError::CannotConnect { .. }), "{error}");
+}
+
+#[test]
+fn connectors_are_no_farther_apart_for_a_coarse_zone() {
+    // Two rods that are 50 micrometres too short for what is between them, where bodies touch within millimetres.
+    let overrides =
+        ToleranceOverrides { target_gap: Some(5e-3), accuracy: Some(3e-3), ..ToleranceOverrides::default() };
+    let settings = WorldSettings { start_connector_error: Some(0.2), overrides, ..WorldSettings::default() };
+    let mut builder = WorldBuilder::new(settings);
+    let bob = builder.add(disc("bob", 1.0, DVec2::new(0.0, 2.0)));
+    builder.add_connector(rod(at(0.0, 0.0), center(bob), 2.0));
+    builder.add_connector(rod(at(0.0, 4.0), center(bob), 1.99995));
+    let error = builder.build().expect_err("two rods cannot span 4 m with 3.99995 m");
     assert!(matches!(error, WorldError::CannotConnect { .. }), "{error}");
 }
 

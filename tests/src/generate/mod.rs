@@ -7,6 +7,8 @@ mod shapes;
 mod ties;
 
 use crate::random::Random;
+use halfgap::World;
+use halfgap::scene::{Scene, SceneFormat};
 use serde_json::{Value, json};
 use shapes::Outline;
 
@@ -16,6 +18,11 @@ const ROUND_ROOM: f64 = 0.6;
 const FLOOR: f64 = 0.85;
 const SCALED: f64 = 0.2;
 const FAR_AWAY: f64 = 0.05;
+/// Zones that one can see: the target gap in parts of the smallest body's radius, the accuracy in parts of that, and what is slow
+/// in parts of an ordinary speed.
+const COARSE_GAP: f64 = 5e-3;
+const COARSE_ACCURACY: f64 = 0.6;
+const COARSE_SPEED: f64 = 0.2;
 /// Tries to find a free place for a body.
 const TRIES: usize = 60;
 
@@ -45,6 +52,13 @@ pub(crate) struct Units {
     length: f64,
     time: f64,
     origin: [f64; 2],
+}
+
+impl Units {
+    /// What is 1 m/s of an ordinary scene.
+    fn speed(&self) -> f64 {
+        self.length / self.time
+    }
 }
 
 /// The scene of a seed.
@@ -86,6 +100,30 @@ pub fn billiard_of_seed(seed: u64) -> Value {
         body["elasticity"] = json!(1.0);
     }
     scene
+}
+
+/// The scene of a seed as older engines would run it: with a zone in which things touch that one can see, and in half of all
+/// scenes with a speed that is slow for whatever moves.
+#[must_use]
+pub fn coarse_of_seed(seed: u64) -> Value {
+    let mut scene = scene_of_seed(seed);
+    let Some(size) = smallest_size(&scene) else { return scene };
+    let mut random = Random::new(!seed);
+    let target_gap = COARSE_GAP * size;
+    scene["run"]["target_gap"] = json!(target_gap);
+    scene["run"]["accuracy"] = json!(COARSE_ACCURACY * target_gap);
+    if random.chance(0.5) {
+        scene["run"]["velocity_tol"] = json!(COARSE_SPEED * units(&mut Random::new(seed)).speed());
+    }
+    scene
+}
+
+/// Bounding radius [m] of the smallest body of a scene that moves.
+fn smallest_size(scene: &Value) -> Option<f64> {
+    let scene = Scene::parse(&scene.to_string(), SceneFormat::Json).ok()?;
+    let world = World::from_scene(&scene).ok()?;
+    let moving = world.bodies().filter(|&body| !world.is_fixed(body));
+    moving.map(|body| world.shape(body).reach()).min_by(f64::total_cmp)
 }
 
 fn units(random: &mut Random) -> Units {
@@ -167,7 +205,7 @@ fn body(
     let name = format!("body{index}");
     let angle = if random.chance(0.3) { 0.0 } else { random.between(-4.0, 4.0) };
     let mass = if random.chance(0.1) { random.power_of_ten(-6.0, 6.0) } else { random.between(0.1, 3.0) };
-    let speed = units.length / units.time;
+    let speed = units.speed();
     let fast = if random.chance(0.05) { random.power_of_ten(0.0, 2.0) } else { 1.0 };
     let spin = if random.chance(0.05) { random.power_of_ten(0.0, 3.0) } else { 1.0 };
     let fixed = random.chance(0.06);
@@ -236,8 +274,6 @@ fn place(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use halfgap::World;
-    use halfgap::scene::{Scene, SceneFormat};
 
     #[test]
     fn a_seed_makes_one_scene() {

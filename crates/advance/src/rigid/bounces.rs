@@ -9,7 +9,7 @@
 //! worth: after very many such bounces in a row it is let go as well.
 
 use super::pairs::{PairId, Seen};
-use super::region::Region;
+use super::region::{Region, Touch};
 use super::system::RigidSystem;
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
@@ -29,7 +29,8 @@ impl RigidSystem {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
             let before = self.pairs.seen(pair).iter().find(|old| old.features == touch.features);
             let low = before.map_or(0, |before| self.low_bounces(before, gap));
-            let fresh = Seen { features: touch.features, time: self.now, gap, rate, low };
+            let formed = before.map_or(gap, |before| before.formed.max(gap));
+            let fresh = Seen { features: touch.features, time: self.now, gap, formed, rate, low };
             let seen = self.pairs.seen_mut(pair);
             seen.retain(|old| old.features != fresh.features);
             if seen.len() == MOST_SEEN {
@@ -56,11 +57,21 @@ impl RigidSystem {
     }
 
     fn is_low_bounce(&self, record: &Collision) -> bool {
-        let (primary, normal) = (&record.parties.primary, &record.parties.normal);
-        let (Some(p), Some(n)) = (primary.feature(), normal.feature()) else { return false };
-        let Some(pair) = self.pairs.between(primary.body, normal.body) else { return false };
-        let features = if primary.body < normal.body { [p, n] } else { [n, p] };
+        let Some((pair, features)) = self.features_of(record) else { return false };
         self.has_stayed_low(pair, features, -record.motion.normal_velocity, &record.tolerances)
+    }
+
+    /// The pair whose contact a record is, and its features, those of the lesser body first.
+    fn features_of(&self, record: &Collision) -> Option<(PairId, [FeatureId; 2])> {
+        let Touch { bodies: [a, b], features } = Touch::of(record)?;
+        Some((self.pairs.between(a, b)?, features))
+    }
+
+    /// The largest gap [m] at which the features of a record have touched, if they did before.
+    #[cold]
+    pub(crate) fn formed_at(&self, record: &Collision) -> Option<f64> {
+        let (pair, features) = self.features_of(record)?;
+        self.pairs.seen(pair).iter().find(|seen| seen.features == features).map(|seen| seen.formed)
     }
 
     /// True if two features that close at a rate [m/s] were seen within the target zone before and have not left it since.

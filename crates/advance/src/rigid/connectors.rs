@@ -14,6 +14,9 @@ use halfgap_collision::{
     RailHint, Rope, RopeSearch, rope_contact,
 };
 
+/// Looks at whether a rope has gone slack before it is taut again.
+const LOOKS: u32 = 8;
+
 /// What is known of a connector beside its parts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ConnectorState {
@@ -185,13 +188,32 @@ impl RigidSystem {
         let [a, b] = self.connector(id).bodies();
         let known = [a, b].map(|body| self.segment_end(body));
         let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
-        let state = &self.connector_states[id.index()];
-        let from = state.clear.max(self.now);
+        let mut from = self.connector_states[id.index()].clear.max(self.now);
         if until <= from {
             self.queue.clear(source);
             return;
         }
-        let rope = Rope { length: rope.length + state.slack, ..*rope };
+        let mut found = self.search_rope(id, rope, from, until);
+        if let Some(slack) = self.slackens(id, from, found) {
+            // It comes back to where any rope goes taut.
+            self.connector_states[id.index()].slack = 0.0;
+            from = slack;
+            found = self.search_rope(id, rope, from, until);
+        }
+        let (clear, taut) = match found {
+            RopeSearch::Taut(wait) => (from.plus(wait), Some(from.plus(wait))),
+            RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
+        };
+        let searches_on = taut.is_none() && clear < until;
+        let state = &mut self.connector_states[id.index()];
+        (state.clear, state.taut) = (clear, taut);
+        if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
+    }
+
+    /// Searches from a time on for when a rope goes taut, as it is taken now.
+    fn search_rope(&self, id: ConnectorId, rope: &Rope, from: Time, until: Time) -> RopeSearch {
+        let [a, b] = self.connector(id).bodies();
+        let rope = Rope { length: rope.length + self.connector_states[id.index()].slack, ..*rope };
         let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
         let path = |body: BodyId| {
             if body.is_world() {
@@ -205,16 +227,22 @@ impl RigidSystem {
         let wait =
             crossing_time(&rope, &path_a.bounds(offset_a, offset_a), &path_b.bounds(offset_b, offset_b));
         let span = until.since(from).min(wait);
-        let found =
-            rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search);
-        let (clear, taut) = match found {
-            RopeSearch::Taut(wait) => (from.plus(wait), Some(from.plus(wait))),
-            RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
-        };
-        let searches_on = taut.is_none() && clear < until;
-        let state = &mut self.connector_states[id.index()];
-        (state.clear, state.taut) = (clear, taut);
-        if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
+        rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search)
+    }
+
+    /// When a rope that is taken longer than it is has gone slack by clearly more than that, on the way to where a search from a time
+    /// on has come.
+    fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
+        let slack = self.connector_states[id.index()].slack;
+        if slack <= 0.0 {
+            return None;
+        }
+        let (RopeSearch::Taut(wait) | RopeSearch::NoneBefore(wait)) = found;
+        let mut times = (0..LOOKS).map(|look| from.plus(wait * f64::from(look) / f64::from(LOOKS)));
+        times.find(|&time| {
+            let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, time));
+            self.connector(id).measure(0, &a, &b).gap > slack + self.sink()
+        })
     }
 
     /// A stop as it is watched along a segment that starts now.

@@ -255,7 +255,8 @@ impl RigidSystem {
                 let gap = self.sunk(gap);
                 let source = RowSource::Contact(touch.features);
                 let bodies = touch.bodies;
-                let row = HeldRow { source, bodies, bilateral: false, gap, hint: None, leans: false };
+                let (hint, leans, is_lifted) = (None, false, false);
+                let row = HeldRow { source, bodies, bilateral: false, gap, hint, leans, is_lifted };
                 group.leaning.push(self.leaning(row, self.now));
             }
         }
@@ -343,6 +344,7 @@ impl RigidSystem {
         self.with_group(&mut group, |dynamics, tools| {
             dynamics.soften_dependent();
             dynamics.end_on_rows(tools);
+            dynamics.lower_lifted();
             dynamics.lower_leaning();
         });
         self.ledger.projections += std::mem::take(&mut group.projected);

@@ -70,6 +70,8 @@ pub(crate) struct Seen {
     pub(crate) time: Time,
     /// Gap [m].
     pub(crate) gap: f64,
+    /// The largest gap [m] at which they have touched.
+    pub(crate) formed: f64,
     /// Rate of the gap [m/s].
     pub(crate) rate: f64,
     /// How many low bounces have come before, one after another.

@@ -38,6 +38,8 @@ pub(crate) struct HeldRow {
     pub(crate) hint: Option<RailHint>,
     /// A corner that leans off its line.
     pub(crate) leans: bool,
+    /// Its gap is more than it was: it had sunk out of its zone.
+    pub(crate) is_lifted: bool,
 }
 
 /// A row at one moment.

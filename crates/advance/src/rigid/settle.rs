@@ -14,11 +14,13 @@ use super::system::RigidSystem;
 use super::watch::FORCE_SHARE;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, Spin};
+use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
 use halfgap_contact::{Row, SolveError};
 
-/// Depth of an overlap, in target gaps, from which a contact is lifted.
-const DEEPEST: f64 = 0.5;
+/// How far below its zone a row is lifted, in what it may sink at a time: what has just been lifted may sink once.
+const SUNK: f64 = 1.5;
+/// Part of its accuracy by which a rope may be longer when it is lifted.
+const ROPE_SHARE: f64 = 0.5;
 
 /// Forces this many times larger than all loads together jam.
 const JAM: f64 = 100.0;
@@ -264,7 +266,7 @@ impl RigidSystem {
             let record = region.records[index];
             let loads = places_of(region, &record).map(|place| gross[place]);
             let least = FORCE_SHARE * loads.fold(f64::INFINITY, f64::min);
-            let lies_deep = record.geometry.distance < deepest(&record);
+            let lies_deep = self.lifted(&record).is_some();
             let stays = record.parties.bilateral || force > least || lies_deep;
             region.records[index].response.force = Some(if stays { force } else { 0.0 });
             any |= !stays && force > 0.0;
@@ -294,12 +296,26 @@ impl RigidSystem {
             RowSource::Connector(id, _) => self.connector_states[id.index()].hint,
             RowSource::Contact(_) => None,
         };
-        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to move a rope from
-        // there would move what hangs on it by a long arm by much more.
+        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to move a rope to its
+        // length would move what hangs on it by a long arm by much more.
         let bilateral = record.parties.bilateral;
-        let gap = if bilateral { 0.0 } else { record.geometry.distance.max(deepest(record)) };
-        let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false };
+        let lifted = self.lifted(record);
+        let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
+        let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted: lifted.is_some() };
         Some(self.leaning(row, time))
+    }
+
+    /// The gap [m] to which a row is lifted that has sunk out of its zone; `None` of others. What touches without force sinks a little
+    /// each time it is touched, and would be overlapping in the end. A contact that formed lower is left there.
+    #[inline]
+    fn lifted(&self, record: &Collision) -> Option<f64> {
+        let (lowest, sunk) = (lower_end(record), SUNK * record.tolerances.sink());
+        let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest - sunk;
+        if !lies_deep(lowest) {
+            return None;
+        }
+        let lowest = if record.connector().is_some() { lowest } else { lowest.min(self.formed_at(record)?) };
+        lies_deep(lowest).then_some(lowest)
     }
 
     fn settle_error(
@@ -323,11 +339,11 @@ impl RigidSystem {
     }
 }
 
-/// Gap [m] below which no contact is held: what touches without force sinks a little each time it is touched, and the search
-/// takes what lies much deeper for the far side of a body. Connectors have none.
-fn deepest(record: &Collision) -> f64 {
-    let is_contact = record.parties.primary.site.is_some();
-    if is_contact { -DEEPEST * record.tolerances.target_gap } else { f64::NEG_INFINITY }
+/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, are not to be longer than their
+/// accuracy, however they sink.
+fn lower_end(record: &Collision) -> f64 {
+    let Tolerances { target_gap, accuracy, .. } = record.tolerances;
+    if record.connector().is_some() { -ROPE_SHARE * accuracy } else { target_gap - accuracy }
 }
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.

@@ -396,6 +396,22 @@ impl Dynamics<'_> {
         }
     }
 
+    /// Lets contacts that others keep from being lifted stay where they are: what contradicts the rest would do so at each step.
+    pub(crate) fn lower_lifted(&mut self) {
+        let Group { bodies, end_state, rows, .. } = &mut *self.group;
+        if !rows.iter().any(|row| row.is_lifted) {
+            return;
+        }
+        self.stage.load(bodies, end_state);
+        let mechanism = &self.physics.mechanism;
+        for row in rows.iter_mut().filter(|row| row.is_lifted) {
+            let gap = mechanism.gap(row, &self.stage.movings);
+            if gap < row.gap - mechanism.tolerances.sink() {
+                row.gap = gap;
+            }
+        }
+    }
+
     /// True if a contact that is touched without force lies within its features.
     fn is_within(&self, row: usize) -> bool {
         self.leaning_room(row) >= 0.0

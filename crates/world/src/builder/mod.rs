@@ -7,7 +7,7 @@ use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
 use crate::rigid_settings::rigid_settings;
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
-use crate::scales::Scales;
+use crate::scales::{Scales, ToleranceOverrides};
 use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
@@ -180,12 +180,15 @@ impl WorldBuilder {
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
+        // Connectors have no zone to be coarse.
+        let derived = scales.tolerances(self.settings.tolerance, &ToleranceOverrides::default());
         let rules = StartRules {
             tolerances: &tolerances,
             excluded: &self.excluded,
             collisions: self.settings.collisions,
             overlap: self.settings.start_overlap.unwrap_or(default_error),
             connector_error: self.settings.start_connector_error.unwrap_or(default_error),
+            contradiction: derived.accuracy.min(tolerances.accuracy),
             rounding: scales.smallest_gap(),
         };
         let total = |bodies: &[StartParts]| {

@@ -11,6 +11,8 @@ use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Settings, Solution, 
 /// Contradiction between dependent connectors, in units of the largest gap, that a round may leave to the next: gaps
 /// are curved, so those of a linkage with more bars than it needs agree only to second order.
 const INCONSISTENCY: f64 = 1e-2;
+/// Part of its reach by which a body is moved in a round: farther, gaps are curved by too much.
+const LONGEST_WAY: f64 = 0.1;
 /// A rate of so many machine epsilons of the velocities that make it up is zero.
 const RATE_ROUNDINGS: f64 = 64.0;
 
@@ -22,7 +24,7 @@ struct Correction {
     bilateral: bool,
 }
 
-/// Moves the bodies so that gaps and connectors come to fit, to first order; false if that cannot be done.
+/// Moves the bodies so that gaps and connectors come to fit, to first order, or a part of the way; false if that cannot be done.
 pub(super) fn correct_positions(
     bodies: &mut [StartParts],
     records: &[Collision],
@@ -30,9 +32,14 @@ pub(super) fn correct_positions(
 ) -> bool {
     let corrections: Vec<_> = records.iter().map(lift).chain(join(bodies, connectors)).collect();
     let Some(changes) = least_changes(bodies, &corrections) else { return false };
+    let shares = bodies.iter().zip(&changes).map(|((body, ..), [x, y, angle])| {
+        let (way, reach) = (x.hypot(*y) + angle.abs() * body.shape.reach(), body.shape.reach());
+        if way > LONGEST_WAY * reach { LONGEST_WAY * reach / way } else { 1.0 }
+    });
+    let share = shares.fold(1.0, f64::min);
     for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
-        state.position += DVec2::new(change[0], change[1]);
-        state.angle += change[2];
+        state.position += share * DVec2::new(change[0], change[1]);
+        state.angle += share * change[2];
     }
     true
 }

@@ -4,8 +4,9 @@
 //! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the target and
 //! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0
 //! (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated
-//! until they fit. `tight` knows the pairs for which that cannot be: they keep their gap. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves
-//! for displacements and for velocities.
+//! until they fit, by steps along which they are not curved by much. `tight` knows the pairs for which that cannot be: they keep
+//! their gap. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves for displacements
+//! and for velocities.
 
 mod correction;
 mod joined;
@@ -16,12 +17,11 @@ use crate::near::NearPairs;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
-use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
 use tight::TightPairs;
-use touching::{is_below_zone, lowest_below_zone, require_shallow, touching};
+use touching::{deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touching};
 
 /// Rounds of correction; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
@@ -43,8 +43,24 @@ pub(crate) struct StartRules<'a> {
     pub(crate) overlap: f64,
     /// How far off connectors may be [m].
     pub(crate) connector_error: f64,
+    /// How far off they may be left where they contradict each other [m].
+    pub(crate) contradiction: f64,
     /// How far off they are for rounding [m].
     pub(crate) rounding: f64,
+}
+
+impl StartRules<'_> {
+    /// Pairs of bodies that are so near each other that they may touch.
+    fn near_pairs<'a>(&self, near: &'a mut NearPairs, bodies: &[StartParts]) -> &'a [(BodyId, BodyId)] {
+        if !self.collisions {
+            return &[];
+        }
+        let skin = self.tolerances.distance_tol();
+        let boxes = bodies
+            .iter()
+            .map(|(body, _, state)| (body.shape.bounds_at(&state.pose()).grown(skin), body.is_fixed()));
+        near.find(boxes, self.excluded)
+    }
 }
 
 /// What was corrected at the start.
@@ -63,80 +79,99 @@ pub(crate) fn correct_start(
     connectors: &[Connector],
     rules: &StartRules<'_>,
 ) -> Result<Corrected, WorldError> {
-    let pairs = if rules.collisions {
-        let skin = rules.tolerances.distance_tol();
-        let boxes = bodies
-            .iter()
-            .map(|(body, _, state)| (body.shape.bounds_at(&state.pose()).grown(skin), body.is_fixed()));
-        NearPairs::default().find(boxes, rules.excluded).to_vec()
-    } else {
-        Vec::new()
-    };
-    require_shallow(bodies, named, &pairs, rules.overlap)?;
+    let mut near = NearPairs::default();
+    let pairs = rules.near_pairs(&mut near, bodies);
+    require_shallow(bodies, named, pairs, rules.overlap)?;
     require_small_errors(bodies, named, connectors, rules.connector_error)?;
-    let given: Vec<DVec2> = bodies.iter().map(|(_, _, state)| state.position).collect();
+    let given: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
     let mut last_error = f64::INFINITY;
     let mut tight = TightPairs::default();
     let mut round = 0;
     loop {
-        let mut records = touching(bodies, &pairs, rules.tolerances, rules.overlap);
+        // What has been moved may have come near others, and deeper into them.
+        let pairs = rules.near_pairs(&mut near, bodies);
+        let ways = ways(bodies, &given);
+        let mut records = touching(bodies, pairs, rules, &ways);
         records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
         let has_stalled = error > LEAST_GAIN * last_error;
-        if too_near.is_none() && fits(error, has_stalled, rules) {
+        let is_done = too_near.is_none() && fits(error, has_stalled, rules);
+        let overlap = if is_done { deep_overlap(bodies, pairs, rules.rounding, &ways) } else { None };
+        if is_done && overlap.is_none() {
             break;
         }
-        let is_stuck = round == MOST_ROUNDS || !correct_positions(bodies, &records, connectors);
-        round += 1;
+        let is_stuck = is_done || round == MOST_ROUNDS || !correct_positions(bodies, &records, connectors);
+        (round, last_error) = (round + 1, error);
         if is_stuck {
-            let is_near =
-                |record: &&Collision| is_below_zone(record) && record.geometry.distance >= -rules.rounding;
-            let near: Vec<_> = records.iter().filter(is_near).collect();
-            if !tight.widen(bodies, connectors, &near) {
-                return Err(cannot_correct(too_near, off, named, connectors));
+            let failure = || cannot_correct(too_near, overlap, off, named, connectors);
+            bodies.iter_mut().zip(&given).for_each(|((_, _, state), given)| *state = *given);
+            if !widen(&mut tight, bodies, connectors, (rules, &mut near)) {
+                return Err(failure());
             }
-            round = 0;
+            (round, last_error) = (0, f64::INFINITY);
         }
-        last_error = error;
     }
     let apart = correct_velocities(bodies, named, connectors)?;
-    Ok(Corrected { displacement: largest_move(bodies, &given), apart })
+    let moves =
+        bodies.iter().zip(&given).map(|((_, _, state), given)| state.position.distance(given.position));
+    Ok(Corrected { displacement: moves.fold(0.0, f64::max), apart })
+}
+
+/// Lets the pairs that are too near where the bodies were given keep their gaps; false if none is left that can.
+fn widen(
+    tight: &mut TightPairs,
+    bodies: &[StartParts],
+    connectors: &[Connector],
+    (rules, near): (&StartRules<'_>, &mut NearPairs),
+) -> bool {
+    let pairs = rules.near_pairs(near, bodies);
+    let mut records = touching(bodies, pairs, rules, &vec![0.0; bodies.len()]);
+    let is_near = |record: &Collision| is_below_zone(record) && record.geometry.distance >= -rules.rounding;
+    records.retain(|record| is_near(record) && !tight.keeps(record));
+    tight.widen(bodies, connectors, &records)
 }
 
 /// True if the connectors are together: to rounding, or as near as they come if that is near enough.
 fn fits(error: f64, has_stalled: bool, rules: &StartRules<'_>) -> bool {
-    error <= rules.rounding || (has_stalled && error <= rules.tolerances.accuracy)
+    error <= rules.rounding || (has_stalled && error <= rules.contradiction)
+}
+
+/// How far [m] points of each body have moved at most.
+fn ways(bodies: &[StartParts], given: &[BodyState]) -> Vec<f64> {
+    let way = |((body, _, state), given): (&StartParts, &BodyState)| {
+        state.position.distance(given.position) + (state.angle - given.angle).abs() * body.shape.reach()
+    };
+    bodies.iter().zip(given).map(way).collect()
 }
 
 fn moving(bodies: &[StartParts], body: BodyId) -> Moving {
     if body.is_world() { Moving::BACKGROUND } else { Moving::from(&bodies[body.index()].2) }
 }
 
-fn largest_move(bodies: &[StartParts], given: &[DVec2]) -> f64 {
-    let move_of = |((_, _, state), &from): (&StartParts, &DVec2)| (state.position - from).length();
-    bodies.iter().zip(given).map(move_of).fold(0.0, f64::max)
-}
-
-/// What is to blame: a gap if one is too small, else the connector that is off most.
+/// What is to blame: an overlap that comes of the correction, else a gap if one is too small, else the connector that is off most.
 fn cannot_correct(
     too_near: Option<&Collision>,
+    overlap: Option<([BodyId; 2], f64)>,
     off: Option<ConnectorOff>,
     named: &[Named],
     connectors: &[Connector],
 ) -> WorldError {
-    let blamed = off.map(|off| off.name(named, connectors));
-    match (too_near, blamed, off) {
-        (None, Some(connector), Some(off)) => WorldError::CannotConnect { connector, error: off.error },
-        (too_near, ..) => {
-            let name = |body: fn(&Collision) -> BodyId| {
-                too_near.map_or_else(String::new, |record| named[body(record).index()].name.clone())
-            };
-            WorldError::CannotLift {
-                first: name(|record| record.parties.primary.body),
-                second: name(|record| record.parties.normal.body),
-                gap: too_near.map_or(0.0, |record| record.geometry.distance),
-            }
+    let of_gap = |record: &Collision| {
+        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        (bodies, record.geometry.distance)
+    };
+    let gap = overlap.map(|(bodies, depth)| (bodies, -depth)).or(too_near.map(of_gap));
+    match (gap, off) {
+        (None, Some(off)) => {
+            WorldError::CannotConnect { connector: off.name(named, connectors), error: off.error }
+        }
+        (gap, _) => {
+            let name =
+                |body: BodyId| named.get(body.index()).map_or_else(String::new, |one| one.name.clone());
+            let (bodies, gap) = gap.unwrap_or(([BodyId::WORLD; 2], 0.0));
+            let [first, second] = bodies.map(name);
+            WorldError::CannotLift { first, second, gap }
         }
     }
 }

@@ -25,16 +25,16 @@ impl TightPairs {
         &mut self,
         bodies: &[StartParts],
         connectors: &[Connector],
-        too_near: &[&Collision],
+        too_near: &[Collision],
     ) -> bool {
         let before = self.pairs.len();
         if !self.searched {
             self.searched = true;
             let stuck = too_near.iter().filter(|record| !can_lift(bodies, record, connectors));
-            self.pairs.extend(stuck.map(|record| sides(record)));
+            self.pairs.extend(stuck.map(sides));
         }
         if self.pairs.len() == before {
-            self.pairs.extend(too_near.iter().map(|record| sides(record)));
+            self.pairs.extend(too_near.iter().map(sides));
         }
         self.pairs.len() > before
     }

@@ -1,10 +1,10 @@
 //! Which bodies touch at the start, and how deep they overlap.
 
-use super::StartParts;
+use super::{StartParts, StartRules};
 use crate::overlap::overlap_depth;
 use crate::world::Named;
 use crate::world_error::WorldError;
-use halfgap_collision::{BodyId, Collision, Moment, Moving, Tolerances, detect_pair};
+use halfgap_collision::{BodyId, Collision, Moment, Moving, detect_pair};
 
 /// Refuses overlaps deeper than allowed [m].
 pub(super) fn require_shallow(
@@ -24,12 +24,31 @@ pub(super) fn require_shallow(
     Ok(())
 }
 
-/// Records of all places where bodies touch, overlaps up to `depth` [m] included.
+/// Two bodies that a correction has brought into each other, deeper than rounding [m], and how deep [m]. For each body how far
+/// it has been moved.
+pub(super) fn deep_overlap(
+    bodies: &[StartParts],
+    pairs: &[(BodyId, BodyId)],
+    rounding: f64,
+    ways: &[f64],
+) -> Option<([BodyId; 2], f64)> {
+    let moved =
+        pairs.iter().map(|&(a, b)| [a, b]).filter(|pair| pair.iter().any(|body| ways[body.index()] > 0.0));
+    let mut deep = moved.filter_map(|pair| {
+        let [(body_a, _, state_a), (body_b, _, state_b)] = pair.map(|body| &bodies[body.index()]);
+        let depth = overlap_depth(&body_a.shape, &state_a.pose(), &body_b.shape, &state_b.pose())?;
+        (depth > rounding).then_some((pair, depth))
+    });
+    deep.next()
+}
+
+/// Records of all places where bodies touch, overlaps included that are no deeper than they may have been and than bodies have
+/// been moved since [m].
 pub(super) fn touching(
     bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
-    tolerances: &Tolerances,
-    depth: f64,
+    rules: &StartRules<'_>,
+    ways: &[f64],
 ) -> Vec<Collision> {
     let moment = |id: BodyId| {
         let (body, _, state) = &bodies[id.index()];
@@ -37,7 +56,8 @@ pub(super) fn touching(
     };
     let mut records = Vec::new();
     for &(a, b) in pairs {
-        detect_pair(&moment(a), &moment(b), tolerances, depth, 0.0, &mut records);
+        let depth = rules.overlap + ways[a.index()] + ways[b.index()];
+        detect_pair(&moment(a), &moment(b), rules.tolerances, depth, 0.0, &mut records);
     }
     records
 }

@@ -122,7 +122,8 @@ impl Scene {
         let bodies = self.connectors[connector].bodies();
         for row in 0..self.connectors[connector].row_count() {
             let source = RowSource::Connector(id, row);
-            let row = HeldRow { source, bodies, bilateral: true, gap: 0.0, hint: None, leans: false };
+            let (hint, leans, is_lifted) = (None, false, false);
+            let row = HeldRow { source, bodies, bilateral: true, gap: 0.0, hint, leans, is_lifted };
             self.group.rows.push(row);
         }
     }
