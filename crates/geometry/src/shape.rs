@@ -179,6 +179,22 @@ impl Shape {
         })
     }
 
+    /// True if the outline goes on straight and smoothly beyond an arc, at the end that is nearer to a direction from its centre
+    /// [body coordinates]; false of all but arcs.
+    #[must_use]
+    pub fn goes_on_straight(&self, arc: FeatureId, direction: DVec2) -> bool {
+        let (Some(EdgeId { path, edge }), Feature::Round(round)) = (self.whole_edge(arc), self.feature(arc))
+        else {
+            return false;
+        };
+        let Some([from, to]) = round.range.ends() else { return false };
+        let (edges, edge) = (self.parts.paths[path as usize].edges(), edge as usize);
+        let is_after = direction.dot(to) > direction.dot(from);
+        let neighbour = if is_after { edge + 1 } else { edge + edges.len() - 1 } % edges.len();
+        let is_smooth = self.ends_of(arc)[usize::from(is_after)].is_none();
+        is_smooth && matches!(edges[neighbour], Edge::Line(_))
+    }
+
     /// The edges that end and start at a corner; `None` for an edge.
     #[must_use]
     pub fn sides_of(&self, feature: FeatureId) -> Option<[FeatureId; 2]> {

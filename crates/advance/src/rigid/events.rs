@@ -7,7 +7,7 @@ use super::impacts::{ImpactReport, Manner};
 use super::pairs::PairId;
 use super::region::{Region, Touch};
 use super::repeats::{CALM_REPEATS, is_same_time};
-use super::rows::{HeldRow, RowSource, has_left};
+use super::rows::{HeldRow, RowSource};
 use super::settling::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
@@ -150,10 +150,8 @@ impl RigidSystem {
 
     /// True if a contact that has come to the end of its features leaves them.
     fn leaves(&self, Touch { bodies, features }: Touch) -> bool {
-        let pose = bodies.map(|body| self.flyer(body).moving_at(self.now).pose);
-        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
-        let sample = GapSample::measure_unbounded(a, &pose[0], b, &pose[1]);
-        sample.is_none_or(|sample| has_left(&sample, [a, b]))
+        let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
+        self.mechanism().has_left(bodies, features, [&moving[0], &moving[1]])
     }
 
     /// A contact that was touched without force has sunk.

@@ -36,7 +36,7 @@ pub(crate) struct HeldRow {
     pub(crate) gap: f64,
     /// Piece of the rail, of a connector that has one.
     pub(crate) hint: Option<RailHint>,
-    /// A corner that leans off its line.
+    /// A corner, sharp or round, that leans off its line.
     pub(crate) leans: bool,
     /// Its gap is more than it was: it had sunk out of its zone.
     pub(crate) is_lifted: bool,
@@ -209,12 +209,44 @@ impl Mechanism<'_> {
     /// True if a row is a corner that leans off its line already: to lean further changes nothing.
     pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
         let RowSource::Contact(features) = row.source else { return false };
-        let of_sides = [0, 1].map(|side: usize| self.shape(row.bodies[side]).feature(features[side]));
-        if !is_corner_on_line(of_sides) {
+        let sample = self.sample(row.bodies, features, movings);
+        if !self.is_corner_on_line(&sample, row.bodies, features, movings) {
             return false;
         }
-        let sample = self.sample(row.bodies, features, movings);
         self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
+    }
+
+    /// True if a contact that is outside of its features has left them.
+    pub(crate) fn has_left(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> bool {
+        let sample = self.sample(bodies, features, movings);
+        sample.overrun > 0.0 || !self.is_corner_on_line(&sample, bodies, features, movings)
+    }
+
+    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If it leans a little off the line, so that
+    /// the next corner along is nearer, it still touches it: so a block rocks from one corner to the other.
+    fn is_corner_on_line(
+        &self,
+        sample: &GapSample,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> bool {
+        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
+        let round = match (feature(0), feature(1)) {
+            (Feature::Round(_), Feature::Line(_)) => 0,
+            (Feature::Line(_), Feature::Round(_)) => 1,
+            _ => return false,
+        };
+        let is_sharp = feature(round).radius() == Some(0.0);
+        is_sharp || {
+            let direction = movings[round].pose.vector_to_body(-sample.normal);
+            self.shape(bodies[round]).goes_on_straight(features[round], direction)
+        }
     }
 
     /// How far [m] a contact lies outside of its features by their angles.
@@ -235,19 +267,6 @@ impl Mechanism<'_> {
 
 fn is_full(feature: &Feature) -> bool {
     matches!(feature, Feature::Round(round) if round.range == DirectionRange::Full)
-}
-
-/// True if a contact that is outside of its features has left them.
-pub(crate) fn has_left(sample: &GapSample, features: [&Feature; 2]) -> bool {
-    sample.overrun > 0.0 || !is_corner_on_line(features)
-}
-
-/// True for a corner on a line. If it leans a little off the line, so that the next corner along is nearer, it still touches
-/// it: so a block rocks from one corner to the other.
-fn is_corner_on_line(features: [&Feature; 2]) -> bool {
-    let any_line = features.iter().any(|feature| matches!(feature, Feature::Line(_)));
-    let is_corner = |feature: &&Feature| matches!(feature, Feature::Round(round) if round.radius == 0.0);
-    any_line && features.iter().any(is_corner)
 }
 
 /// Distance [m] along a rail to the nearer end of the piece on which a point is.

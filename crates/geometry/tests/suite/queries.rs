@@ -3,8 +3,8 @@
 use crate::sampling::{SAMPLES, coarseness, outline_points, sampled_contains};
 use crate::shapes::{any_angle, any_pose, any_shape, any_vector, map_spec, specs_of};
 use halfgap_geometry::{
-    Aabb, DVec2, Edge, FeatureId, FeatureKind, MotionBound, Pose, Ray, Relation, Rotation, Shape, ShapeError,
-    edge_distance,
+    Aabb, DVec2, Edge, EdgeSpec, Feature, FeatureId, FeatureKind, MotionBound, PathSpec, Pose, Ray, Relation,
+    Rotation, Shape, ShapeError, edge_distance,
 };
 use proptest::prelude::*;
 
@@ -300,6 +300,30 @@ proptest! {
         let coarse = shape.reach() * (turn / f64::from(steps)).powi(2);
         prop_assert!(sampled.grown(coarse + rounding).contains(&swept), "{swept:?} {sampled:?}");
     }
+}
+
+#[test]
+fn outlines_go_on_straight_beyond_round_corners_and_not_beyond_sharp_ones() {
+    let ids =
+        |shape: &Shape| (0..shape.features().len()).map(|index| FeatureId(index as u32)).collect::<Vec<_>>();
+    let straight = |shape: &Shape| -> Vec<Option<[bool; 2]>> {
+        let of = |id: FeatureId| match shape.feature(id) {
+            Feature::Round(arc) if arc.radius > 0.0 => {
+                Some(arc.range.ends().map(|ends| ends.map(|end| shape.goes_on_straight(id, end))))
+            }
+            _ => None,
+        };
+        ids(shape).into_iter().filter_map(of).collect()
+    };
+    let rounded = Shape::rounded_block(2.0, 1.0, 0.25).expect("a fine radius");
+    assert_eq!(straight(&rounded), [Some([true; 2]); 4]);
+    assert_eq!(straight(&Shape::disc(1.0).expect("a fine radius")), [None]);
+    // A half disc, whose arc ends at corners.
+    let arc = EdgeSpec::Arc { to: -DVec2::X, center: DVec2::ZERO, clockwise: false };
+    let spec = PathSpec { start: DVec2::X, edges: vec![arc, EdgeSpec::Line { to: DVec2::X }] };
+    assert_eq!(straight(&Shape::from_paths(&[spec]).expect("half a disc")), [Some([false; 2])]);
+    let block = Shape::block(2.0, 1.0).expect("fine sides");
+    assert!(ids(&block).into_iter().all(|id| !block.goes_on_straight(id, DVec2::Y)));
 }
 
 proptest! {
