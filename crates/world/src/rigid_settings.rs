@@ -74,7 +74,8 @@ fn rest_speed(velocity_tol: f64, speed: f64) -> f64 {
     if speed > 0.0 { slow.min(REST * speed) } else { slow }
 }
 
-fn method(integrator: Integrator) -> Method {
+/// The method of an integrator.
+pub(crate) fn method(integrator: Integrator) -> Method {
     match integrator {
         Integrator::Dop853 => Method::Dop853,
         Integrator::DormandPrince5 => Method::DormandPrince5,

@@ -2,7 +2,7 @@
 
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, Integrator,
     ToleranceOverrides, World, WorldBuilder, WorldError, WorldSettings,
 };
 
@@ -99,6 +99,26 @@ fn connectors_are_no_farther_apart_for_a_coarse_zone() {
     builder.add_connector(rod(at(0.0, 4.0), center(bob), 1.99995));
     let error = builder.build().expect_err("two rods cannot span 4 m with 3.99995 m");
     assert!(matches!(error, WorldError::CannotConnect { .. }), "{error}");
+}
+
+#[test]
+fn steps_that_are_too_long_for_damping_are_told_of() {
+    let warnings = |integrator: Integrator, time_step: f64| {
+        let settings = WorldSettings { integrator, time_step: Some(time_step), ..WorldSettings::default() };
+        let mut builder = WorldBuilder::new(settings);
+        let bob = builder.add(disc("bob", 2.0, DVec2::ZERO));
+        builder.add_damping(bob, 160.0, 0.0);
+        builder.build().expect("a damped disc").warnings().to_vec()
+    };
+    assert_eq!(warnings(Integrator::Euler, 0.0125), Vec::<String>::new());
+    assert_eq!(warnings(Integrator::Dop853, 1.0), Vec::<String>::new());
+    assert_eq!(
+        warnings(Integrator::ModifiedEuler, 0.05),
+        [
+            "a time_step of 0.05 s is too long for body \"bob\", which is damped at 80 1/s: where it is tied or touches \
+             something, what should decay grows in steps of more than 0.025 s"
+        ]
+    );
 }
 
 #[test]

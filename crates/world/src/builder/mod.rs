@@ -4,7 +4,7 @@ mod checks;
 
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
-use crate::rigid_settings::rigid_settings;
+use crate::rigid_settings::{method, rigid_settings};
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::scales::{Scales, ToleranceOverrides};
@@ -173,7 +173,8 @@ impl WorldBuilder {
         self.check_resolution(&scales)?;
         let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
         self.check_accuracy(&tolerances)?;
-        let mut warnings: Vec<String> = self.gap_warning(&scales).into_iter().collect();
+        let warnings = [self.gap_warning(&scales), self.step_warning()];
+        let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
@@ -238,6 +239,26 @@ impl WorldBuilder {
                 Rounded(wanted),
                 Rounded(scales.coordinate),
                 Rounded(smallest)
+            )
+        })
+    }
+
+    /// What to say if a step of a given length is too long for how fast a body is damped: what should decay grows then, wherever it is
+    /// integrated. Flights are in closed form.
+    fn step_warning(&self) -> Option<String> {
+        let settings = &self.settings;
+        let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
+        let movable = self.bodies.iter().zip(&self.laws).filter(|(body, _)| body.inertia.is_some());
+        let rates = movable.map(|(body, law)| (&body.name, law.linear_rate.max(law.angular_rate)));
+        let (name, rate) = rates.max_by(|p, q| p.1.total_cmp(&q.1))?;
+        let longest = method(settings.integrator).stability_limit()? / rate;
+        (step > longest).then(|| {
+            format!(
+                "a time_step of {} s is too long for body \"{name}\", which is damped at {} 1/s: where it is tied or touches something, \
+                 what should decay grows in steps of more than {} s",
+                Rounded(step),
+                Rounded(rate),
+                Rounded(longest)
             )
         })
     }
