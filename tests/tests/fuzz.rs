@@ -314,6 +314,28 @@ fn what_was_broken_once_in_coarse_zones_holds() {
     require(COARSE_BROKEN, coarse_of_seed, holds);
 }
 
+/// Scenes whose contacts carry impulses only in which something was wrong once, by seed.
+const IMPULSES_ONLY: &[(u64, &str)] = &[
+    (50_100_798, "what had sunk was put back so far at once that a slot with a long arm came apart"),
+    (50_200_372, "a rope that sinks between impulses, as contacts do, ended the run"),
+];
+
+#[test]
+fn what_has_only_impulses_is_put_back_and_keeps_together() {
+    for &(seed, what) in IMPULSES_ONLY {
+        let mut scene = scene_of_seed(seed);
+        let duration = scene["run"]["duration"].as_f64().expect("a number") / 4.0;
+        scene["run"]["contacts"] = false.into();
+        scene["run"]["time_step"] = (duration / 100.0).into();
+        scene["run"]["duration"] = duration.into();
+        let scene = Scene::parse(&scene.to_string(), SceneFormat::Json).expect("scenes of seeds are scenes");
+        let mut world = World::from_scene(&scene).expect("it can be built");
+        let outcome = world.advance_to(scene.run.end_time(), &mut |_| ());
+        assert!(outcome.is_ok(), "{seed}, {what}: {outcome:?}");
+        assert_eq!(world.findings(f64::INFINITY), [], "{seed}, {what}");
+    }
+}
+
 /// Runs the scenes of some seeds, and requires that all of them hold.
 fn require(seeds: &[(u64, &str)], scene_of: fn(u64) -> Value, holds: impl Fn(&Verdict) -> bool) {
     let run = |&(seed, what)| (seed, what, trial(&scene_of(seed).to_string(), PATIENT));

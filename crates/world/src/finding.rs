@@ -178,7 +178,8 @@ impl World {
         }
     }
 
-    /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut within their zone.
+    /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut within their zone, and
+    /// without contact forces as far as they sink in a step.
     fn connectors_off(&self, share: f64, findings: &mut Vec<Finding>) {
         if self.connectors().is_empty() {
             return;
@@ -190,7 +191,8 @@ impl World {
         let at_target = share * farthest.fold(0.0, f64::max);
         for (index, connector) in (0..).map(ConnectorId).zip(self.connectors()) {
             let error = self.connector_error(index);
-            let zone = if connector.is_bilateral() { 0.0 } else { self.tolerances().accuracy };
+            let sinks = self.rigid_settings().search.depth;
+            let zone = if connector.is_bilateral() { 0.0 } else { self.tolerances().accuracy.max(sinks) };
             let allowed = at_target.max(zone);
             if error.is_nan() || error > allowed {
                 let name = |body: BodyId| (!body.is_world()).then(|| self.name(body));

@@ -15,7 +15,9 @@ use halfgap_contact::{BodyId as RowBody, Problem, Row};
 use halfgap_geometry::{FeatureId, GapSample};
 
 /// Rounds of putting back: gaps are not linear in the displacement, but nearly.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 8;
+/// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
+const LONGEST_WAY: f64 = 0.1;
 /// Part of the reach of the smaller body by which a pair may sink before it fires again.
 const SUNK_SHARE: f64 = 1e-2;
 /// Of that, what tells a pair that has sunk from one that has just been seen.
@@ -117,15 +119,26 @@ impl RigidSystem {
             shifts.clear();
             shifts.resize(work.region.bodies.len(), [0.0; 3]);
             work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
+            let share = self.sound_share(&work.region, shifts);
             for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
                 let state = self.flyer(body).unwound_at(self.now);
-                let position = state.position + DVec2::new(x, y);
-                let moved = BodyState { position, angle: state.angle + turn, ..state };
+                let position = state.position + share * DVec2::new(x, y);
+                let moved = BodyState { position, angle: state.angle + share * turn, ..state };
                 self.flyers[body.index()].fly_from(self.now, moved);
             }
         }
         self.ticks = ticks;
         moves
+    }
+
+    /// The part of a displacement (x, y, angle) of each of a region's bodies along which gaps are nearly linear.
+    fn sound_share(&self, region: &Region, shifts: &[[f64; 3]]) -> f64 {
+        let shares = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
+            let longest = LONGEST_WAY * self.flyer(body).reach();
+            let way = x.hypot(*y) + turn.abs() * self.flyer(body).reach();
+            if way > longest { longest / way } else { 1.0 }
+        });
+        shares.fold(1.0, f64::min)
     }
 
     /// Sets up the least displacement of a region's bodies that leaves no gap less than its target; false if none is.
