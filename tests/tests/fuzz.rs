@@ -295,7 +295,6 @@ const COARSE_BROKEN: &[(u64, &str)] = &[
         40_000_998,
         "a light block on a stiff spring was touched again and again without force, deeper each time",
     ),
-    (40_002_645, "the same in a round room"),
     (40_001_625, "the same of a block under a ring, half a mile large"),
     (40_004_961, "what others kept from being lifted was lifted at each step anew"),
     (40_001_854, "a rope was longer each time it had been taut without force"),

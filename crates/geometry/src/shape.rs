@@ -179,20 +179,23 @@ impl Shape {
         })
     }
 
-    /// True if the outline goes on straight and smoothly beyond an arc, at the end that is nearer to a direction from its centre
-    /// [body coordinates]; false of all but arcs.
+    /// True if the outline goes on straight and smoothly beyond an arc that bulges outwards, at the end that is nearer to a direction
+    /// from its centre [body coordinates]; false of all other features.
     #[must_use]
     pub fn goes_on_straight(&self, arc: FeatureId, direction: DVec2) -> bool {
-        let (Some(EdgeId { path, edge }), Feature::Round(round)) = (self.whole_edge(arc), self.feature(arc))
-        else {
-            return false;
-        };
-        let Some([from, to]) = round.range.ends() else { return false };
+        let FeatureSource { path, edge, kind } = self.source(arc);
+        let Feature::Round(round) = self.feature(arc) else { return false };
+        let ends = round.range.ends().filter(|_| kind == FeatureKind::ConvexArc);
+        let Some([from, to]) = ends else { return false };
         let (edges, edge) = (self.parts.paths[path as usize].edges(), edge as usize);
-        let is_after = direction.dot(to) > direction.dot(from);
-        let neighbour = if is_after { edge + 1 } else { edge + edges.len() - 1 } % edges.len();
-        let is_smooth = self.ends_of(arc)[usize::from(is_after)].is_none();
-        is_smooth && matches!(edges[neighbour], Edge::Line(_))
+        let neighbour = if direction.dot(to) > direction.dot(from) {
+            let after = &edges[(edge + 1) % edges.len()];
+            is_smooth(&edges[edge], after).then_some(after)
+        } else {
+            let before = &edges[(edge + edges.len() - 1) % edges.len()];
+            is_smooth(before, &edges[edge]).then_some(before)
+        };
+        matches!(neighbour, Some(Edge::Line(_)))
     }
 
     /// The edges that end and start at a corner; `None` for an edge.

@@ -179,7 +179,7 @@ impl World {
     }
 
     /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut within their zone, and
-    /// without contact forces as far as they sink in a step.
+    /// where contacts carry impulses only, by as much as bodies sink in a step and are put back.
     fn connectors_off(&self, share: f64, findings: &mut Vec<Finding>) {
         if self.connectors().is_empty() {
             return;

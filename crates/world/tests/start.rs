@@ -88,6 +88,17 @@ fn larger_errors_are_refused_by_name() {
 }
 
 #[test]
+fn a_body_that_is_many_times_its_size_off_is_put_together() {
+    let settings = WorldSettings { start_connector_error: Some(0.5), ..WorldSettings::default() };
+    let mut builder = WorldBuilder::new(settings);
+    let state = BodyState { position: DVec2::new(0.3, 2.25), ..BodyState::default() };
+    let bead = builder.add(BodySpec::movable("bead", Shape::disc(0.01).expect("a fine radius"), 1.0, state));
+    let joint = builder.add_connector(rod(at(0.0, 0.0), center(bead), 2.0));
+    let world = build(builder);
+    assert!(world.connector_error(joint) < 1e-14, "{}", world.connector_error(joint));
+}
+
+#[test]
 fn connectors_are_no_farther_apart_for_a_coarse_zone() {
     // Two rods that are 50 micrometres too short for what is between them, where bodies touch within millimetres.
     let overrides =

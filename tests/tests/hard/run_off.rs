@@ -31,7 +31,7 @@ fn a_block_that_slides_off_a_wedge_bounces_off_the_floor() {
 /// A block lies on the rounds of two of its corners when a disc falls on it: it turns over the flat between them, and where a body
 /// may be a millimetre off it stands on one by the time that the other comes down. Both hold it then.
 #[test]
-fn a_block_with_round_corners_rocks_no_longer_than_one_with_sharp_ones() {
+fn a_block_with_round_corners_comes_to_rest_in_few_blows_as_one_with_sharp_ones() {
     for radius in [0.0, 0.1, 0.25, 0.4] {
         let shape = if radius == 0.0 {
             "block = { width = 1.48, height = 0.99 }".to_owned()

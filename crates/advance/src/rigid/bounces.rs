@@ -67,11 +67,12 @@ impl RigidSystem {
         Some((self.pairs.between(a, b)?, features))
     }
 
-    /// The largest gap [m] at which the features of a record have touched, if they did before.
-    #[cold]
-    pub(crate) fn formed_at(&self, record: &Collision) -> Option<f64> {
-        let (pair, features) = self.features_of(record)?;
-        self.pairs.seen(pair).iter().find(|seen| seen.features == features).map(|seen| seen.formed)
+    /// The largest gap [m] at which the features of a record have touched, or touch now.
+    pub(crate) fn formed_at(&self, record: &Collision) -> f64 {
+        let before = self.features_of(record).and_then(|(pair, features)| {
+            self.pairs.seen(pair).iter().find(|seen| seen.features == features).map(|seen| seen.formed)
+        });
+        before.unwrap_or(record.geometry.distance)
     }
 
     /// True if two features that close at a rate [m/s] were seen within the target zone before and have not left it since.

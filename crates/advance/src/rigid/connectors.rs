@@ -14,7 +14,7 @@ use halfgap_collision::{
     RailHint, Rope, RopeSearch, rope_contact,
 };
 
-/// Looks at whether a rope has gone slack before it is taut again.
+/// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
 const LOOKS: u32 = 8;
 
 /// What is known of a connector beside its parts.

@@ -344,7 +344,7 @@ impl RigidSystem {
         self.with_group(&mut group, |dynamics, tools| {
             dynamics.soften_dependent();
             dynamics.end_on_rows(tools);
-            dynamics.lower_lifted();
+            dynamics.leave_lifted();
             dynamics.lower_leaning();
         });
         self.ledger.projections += std::mem::take(&mut group.projected);

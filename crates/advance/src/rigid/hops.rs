@@ -59,7 +59,7 @@ impl RigidSystem {
     }
 
     /// Reach [m] of the larger of the movable bodies of a contact.
-    fn largest_reach(&self, record: &Collision) -> f64 {
+    pub(crate) fn largest_reach(&self, record: &Collision) -> f64 {
         let bodies = [record.parties.primary.body, record.parties.normal.body];
         let movable = bodies.into_iter().filter(|&body| self.is_movable(body));
         movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))

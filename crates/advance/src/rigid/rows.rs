@@ -32,13 +32,13 @@ pub(crate) struct HeldRow {
     /// The primary and the normal body.
     pub(crate) bodies: [BodyId; 2],
     pub(crate) bilateral: bool,
-    /// Gap [m] at which it formed.
+    /// Gap [m] at which it is held: the one at which it formed, but for rows that are lifted.
     pub(crate) gap: f64,
     /// Piece of the rail, of a connector that has one.
     pub(crate) hint: Option<RailHint>,
     /// A corner, sharp or round, that leans off its line.
     pub(crate) leans: bool,
-    /// Its gap is more than it was: it had sunk out of its zone.
+    /// It is lifted into its zone, which is wide enough to be seen.
     pub(crate) is_lifted: bool,
 }
 
@@ -187,7 +187,7 @@ impl Mechanism<'_> {
     }
 
     /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet what touches them
-    /// from behind after half a turn. How far a corner leans does not count.
+    /// from behind after half a turn. How far a sharp corner leans does not count.
     pub(crate) fn overrun(
         &self,
         bodies: [BodyId; 2],

@@ -17,9 +17,13 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
 use halfgap_contact::{Row, SolveError};
 
-/// How far below its zone a row is lifted, in what it may sink at a time: what has just been lifted may sink once.
+/// Part of the reach of a body from which the half-width of its zone can be seen.
+const SEEN: f64 = 1e-4;
+/// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been lifted may sink once.
 const SUNK: f64 = 1.5;
-/// Part of its accuracy by which a rope may be longer when it is lifted.
+/// Depth of an overlap, in target gaps, from which a contact is lifted.
+const DEEPEST: f64 = 0.5;
+/// Part of its accuracy by which a rope or a stop that is lifted stays beyond its end.
 const ROPE_SHARE: f64 = 0.5;
 
 /// Forces this many times larger than all loads together jam.
@@ -301,21 +305,34 @@ impl RigidSystem {
         let bilateral = record.parties.bilateral;
         let lifted = self.lifted(record);
         let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
-        let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted: lifted.is_some() };
+        let is_lifted = lifted.is_some() && self.is_seen(record);
+        let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted };
         Some(self.leaning(row, time))
     }
 
-    /// The gap [m] to which a row is lifted that has sunk out of its zone; `None` of others. What touches without force sinks a little
-    /// each time it is touched, and would be overlapping in the end. A contact that formed lower is left there.
+    /// The gap [m] to which a row is lifted that has sunk too deep; `None` of others. What touches without force sinks a little each
+    /// time it is touched. A contact is lifted before the search takes it for the far side of a body; where zones can be seen, it is
+    /// lifted into its zone, lest bodies overlap, unless it formed lower.
     #[inline]
     fn lifted(&self, record: &Collision) -> Option<f64> {
+        let is_contact = record.connector().is_none();
+        let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest;
         let (lowest, sunk) = (lower_end(record), SUNK * record.tolerances.sink());
-        let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest - sunk;
-        if !lies_deep(lowest) {
+        if !lies_deep(lowest - sunk) {
             return None;
         }
-        let lowest = if record.connector().is_some() { lowest } else { lowest.min(self.formed_at(record)?) };
-        lies_deep(lowest).then_some(lowest)
+        let deepest = -DEEPEST * record.tolerances.target_gap;
+        if !self.is_seen(record) {
+            return (is_contact && lies_deep(deepest)).then_some(deepest);
+        }
+        let formed = if is_contact { self.formed_at(record).max(deepest) } else { lowest };
+        let lowest = lowest.min(formed);
+        lies_deep(lowest - sunk).then_some(lowest)
+    }
+
+    /// True if the zone of a record is so wide, beside its bodies, that one sees where in it they are.
+    fn is_seen(&self, record: &Collision) -> bool {
+        record.tolerances.accuracy > SEEN * self.largest_reach(record)
     }
 
     fn settle_error(

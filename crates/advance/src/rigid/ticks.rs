@@ -14,8 +14,9 @@ use halfgap_collision::{BodyId, BodyState, FeatureRule, GapKinematics};
 use halfgap_contact::{BodyId as RowBody, Problem, Row};
 use halfgap_geometry::{FeatureId, GapSample};
 
-/// Rounds of putting back: gaps are not linear in the displacement, but nearly.
-const ROUNDS: usize = 8;
+/// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a part of the way.
+const ROUNDS: usize = 3;
+const SHORT_ROUNDS: usize = 5;
 /// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
 const LONGEST_WAY: f64 = 0.1;
 /// Part of the reach of the smaller body by which a pair may sink before it fires again.
@@ -100,26 +101,28 @@ impl RigidSystem {
         for &body in &work.region.bodies {
             self.restart_flight(body, self.now);
         }
-        for _ in 0..ROUNDS {
+        let (mut full, mut short) = (0, 0);
+        while full < ROUNDS && short < SHORT_ROUNDS {
             let before = self.potential_of(&work.region);
-            if !self.move_apart(work) {
-                break;
-            }
+            let Some(share) = self.move_apart(work) else { break };
+            *(if share == 1.0 { &mut full } else { &mut short }) += 1;
             self.remeasure(&mut work.region, self.now);
             self.ledger.projections += self.potential_of(&work.region) - before;
         }
     }
 
-    /// One round; false if nothing had to move.
-    fn move_apart(&mut self, work: &mut EventWork) -> bool {
+    /// One round: tells which part of the way it went; `None` if nothing had to move.
+    fn move_apart(&mut self, work: &mut EventWork) -> Option<f64> {
         let mut ticks = std::mem::take(&mut self.ticks);
         let moves = self.is_sunk(&work.region, &mut ticks) && work.settling.solve(&ticks.problem).is_ok();
+        let mut moved = None;
         if moves {
             let Ticks { shifts, rows, .. } = &mut ticks;
             shifts.clear();
             shifts.resize(work.region.bodies.len(), [0.0; 3]);
             work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
             let share = self.sound_share(&work.region, shifts);
+            moved = Some(share);
             for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
                 let state = self.flyer(body).unwound_at(self.now);
                 let position = state.position + share * DVec2::new(x, y);
@@ -128,7 +131,7 @@ impl RigidSystem {
             }
         }
         self.ticks = ticks;
-        moves
+        moved
     }
 
     /// The part of a displacement (x, y, angle) of each of a region's bodies along which gaps are nearly linear.

@@ -396,17 +396,18 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Lets contacts that others keep from being lifted stay where they are: what contradicts the rest would do so at each step.
-    pub(crate) fn lower_lifted(&mut self) {
+    /// Lets contacts stay where they are if lifting some has not brought them to their gaps: where rows contradict each other, each step
+    /// would be thrown off anew.
+    pub(crate) fn leave_lifted(&mut self) {
         let Group { bodies, end_state, rows, .. } = &mut *self.group;
         if !rows.iter().any(|row| row.is_lifted) {
             return;
         }
         self.stage.load(bodies, end_state);
         let mechanism = &self.physics.mechanism;
-        for row in rows.iter_mut().filter(|row| row.is_lifted) {
+        for row in rows.iter_mut().filter(|row| !row.bilateral) {
             let gap = mechanism.gap(row, &self.stage.movings);
-            if gap < row.gap - mechanism.tolerances.sink() {
+            if (gap - row.gap).abs() > mechanism.tolerances.sink() {
                 row.gap = gap;
             }
         }

@@ -322,6 +322,13 @@ fn outlines_go_on_straight_beyond_round_corners_and_not_beyond_sharp_ones() {
     let arc = EdgeSpec::Arc { to: -DVec2::X, center: DVec2::ZERO, clockwise: false };
     let spec = PathSpec { start: DVec2::X, edges: vec![arc, EdgeSpec::Line { to: DVec2::X }] };
     assert_eq!(straight(&Shape::from_paths(&[spec]).expect("half a disc")), [Some([false; 2])]);
+    // A quarter disc on a block as wide: the arc goes on straight at its end, and starts at a corner.
+    let arc = EdgeSpec::Arc { to: DVec2::X, center: DVec2::ZERO, clockwise: true };
+    let sides = [DVec2::new(1.0, -1.0), DVec2::new(0.0, -1.0), DVec2::Y].map(|to| EdgeSpec::Line { to });
+    let edges = std::iter::once(arc).chain(sides).collect();
+    let quarter =
+        Shape::from_paths(&[PathSpec { start: DVec2::Y, edges }]).expect("a quarter disc on a block");
+    assert_eq!(straight(&quarter), [Some([true, false])]);
     let block = Shape::block(2.0, 1.0).expect("fine sides");
     assert!(ids(&block).into_iter().all(|id| !block.goes_on_straight(id, DVec2::Y)));
 }

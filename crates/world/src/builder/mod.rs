@@ -181,7 +181,7 @@ impl WorldBuilder {
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
-        // Connectors have no zone to be coarse.
+        // Connectors that contradict each other are together as nearly as the tolerance asks, however wide the zones of contacts.
         let derived = scales.tolerances(self.settings.tolerance, &ToleranceOverrides::default());
         let rules = StartRules {
             tolerances: &tolerances,
@@ -248,8 +248,8 @@ impl WorldBuilder {
     fn step_warning(&self) -> Option<String> {
         let settings = &self.settings;
         let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
-        let movable = self.bodies.iter().zip(&self.laws).filter(|(body, _)| body.inertia.is_some());
-        let rates = movable.map(|(body, law)| (&body.name, law.linear_rate.max(law.angular_rate)));
+        let bodies = self.bodies.iter().zip(&self.laws);
+        let rates = bodies.map(|(body, law)| (&body.name, law.linear_rate.max(law.angular_rate)));
         let (name, rate) = rates.max_by(|p, q| p.1.total_cmp(&q.1))?;
         let longest = method(settings.integrator).stability_limit()? / rate;
         (step > longest).then(|| {

@@ -11,8 +11,8 @@ use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Settings, Solution, 
 /// Contradiction between dependent connectors, in units of the largest gap, that a round may leave to the next: gaps
 /// are curved, so those of a linkage with more bars than it needs agree only to second order.
 const INCONSISTENCY: f64 = 1e-2;
-/// Part of its reach by which a body is moved in a round: farther, gaps are curved by too much.
-const LONGEST_WAY: f64 = 0.1;
+/// Angle [rad] by which a body is turned in a round at most: farther, gaps are curved by too much.
+const LARGEST_TURN: f64 = 0.1;
 /// A rate of so many machine epsilons of the velocities that make it up is zero.
 const RATE_ROUNDINGS: f64 = 64.0;
 
@@ -24,24 +24,22 @@ struct Correction {
     bilateral: bool,
 }
 
-/// Moves the bodies so that gaps and connectors come to fit, to first order, or a part of the way; false if that cannot be done.
+/// Moves the bodies so that gaps and connectors come to fit, to first order, or a part of the way: tells which; `None` if that
+/// cannot be done.
 pub(super) fn correct_positions(
     bodies: &mut [StartParts],
     records: &[Collision],
     connectors: &[Connector],
-) -> bool {
+) -> Option<f64> {
     let corrections: Vec<_> = records.iter().map(lift).chain(join(bodies, connectors)).collect();
-    let Some(changes) = least_changes(bodies, &corrections) else { return false };
-    let shares = bodies.iter().zip(&changes).map(|((body, ..), [x, y, angle])| {
-        let (way, reach) = (x.hypot(*y) + angle.abs() * body.shape.reach(), body.shape.reach());
-        if way > LONGEST_WAY * reach { LONGEST_WAY * reach / way } else { 1.0 }
-    });
-    let share = shares.fold(1.0, f64::min);
+    let changes = least_changes(bodies, &corrections)?;
+    let turn = changes.iter().fold(0.0f64, |most, change| most.max(change[2].abs()));
+    let share = if turn > LARGEST_TURN { LARGEST_TURN / turn } else { 1.0 };
     for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
         state.position += share * DVec2::new(change[0], change[1]);
         state.angle += share * change[2];
     }
-    true
+    Some(share)
 }
 
 /// True if a gap can be lifted while the connectors come to fit, whatever else touches.

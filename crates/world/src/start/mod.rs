@@ -5,7 +5,7 @@
 //! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0
 //! (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated
 //! until they fit, by steps along which they are not curved by much. `tight` knows the pairs for which that cannot be: they keep
-//! their gap. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves for displacements
+//! their gap, and all others are lifted from where they were given. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves for displacements
 //! and for velocities.
 
 mod correction;
@@ -23,9 +23,11 @@ use joined::{ConnectorOff, require_small_errors, worst_connector};
 use tight::TightPairs;
 use touching::{deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touching};
 
-/// Rounds of correction; each leaves an error of second order in the displacement.
+/// Rounds of correction that go all the way; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
-/// A round that leaves more than this part of the connectors' error has come to the end of what can be had.
+/// Rounds beside these that go a part of the way, lest bodies turn by too much.
+const MOST_SHORT_ROUNDS: u32 = 100;
+/// A round all the way that leaves more than this part of the connectors' error has come to the end of what can be had.
 const LEAST_GAIN: f64 = 0.5;
 
 /// A body, what acts on it in flight, and its state at the start.
@@ -84,9 +86,8 @@ pub(crate) fn correct_start(
     require_shallow(bodies, named, pairs, rules.overlap)?;
     require_small_errors(bodies, named, connectors, rules.connector_error)?;
     let given: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
-    let mut last_error = f64::INFINITY;
     let mut tight = TightPairs::default();
-    let mut round = 0;
+    let mut rounds = Rounds::default();
     loop {
         // What has been moved may have come near others, and deeper into them.
         let pairs = rules.near_pairs(&mut near, bodies);
@@ -95,27 +96,57 @@ pub(crate) fn correct_start(
         records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
-        let has_stalled = error > LEAST_GAIN * last_error;
-        let is_done = too_near.is_none() && fits(error, has_stalled, rules);
+        let is_done = too_near.is_none() && fits(error, rounds.have_stalled(error), rules);
         let overlap = if is_done { deep_overlap(bodies, pairs, rules.rounding, &ways) } else { None };
         if is_done && overlap.is_none() {
             break;
         }
-        let is_stuck = is_done || round == MOST_ROUNDS || !correct_positions(bodies, &records, connectors);
-        (round, last_error) = (round + 1, error);
-        if is_stuck {
-            let failure = || cannot_correct(too_near, overlap, off, named, connectors);
-            bodies.iter_mut().zip(&given).for_each(|((_, _, state), given)| *state = *given);
-            if !widen(&mut tight, bodies, connectors, (rules, &mut near)) {
-                return Err(failure());
-            }
-            (round, last_error) = (0, f64::INFINITY);
+        let goes_on = !is_done && rounds.are_left();
+        let share = if goes_on { correct_positions(bodies, &records, connectors) } else { None };
+        if let Some(share) = share {
+            rounds.note(share, error);
+            continue;
         }
+        let failure = || cannot_correct(too_near, overlap, off, named, connectors);
+        // Where it has led is of no use: what can be lifted is lifted anew, without what cannot.
+        bodies.iter_mut().zip(&given).for_each(|((_, _, state), given)| *state = *given);
+        if !widen(&mut tight, bodies, connectors, (rules, &mut near)) {
+            return Err(failure());
+        }
+        rounds = Rounds::default();
     }
     let apart = correct_velocities(bodies, named, connectors)?;
     let moves =
         bodies.iter().zip(&given).map(|((_, _, state), given)| state.position.distance(given.position));
     Ok(Corrected { displacement: moves.fold(0.0, f64::max), apart })
+}
+
+/// The rounds of a correction so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rounds {
+    /// All the way, and a part of it.
+    full: u32,
+    short: u32,
+    /// The connectors' error [m] before the last round, if that went all the way.
+    before: Option<f64>,
+}
+
+impl Rounds {
+    fn are_left(&self) -> bool {
+        self.full < MOST_ROUNDS && self.short < MOST_SHORT_ROUNDS
+    }
+
+    /// Notes a round that went so large a part of the way, from an error of the connectors [m].
+    fn note(&mut self, share: f64, error: f64) {
+        let is_full = share == 1.0;
+        *(if is_full { &mut self.full } else { &mut self.short }) += 1;
+        self.before = is_full.then_some(error);
+    }
+
+    /// True if the last round has not made the connectors' error [m] much less.
+    fn have_stalled(&self, error: f64) -> bool {
+        self.before.is_some_and(|before| error > LEAST_GAIN * before)
+    }
 }
 
 /// Lets the pairs that are too near where the bodies were given keep their gaps; false if none is left that can.
