@@ -6,11 +6,12 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --billiard 4711   # the same without forces, ties and loss
 //! cargo run --release -p halfgap-tests --example fuzz -- --shrink 4711     # prints a smaller one that fails alike
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --coarse   # with zones that one can see
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --varied   # reference scenes with other numbers
 //! ```
 //!
 //! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.
 
-use halfgap_tests::generate::{billiard_of_seed, coarse_of_seed, scene_of_seed};
+use halfgap_tests::generate::{billiard_of_seed, coarse_of_seed, scene_of_seed, variation_of_seed};
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
 use halfgap_tests::shrink::shrink;
 use serde_json::Value;
@@ -34,19 +35,21 @@ Runs generated scenes and counts what became of them.
   --scene S     prints the scene of a seed
   --billiard S  the same without forces, ties and loss
   --shrink S    prints a smaller one that fails alike
-  --coarse      in all of this, scenes with zones that one can see";
+  --coarse      in all of this, scenes with zones that one can see
+  --varied      or reference scenes with other numbers";
 
 /// Options that a number follows, and those of the processes that this one starts.
 const WITH_NUMBER: [&str; 6] = ["--count", "--seed", "--jobs", "--scene", "--billiard", "--shrink"];
 const WORKER: &str = "--worker";
 const COARSE: &str = "--coarse";
+const VARIED: &str = "--varied";
 
 /// What is wrong with the arguments, if something is.
 fn complaint(arguments: &[String]) -> Option<String> {
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let takes_number = WITH_NUMBER.contains(&argument.as_str());
-        if !takes_number && ![WORKER, COARSE].contains(&argument.as_str()) {
+        if !takes_number && ![WORKER, COARSE, VARIED].contains(&argument.as_str()) {
             return Some(format!("\"{argument}\" is no option"));
         }
         if takes_number && rest.next().is_none_or(|number| number.parse::<u64>().is_err()) {
@@ -72,7 +75,11 @@ fn main() {
     };
     let has = |name: &str| arguments.iter().any(|argument| argument == name);
     let (first, count) = (number("--seed", 1), number("--count", 1000));
-    let scenes = if has(COARSE) { Scenes::Coarse } else { Scenes::Fine };
+    let scenes = match () {
+        () if has(COARSE) => Scenes::Coarse,
+        () if has(VARIED) => Scenes::Varied,
+        () => Scenes::Fine,
+    };
     if has("--scene") {
         println!("{:#}", scenes.of_seed(number("--scene", 1)));
     } else if has("--billiard") {
@@ -93,6 +100,8 @@ enum Scenes {
     Fine,
     /// With zones that one can see.
     Coarse,
+    /// Reference scenes with other numbers.
+    Varied,
 }
 
 impl Scenes {
@@ -100,6 +109,16 @@ impl Scenes {
         match self {
             Self::Fine => scene_of_seed(seed),
             Self::Coarse => coarse_of_seed(seed),
+            Self::Varied => variation_of_seed(seed),
+        }
+    }
+
+    /// The option that asks for them.
+    fn option(self) -> Option<&'static str> {
+        match self {
+            Self::Fine => None,
+            Self::Coarse => Some(COARSE),
+            Self::Varied => Some(VARIED),
         }
     }
 }
@@ -221,7 +240,7 @@ fn spawn(scenes: Scenes, first: u64, count: u64) -> (Child, Receiver<String>) {
     let program = std::env::current_exe().expect("this program has a path");
     let mut child = Command::new(program)
         .args([WORKER, "--seed", &first.to_string(), "--count", &count.to_string()])
-        .args(matches!(scenes, Scenes::Coarse).then_some(COARSE))
+        .args(scenes.option())
         .stdout(Stdio::piped())
         .spawn()
         .expect("a process can be started");

@@ -28,6 +28,16 @@ pub fn reference_scene(name: &str) -> Scene {
     Scene::read(data(&format!("scenes/{name}.json"))).expect("a reference scene can be read")
 }
 
+/// One of the reference scenes as its file holds it.
+///
+/// # Panics
+/// If it cannot be read: the test fails.
+#[must_use]
+pub fn reference_scene_file(name: &str) -> serde_json::Value {
+    let text = std::fs::read_to_string(data(&format!("scenes/{name}.json")));
+    serde_json::from_str(&text.expect("a reference scene can be read")).expect("it is JSON")
+}
+
 /// Parses a scene and builds its world.
 ///
 /// # Panics

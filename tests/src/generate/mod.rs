@@ -1,10 +1,13 @@
 //! Scenes from seeds: a dozen bodies at most, of all shapes, tied and pushed in all ways, with extreme but legal numbers.
 //!
 //! A scene is made as JSON, as a file would hold it: what a seed makes can be written down, run by the command and made
-//! smaller. `shapes` makes the shapes, `ties` the connectors and forces.
+//! smaller. `shapes` makes the shapes, `ties` the connectors and forces; `variations` changes the reference scenes instead.
 
 mod shapes;
 mod ties;
+mod variations;
+
+pub use variations::variation_of_seed;
 
 use crate::random::Random;
 use halfgap::World;
