@@ -355,7 +355,7 @@ fn a_rope_whose_ends_meet_has_some_normal() {
     let mover = Path { velocity: DVec2::new(0.3, -4.0), spin: 2.0, ..STILL };
     let sample = rope.measure(0, &mover.at(0.0), &STILL.at(0.0));
     assert_eq!((sample.gap, sample.normal, sample.kinematics.gamma), (2.0, DVec2::X, 0.0));
-    assert_eq!(rope.error(&mover.at(0.0), &STILL.at(0.0)), 0.0);
+    assert_eq!(rope.error(&mover.at(0.0), &STILL.at(0.0), None), 0.0);
 }
 
 #[test]

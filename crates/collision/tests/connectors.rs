@@ -59,22 +59,26 @@ fn aligned_connectors_are_satisfied() {
     };
     for kind in two_body_kinds() {
         let connector = fine(kind);
-        assert!(connector.error(&a, &b) > 0.1, "{connector:?}");
+        assert!(connector.error(&a, &b, None) > 0.1, "{connector:?}");
         for can_move in [[true, true], [false, true], [true, false]] {
             let found = connector.align(&a.pose, &b.pose, can_move).expect("one may move");
             assert_eq!(found.moves_b, can_move[1]);
             let (a, b) =
                 if found.moves_b { (a, moved(&b, found.shift)) } else { (moved(&a, found.shift), b) };
-            assert!(connector.error(&a, &b) < 1e-15, "{connector:?}: {}", connector.error(&a, &b));
+            assert!(
+                connector.error(&a, &b, None) < 1e-15,
+                "{connector:?}: {}",
+                connector.error(&a, &b, None)
+            );
         }
         assert_eq!(connector.align(&a.pose, &b.pose, [false, false]), None);
     }
     for kind in rail_kinds() {
         let connector = fine(kind);
-        assert!(connector.error(&a, &Moving::BACKGROUND) > 0.1, "{connector:?}");
+        assert!(connector.error(&a, &Moving::BACKGROUND, None) > 0.1, "{connector:?}");
         let found = connector.align(&a.pose, &Pose::IDENTITY, [true, true]).expect("a may move");
         assert!(!found.moves_b);
-        let error = connector.error(&moved(&a, found.shift), &Moving::BACKGROUND);
+        let error = connector.error(&moved(&a, found.shift), &Moving::BACKGROUND, None);
         assert!(error < 1e-15 * 4.0, "{connector:?}: {error}");
         assert_eq!(connector.align(&a.pose, &Pose::IDENTITY, [false, true]), None);
     }
@@ -86,11 +90,11 @@ fn what_is_satisfied_is_not_moved() {
     let rope = fine(ConnectorKind::Rope { a, b, length: 2.0 });
     let near = [still(0.5, 0.0, 0.0), still(0.0, 1.0, 0.0)];
     let found = rope.align(&near[0].pose, &near[1].pose, [true, true]).expect("both may move");
-    assert_eq!((found.shift, rope.error(&near[0], &near[1])), (DVec2::ZERO, 0.0));
+    assert_eq!((found.shift, rope.error(&near[0], &near[1], None)), (DVec2::ZERO, 0.0));
     let stop = fine(ConnectorKind::RailStop { a, path: arch(), at: 1.0, upper: false });
     let top = still(0.0, 2.0, 0.0);
     let found = stop.align(&top.pose, &Pose::IDENTITY, [true, true]).expect("a may move");
-    assert_eq!((found.shift, stop.error(&top, &Moving::BACKGROUND)), (DVec2::ZERO, 0.0));
+    assert_eq!((found.shift, stop.error(&top, &Moving::BACKGROUND, None)), (DVec2::ZERO, 0.0));
 }
 
 #[test]
@@ -115,6 +119,35 @@ fn a_stop_counts_what_is_left_of_the_rail() {
     assert!((gap(&circle, 0.0, false, &at_angle(-1.0)) - (4.0 * quarter - 2.0)).abs() < 1e-14);
     assert!((gap(&circle, 4.0 * quarter, true, &at_angle(0.1)) + 0.2).abs() < 1e-14);
     assert!((gap(&circle, 6.0, true, &at_angle(1.0)) - 4.0).abs() < 1e-14);
+}
+
+#[test]
+fn where_a_rail_crosses_itself_a_stop_goes_by_where_its_point_was_seen() {
+    let edges = [
+        EdgeSpec::Line { to: DVec2::new(1.0, 0.0) },
+        EdgeSpec::Arc { to: DVec2::new(0.0, 1.0), center: DVec2::ONE, clockwise: false },
+        EdgeSpec::Line { to: DVec2::new(0.0, -3.0) },
+    ];
+    let path = RailPath::from_edges(DVec2::new(-3.0, 0.0), &edges).expect("a fine path");
+    let seen = [DVec2::new(-0.1, 0.0), DVec2::new(0.0, 0.1)].map(|point| path.hint_near(point, None));
+    let beyond = 1.5 * std::f64::consts::PI;
+    let (a, path, crossing) = (anchor(0, 0.0, 0.0), Arc::new(path), still(0.0, 0.0, 0.0));
+    for (upper, errors) in [(true, [0.0, beyond]), (false, [2.0, 0.0])] {
+        let stop = fine(ConnectorKind::RailStop { a, path: path.clone(), at: 5.0, upper });
+        let found = seen.map(|hint| stop.error(&crossing, &Moving::BACKGROUND, Some(&hint)));
+        assert!(found.iter().zip(errors).all(|(found, error)| (found - error).abs() < 1e-14), "{found:?}");
+    }
+}
+
+#[test]
+fn a_point_that_a_rail_has_seen_may_be_on_a_continuation_that_passes_the_path() {
+    let edges = [(0.0, 4.0), (1.0, 4.0), (1.0, -2.0)].map(|(x, y)| EdgeSpec::Line { to: DVec2::new(x, y) });
+    let path = RailPath::from_edges(DVec2::ZERO, &edges).expect("a fine path");
+    let (hint, a) = (path.hint_near(DVec2::ZERO, None), anchor(0, 0.0, 0.0));
+    let rail = fine(ConnectorKind::Rail { a, path: Arc::new(path) });
+    let beyond = still(0.0, -1.5, 0.0);
+    assert_eq!(rail.error(&beyond, &Moving::BACKGROUND, Some(&hint)), 0.0);
+    assert_eq!(rail.error(&beyond, &Moving::BACKGROUND, None), 1.0);
 }
 
 #[test]

@@ -484,3 +484,21 @@ fn what_is_no_rail_is_refused() {
     let misfit = EdgeSpec::Arc { to: at(2.0, 0.0), center: at(1.3, 0.0), clockwise: true };
     assert!(matches!(edges(&[misfit]), RailError::Arc { edge: 0, .. }));
 }
+
+#[test]
+fn beyond_an_open_end_the_distance_is_that_from_the_nearest_continuation() {
+    // One starts and ends at the same place, in directions of its own; the others pass their own continuation.
+    let drop = spline(&[(0.0, 0.0), (1.0, 2.0), (0.0, 3.0), (-1.0, 2.0), (0.0, 0.0)], false);
+    let hook = spline(&[(0.0, 0.0), (0.0, 4.0), (2.0, 5.0), (1.0, 0.0)], false);
+    let lines = [(0.0, 4.0), (1.0, 4.0), (1.0, -2.0)].map(|(x, y)| EdgeSpec::Line { to: at(x, y) });
+    let edged = RailPath::from_edges(DVec2::ZERO, &lines).expect("a fine path");
+    for path in [drop, hook, edged] {
+        for (end, way) in [(path.place_at(0.0), -1.0), (path.place_at(path.length()), 1.0)] {
+            for (along, aside) in [(0.0, 0.0), (0.1, 0.0), (2.0, 1e-3), (10.0, 0.0)] {
+                let beyond = end.point() + way * along * end.tangent() + aside * end.normal();
+                let distance = path.distance(beyond);
+                assert!((distance - aside).abs() < 1e-12, "{distance} m at {along} m beyond an end");
+            }
+        }
+    }
+}

@@ -255,12 +255,12 @@ impl World {
     /// If there is no such connector.
     #[must_use]
     pub fn connector_error(&self, connector: ConnectorId) -> f64 {
-        let connector = &self.connectors[connector.index()];
+        let (hint, connector) = (self.system.rail_hint(connector), &self.connectors[connector.index()]);
         let moving = |body: BodyId| {
             if body.is_world() { Moving::BACKGROUND } else { Moving::from(&self.state(body)) }
         };
         let [a, b] = connector.bodies().map(moving);
-        connector.error(&a, &b)
+        connector.error(&a, &b, hint)
     }
 
     /// The thresholds of touching, as derived from the tolerance or given.

@@ -30,7 +30,7 @@ use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
 use halfgap_collision::{
-    Body, BodyId, BodyState, BroadPhase, Connector, ConnectorId, Moving, SearchSettings, Tolerances,
+    Body, BodyId, BodyState, BroadPhase, Connector, ConnectorId, Moving, RailHint, SearchSettings, Tolerances,
 };
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use std::sync::Arc;
@@ -296,6 +296,12 @@ impl RigidSystem {
     #[must_use]
     pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
         &self.laws
+    }
+
+    /// Where on its path the point of a rail or of a rail's stop was seen last; `None` for other connectors.
+    #[must_use]
+    pub fn rail_hint(&self, connector: ConnectorId) -> Option<&RailHint> {
+        self.connector_states.get(connector.index())?.hint.as_ref()
     }
 
     /// Pairs of bodies that pass through each other, the lesser id first, sorted.

@@ -308,10 +308,16 @@ impl Connector {
     }
 
     /// How far off it is [m]: the largest gap of a bilateral connector, by how much the others are beyond their limit.
+    ///
+    /// `hint` is where a rail or a stop has seen its point last, as in [`Connector::measure_near`]. A rail's point that has been seen may
+    /// be on any continuation of the path; otherwise, as at a start, only where the nearest place is an end.
     #[must_use]
-    pub fn error(&self, a: &Moving, b: &Moving) -> f64 {
+    pub fn error(&self, a: &Moving, b: &Moving, hint: Option<&RailHint>) -> f64 {
+        if let (ConnectorKind::Rail { a: on_a, path }, Some(_)) = (&self.kind, hint) {
+            return path.distance(a.pose.point_to_world(on_a.point));
+        }
         let off = |row| {
-            let gap = self.measure(row, a, b).gap;
+            let gap = self.measure_near(row, a, b, hint).gap;
             if self.is_bilateral() { gap.abs() } else { (-gap).max(0.0) }
         };
         (0..self.row_count()).map(off).fold(0.0, f64::max)

@@ -202,6 +202,21 @@ impl RailPath {
         }
     }
 
+    /// Distance [m] of a point from the path or, beyond its open ends, from its straight continuations.
+    #[must_use]
+    pub fn distance(&self, point: DVec2) -> f64 {
+        let to_path = self.foot(point, None).gap.abs();
+        if self.is_closed() {
+            return to_path;
+        }
+        let ends = [(self.place_at(0.0), -1.0), (self.place_at(self.length()), 1.0)];
+        let to_rays = ends.iter().filter_map(|(end, outward)| {
+            let seen = point - end.point();
+            (outward * end.tangent().dot(seen) >= 0.0).then(|| end.normal().dot(seen).abs())
+        });
+        to_rays.fold(to_path, f64::min)
+    }
+
     /// [`RailPath::nearest`] without the arc length, which costs as much as everything else.
     #[inline]
     pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {

@@ -51,7 +51,7 @@ pub(super) fn worst_connector(bodies: &[StartParts], connectors: &[Connector]) -
 
 fn error_of(bodies: &[StartParts], connector: &Connector) -> f64 {
     let [a, b] = connector.bodies().map(|body| moving(bodies, body));
-    connector.error(&a, &b)
+    connector.error(&a, &b, None)
 }
 
 /// Every row of every connector that ties a movable body, with the connector's index.
