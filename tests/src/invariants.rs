@@ -34,6 +34,11 @@ const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 const CRAWLS: f64 = 1e-5;
 const PATIENCE: u32 = 4;
 
+/// Step [s] in which what has sunk without contact forces is put back, if the scene says nothing else.
+const IMPULSE_STEP: f64 = 0.025;
+/// Part of its bounding radius that a body may sink before it is stopped again, however fast it comes.
+const SUNK_SHARE: f64 = 1e-2;
+
 /// Ways in which a body is shifted to see how deep it is.
 const DIRECTIONS: u32 = 16;
 
@@ -238,6 +243,8 @@ struct Inspector {
     /// What each connector is, and how far [m] it may be off beside its tolerance: ropes and stops are taut within their zone.
     connectors: Vec<(&'static str, f64)>,
     tolerance: f64,
+    /// How far [m] slow bodies sink where contacts carry impulses only, beside a part of their own size; `None` where they carry forces.
+    sinks: Option<f64>,
     /// The scene says itself what is slow: how much captures take is its own affair.
     slow_is_given: bool,
     turned_over: f64,
@@ -263,6 +270,9 @@ impl Inspector {
                 .map(|connector| (connector.key(), zone(connector, world)))
                 .collect(),
             tolerance: scene.run.tolerance,
+            sinks: (!scene.run.contacts).then(|| {
+                world.tolerances().velocity_tol * scene.run.time_step.unwrap_or(IMPULSE_STEP)
+            }),
             slow_is_given: scene.run.velocity_tol.is_some(),
             turned_over: 0.0,
             start_potential: world.energy().potential,
@@ -290,7 +300,7 @@ impl Inspector {
         for &(a, b) in &self.pairs {
             if let Some(relation) = penetration(world, a, b) {
                 let (depth, names) = (depth(world, a, b), [a, b].map(|body| world.name(body)));
-                let gap = world.tolerances().target_gap;
+                let gap = world.tolerances().target_gap + self.may_sink(world, [a, b]);
                 let what = format!("{names:?}: {relation:?}, about {depth:.0e} m deep, gap {gap:.1e} m");
                 if depth > gap {
                     return broken("penetration", what);
@@ -307,6 +317,12 @@ impl Inspector {
             }
         }
         self.look_at_energy(world).or_else(|(kind, what)| broken(kind, what))
+    }
+
+    /// How far [m] two bodies may sink into each other beyond the target gap.
+    fn may_sink(&self, world: &World, bodies: [BodyId; 2]) -> f64 {
+        let reach = bodies.map(|body| world.shape(body).reach());
+        self.sinks.map_or(0.0, |slow| slow + SUNK_SHARE * reach[0].min(reach[1]))
     }
 
     /// Notes how much energy has been turned over.

@@ -98,7 +98,8 @@ impl RigidSystem {
         // stayed only if it is no faster than forces make it within the zone.
         let went = 0.5 * (up - down).abs() * lasted;
         let forced = FORCED * self.settings.tolerances.velocity_tol / self.settings.resolution_time;
-        seen.gap + rise <= most && (went <= most || down * down <= 2.0 * forced * most)
+        let is_forced = self.settings.impulse_step.is_none() && down * down <= 2.0 * forced * most;
+        seen.gap + rise <= most && (went <= most || is_forced)
     }
 }
 

@@ -22,8 +22,9 @@ const CONTRADICTION: f64 = 1e-3;
 pub(super) const NEARLY: f64 = 1e-5;
 
 /// Growth beyond which no impulses are accepted. A body that is wedged between others a million million times heavier takes
-/// impulses that would make it that much faster than it gets; what their rounding leaves the next pass makes good.
-const GREATEST_GROWTH: f64 = 1e13;
+/// impulses that would make it that much faster than it gets, as does one that lies between blocks of which some lean by a few 1e-5;
+/// what their rounding leaves, a fiftieth of it at this growth, the next pass makes good.
+const GREATEST_GROWTH: f64 = 1e14;
 
 /// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given:
 /// first just beyond what the solver takes for dependent (`Settings::dependence`), then more.
