@@ -270,9 +270,8 @@ impl Inspector {
                 .map(|connector| (connector.key(), zone(connector, world)))
                 .collect(),
             tolerance: scene.run.tolerance,
-            sinks: (!scene.run.contacts).then(|| {
-                world.tolerances().velocity_tol * scene.run.time_step.unwrap_or(IMPULSE_STEP)
-            }),
+            sinks: (!scene.run.contacts)
+                .then(|| world.tolerances().velocity_tol * scene.run.time_step.unwrap_or(IMPULSE_STEP)),
             slow_is_given: scene.run.velocity_tol.is_some(),
             turned_over: 0.0,
             start_potential: world.energy().potential,

@@ -320,3 +320,29 @@ fn a_connector_too_far_out_is_refused_by_name_and_number() {
         assert_eq!(error, whole);
     }
 }
+
+/// Blocks on each other whose places and angles are off by a billionth: what is lifted from one corner comes down on the other, and all
+/// of them lean on each other.
+#[test]
+fn blocks_that_overlap_a_little_with_a_corner_each_are_lifted_together() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let floor = Shape::block(20.0, 1.0).expect("a fine size");
+    builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+    let turns = [-4.9e-10, 5.1e-10, 8.5e-10, 6.2e-10, -4.9e-10, 3.6e-10];
+    let lower = [4.5e-10, -4.8e-10, -0.5e-10, -7.5e-10, -4.1e-10, 2.6e-10];
+    let blocks: Vec<BodyId> = (0..turns.len())
+        .map(|level| {
+            let block = Shape::block(1.0, 1.0).expect("a fine size");
+            let position = DVec2::new(0.0, 0.5 + level as f64 + lower[level]);
+            let state = BodyState { position, angle: turns[level], ..BodyState::default() };
+            builder.add(BodySpec::movable(&format!("block {level}"), block, 1.0, state))
+        })
+        .collect();
+    let world = build(builder);
+    assert!(world.start_correction() < 5e-9, "{} m", world.start_correction());
+    for pair in blocks.windows(2) {
+        let ([a, b], pose) = ([pair[0], pair[1]], |body| world.state(body).pose());
+        let gap = world.shape(a).distance(&pose(a), world.shape(b), &pose(b));
+        assert!(gap.distance > 0.2 * world.tolerances().target_gap, "{gap:?} at {pair:?}");
+    }
+}

@@ -21,7 +21,7 @@ use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
 use tight::TightPairs;
-use touching::{deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touching};
+use touching::{KnownTouches, deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touching};
 
 /// Rounds of correction that go all the way; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
@@ -87,7 +87,7 @@ pub(crate) fn correct_start(
     require_small_errors(bodies, named, connectors, rules.connector_error)?;
     let given: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
     let mut tight = TightPairs::default();
-    let mut rounds = Rounds::default();
+    let (mut rounds, mut known) = (Rounds::default(), KnownTouches::default());
     loop {
         // What has been moved may have come near others, and deeper into them.
         let pairs = rules.near_pairs(&mut near, bodies);
@@ -102,18 +102,21 @@ pub(crate) fn correct_start(
             break;
         }
         let goes_on = !is_done && rounds.are_left();
-        let share = if goes_on { correct_positions(bodies, &records, connectors) } else { None };
-        if let Some(share) = share {
-            rounds.note(share, error);
-            continue;
+        let failure = cannot_correct(too_near, overlap, off, named, connectors);
+        if goes_on {
+            known.complete(&mut records, bodies, rules);
+            if let Some(share) = correct_positions(bodies, &records, connectors) {
+                rounds.note(share, error);
+                continue;
+            }
         }
-        let failure = || cannot_correct(too_near, overlap, off, named, connectors);
         // Where it has led is of no use: what can be lifted is lifted anew, without what cannot.
         bodies.iter_mut().zip(&given).for_each(|((_, _, state), given)| *state = *given);
         if !widen(&mut tight, bodies, connectors, (rules, &mut near)) {
-            return Err(failure());
+            return Err(failure);
         }
         rounds = Rounds::default();
+        known.clear();
     }
     let apart = correct_velocities(bodies, named, connectors)?;
     let moves =

@@ -4,7 +4,8 @@ use super::{StartParts, StartRules};
 use crate::overlap::overlap_depth;
 use crate::world::Named;
 use crate::world_error::WorldError;
-use halfgap_collision::{BodyId, Collision, Moment, Moving, detect_pair};
+use halfgap_collision::{BodyId, Collision, Moment, Moving, detect_pair, record_features};
+use halfgap_geometry::FeatureId;
 
 /// Refuses overlaps deeper than allowed [m].
 pub(super) fn require_shallow(
@@ -50,16 +51,55 @@ pub(super) fn touching(
     rules: &StartRules<'_>,
     ways: &[f64],
 ) -> Vec<Collision> {
-    let moment = |id: BodyId| {
-        let (body, _, state) = &bodies[id.index()];
-        Moment { id, body, moving: Moving::from(state) }
-    };
     let mut records = Vec::new();
     for &(a, b) in pairs {
         let depth = rules.overlap + ways[a.index()] + ways[b.index()];
-        detect_pair(&moment(a), &moment(b), rules.tolerances, depth, 0.0, &mut records);
+        detect_pair(&moment(bodies, a), &moment(bodies, b), rules.tolerances, depth, 0.0, &mut records);
     }
     records
+}
+
+fn moment(bodies: &[StartParts], id: BodyId) -> Moment<'_> {
+    let (body, _, state) = &bodies[id.index()];
+    Moment { id, body, moving: Moving::from(state) }
+}
+
+/// Two features that touched in some round of a correction, the lesser body's first.
+type Touch = ([BodyId; 2], [FeatureId; 2]);
+
+/// Which features touched in the rounds of a correction so far. What was lifted from one corner comes down on the other: unless the
+/// first is known then, it is lowered again as far as the second is lifted, and so on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct KnownTouches(Vec<Touch>);
+
+impl KnownTouches {
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Adds to the records of a round those of features that touched before and are farther apart by now; and notes all.
+    pub(super) fn complete(
+        &mut self,
+        records: &mut Vec<Collision>,
+        bodies: &[StartParts],
+        rules: &StartRules<'_>,
+    ) {
+        let mut present: Vec<Touch> = records.iter().filter_map(touch).collect();
+        for &known in self.0.iter().filter(|known| !present.contains(known)) {
+            let ([a, b], features) = known;
+            let moments = [&moment(bodies, a), &moment(bodies, b)];
+            records.extend(record_features(moments, features, rules.tolerances, 0.0));
+        }
+        present.retain(|touch| !self.0.contains(touch));
+        self.0.append(&mut present);
+    }
+}
+
+fn touch(record: &Collision) -> Option<Touch> {
+    let mut sides = [&record.parties.primary, &record.parties.normal];
+    sides.sort_by_key(|side| side.body);
+    let [a, b] = sides;
+    Some(([a.body, b.body], [a.feature()?, b.feature()?]))
 }
 
 /// True for a place where two bodies are nearer than the target zone.
