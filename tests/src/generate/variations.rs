@@ -165,18 +165,11 @@ fn pair(vector: &Value) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use halfgap::World;
-    use halfgap::scene::{Scene, SceneFormat};
+    use crate::generate::tests::how_many_can_be_built;
 
     #[test]
     fn variations_are_legal_and_most_can_be_built() {
-        let mut built = 0;
-        for seed in 0..200 {
-            let text = variation_of_seed(seed).to_string();
-            let scene =
-                Scene::parse(&text, SceneFormat::Json).unwrap_or_else(|error| panic!("{seed}: {error}"));
-            built += usize::from(World::from_scene(&scene).is_ok());
-        }
+        let built = how_many_can_be_built(200, variation_of_seed);
         assert!(built > 150, "{built} of 200");
     }
 }
