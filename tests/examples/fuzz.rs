@@ -56,7 +56,8 @@ fn complaint(arguments: &[String]) -> Option<String> {
             return Some(format!("a number must follow {argument}"));
         }
     }
-    None
+    let is_given = |option: &str| arguments.iter().any(|argument| argument == option);
+    (is_given(COARSE) && is_given(VARIED)).then(|| format!("either {COARSE} or {VARIED}"))
 }
 
 fn main() {
@@ -75,10 +76,12 @@ fn main() {
     };
     let has = |name: &str| arguments.iter().any(|argument| argument == name);
     let (first, count) = (number("--seed", 1), number("--count", 1000));
-    let scenes = match () {
-        () if has(COARSE) => Scenes::Coarse,
-        () if has(VARIED) => Scenes::Varied,
-        () => Scenes::Fine,
+    let scenes = if has(COARSE) {
+        Scenes::Coarse
+    } else if has(VARIED) {
+        Scenes::Varied
+    } else {
+        Scenes::Fine
     };
     if has("--scene") {
         println!("{:#}", scenes.of_seed(number("--scene", 1)));

@@ -311,7 +311,6 @@ fn what_was_broken_once_in_coarse_zones_holds() {
 
 /// Reference scenes with other numbers in which something was wrong once, by seed.
 const VARIED_BROKEN: &[(u64, &str)] = &[
-    (511, "a light block between blocks that lean a little took impulses that were thought too large"),
     (545, "a block that one corner's blow drove onto the other sank there, without contact forces"),
     (817, "a point on the continuation of a rail's end was looked for on that of the other end"),
     (13_090, "blocks on each other, off by a billionth, could not be lifted off each other"),
@@ -319,9 +318,14 @@ const VARIED_BROKEN: &[(u64, &str)] = &[
 
 #[test]
 fn what_was_broken_once_in_variations_holds() {
-    // Jammed blocks that weigh a millionth of their neighbours may overlap by less than the gap.
-    let holds = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));
-    require(VARIED_BROKEN, variation_of_seed, holds);
+    require(VARIED_BROKEN, variation_of_seed, |verdict| *verdict == Verdict::Finished);
+}
+
+/// Blocks between walls, the lightest of which weighs a millionth of its neighbour; it may overlap the floor by less than the gap.
+#[test]
+fn a_light_block_between_heavy_ones_that_lean_a_little_gets_the_impulses_that_it_takes() {
+    let verdict = trial(&variation_of_seed(511).to_string(), PATIENT);
+    assert!(matches!(verdict, Verdict::Finished | Verdict::Shallow(_)), "{verdict:?}");
 }
 
 /// Scenes whose contacts carry impulses only in which something was wrong once, by seed.

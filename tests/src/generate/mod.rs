@@ -26,6 +26,19 @@ const FAR_AWAY: f64 = 0.05;
 const COARSE_GAP: f64 = 5e-3;
 const COARSE_ACCURACY: f64 = 0.6;
 const COARSE_SPEED: f64 = 0.2;
+/// Impact laws: the default one, which most scenes use, thrice.
+const LAWS: [&str; 8] = [
+    "hybrid",
+    "hybrid",
+    "hybrid",
+    "simultaneous",
+    "serial_separate",
+    "serial_grouped",
+    "serial_separate_lastpass",
+    "serial_grouped_lastpass",
+];
+/// Where in them every law comes once from.
+const ONCE_FROM: usize = 2;
 /// Tries to find a free place for a body.
 const TRIES: usize = 60;
 
@@ -138,16 +151,7 @@ fn units(random: &mut Random) -> Units {
 }
 
 fn run(random: &mut Random, units: &Units) -> Value {
-    let law = random.one_of(&[
-        "hybrid",
-        "hybrid",
-        "hybrid",
-        "simultaneous",
-        "serial_separate",
-        "serial_grouped",
-        "serial_separate_lastpass",
-        "serial_grouped_lastpass",
-    ]);
+    let law = random.one_of(&LAWS);
     let mut run = json!({
         "duration": units.time * random.between(0.5, 4.0),
         "tolerance": random.power_of_ten(-12.0, -4.0),

@@ -95,7 +95,8 @@ impl RigidSystem {
         let rise = 0.5 * up * up * lasted / (up + down);
         let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
         // What moved so under a constant acceleration is where it was. Else, as when something has lifted it in between, it has
-        // stayed only if it is no faster than forces make it within the zone.
+        // stayed only if it is no faster than forces make it within the zone. Without contact forces it would sink then, and that is
+        // for what is low beyond doubt.
         let went = 0.5 * (up - down).abs() * lasted;
         let forced = FORCED * self.settings.tolerances.velocity_tol / self.settings.resolution_time;
         let is_forced = self.settings.impulse_step.is_none() && down * down <= 2.0 * forced * most;
