@@ -220,6 +220,13 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         of_rules.fold(self.tolerances.target_gap, f64::max)
     }
 
+    /// The largest distance [m] of two features at which they may fire, beside each other or in each other.
+    fn farthest_touch(&self) -> f64 {
+        let of_rules = self.rules.iter().filter_map(|rule| rule.target).map(f64::abs);
+        let depth = self.tolerances.distance_tol().max(self.settings.depth);
+        of_rules.fold(self.tolerances.target_gap, f64::max) + depth
+    }
+
     /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
     fn directly(&self, from: f64, span: f64) -> Option<Search> {
         let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
@@ -382,7 +389,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let moved = window.speed * half
             + turned(window.spin_a.speed, self.a.shape.reach())
             + turned(window.spin_b.speed, self.b.shape.reach());
-        let reach = self.widest_target() + moved;
+        let reach = self.farthest_touch() + moved;
         let mut progress = Progress::none_before(end);
         let mut tried = 0;
         self.a.shape.tree().visit_near_pairs(

@@ -6,7 +6,7 @@ use halfgap_collision::{
     BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
     disc_contact, first_contact,
 };
-use halfgap_geometry::{EdgeSpec, PathSpec, Shape};
+use halfgap_geometry::{EdgeSpec, FeatureId, PathSpec, Shape};
 
 /// Pairs of bodies that are tried.
 const PAIRS: u64 = 10_000;
@@ -323,6 +323,34 @@ fn a_rule_with_a_wider_gap_than_all_others_fires() {
     let search =
         PairSearch { a: &side_a, b: &side_b, tolerances: &narrow, settings: &settings, rules: &rules };
     assert_eq!(search.step(0.0, 1e-3), Search::Contact(found));
+}
+
+#[test]
+fn a_rule_with_a_gap_far_below_the_surface_fires_however_short_the_search() {
+    // The corner of a block 5 mm below a floor's surface goes on into it, and less far than it is deep while it is searched.
+    let floor = Shape::block(4.0, 1.0).expect("a fine floor");
+    let block = Shape::block(1.3, 0.1).expect("a fine block");
+    let (tilt, speed, deep) = (-0.01_f64, 12.0, 5e-3);
+    let lowest = 0.65 * tilt.sin().abs() + 0.05 * tilt.cos();
+    let state = BodyState {
+        position: DVec2::new(0.0, 0.5 + lowest - deep),
+        angle: tilt,
+        velocity: DVec2::new(0.0, -speed),
+        angular_velocity: 1e-6,
+    };
+    let (rest, fall) = (Flight::fixed(DVec2::ZERO, 0.0), Flight::new(state, DVec2::ZERO, 0.0, 0.0));
+    let side_a = MovingShape { shape: &floor, motion: &rest, offset: 0.0 };
+    let side_b = MovingShape { shape: &block, motion: &fall, offset: 0.0 };
+    let tolerances = Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 };
+    let features = |shape: &Shape| (0..).map(FeatureId).take(shape.features().len()).collect::<Vec<_>>();
+    let all = features(&floor).into_iter().flat_map(|a| features(&block).into_iter().map(move |b| [a, b]));
+    let rules: Vec<FeatureRule> = all.map(|features| FeatureRule { features, target: Some(-6e-3) }).collect();
+    // Windows only: more pairs than are tried at once.
+    let settings = SearchSettings { direct_pairs: 0, ..SearchSettings::default() };
+    let search =
+        PairSearch { a: &side_a, b: &side_b, tolerances: &tolerances, settings: &settings, rules: &rules };
+    let Search::Contact(found) = search.step(0.0, 2e-4) else { panic!("it gets there") };
+    assert!((found.time - 1e-3 / speed).abs() < 1e-9, "{found:?}");
 }
 
 #[test]
