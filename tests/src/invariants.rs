@@ -41,6 +41,8 @@ const SUNK_SHARE: f64 = 1e-2;
 
 /// Ways in which a body is shifted to see how deep it is.
 const DIRECTIONS: u32 = 16;
+/// How often what is known of how deep it is to a power of ten is halved.
+const HALVINGS: u32 = 5;
 
 /// What a run may cost.
 #[derive(Clone, Copy, Debug)]
@@ -377,7 +379,7 @@ fn penetration(world: &World, a: BodyId, b: BodyId) -> Option<Relation> {
     (relation != Relation::Apart).then_some(relation)
 }
 
-/// Order of magnitude [m] of the least shift of a body that frees it of another.
+/// About the least shift [m] of a body that frees it of another, rather more than less.
 fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     let (of_a, of_b) = (world.state(a).pose(), world.state(b).pose());
     let frees = |depth: f64| {
@@ -391,7 +393,14 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     let gap = world.tolerances().target_gap;
     let mut depths: Vec<f64> = (-16..1).map(|power| size * 10f64.powi(power)).chain([gap]).collect();
     depths.sort_by(f64::total_cmp);
-    depths.into_iter().find(|&depth| frees(depth)).unwrap_or(f64::INFINITY)
+    let Some(first) = depths.iter().position(|&depth| frees(depth)) else { return f64::INFINITY };
+    // And between that power of ten and the one before.
+    let (mut less, mut enough) = (if first > 0 { depths[first - 1] } else { 0.0 }, depths[first]);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (less + enough);
+        *(if frees(middle) { &mut enough } else { &mut less }) = middle;
+    }
+    enough
 }
 
 /// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of what a weight or another force does along

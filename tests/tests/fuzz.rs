@@ -328,6 +328,19 @@ fn a_light_block_between_heavy_ones_that_lean_a_little_gets_the_impulses_that_it
     assert!(matches!(verdict, Verdict::Finished | Verdict::Shallow(_)), "{verdict:?}");
 }
 
+/// Variations whose contacts carry impulses only in which something went through something else once, by seed.
+const DRIVEN_THROUGH: &[(u64, &str)] = &[
+    (707, "what had sunk was no part of the blow that drove it on"),
+    (823, "what had turned while it sank touched elsewhere, too deep to be seen"),
+    (10_646, "what was put back came to lie in what it had not touched before"),
+];
+
+#[test]
+fn what_sinks_without_contact_forces_is_not_driven_through() {
+    let sinks = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));
+    require(DRIVEN_THROUGH, variation_of_seed, sinks);
+}
+
 /// Scenes whose contacts carry impulses only in which something was wrong once, by seed.
 const IMPULSES_ONLY: &[(u64, &str)] = &[
     (50_100_798, "what had sunk was put back so far at once that a slot with a long arm came apart"),

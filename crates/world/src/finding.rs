@@ -20,6 +20,8 @@ const GAPS: f64 = 1.0;
 /// Where steps have a given length, and err by what they err, so many times as much may be off, and bodies may overlap so much
 /// more deeply.
 const ROUGHLY: f64 = 10.0;
+/// So many times the room that slow bodies have to sink between impulses may be used up, where contacts carry no forces.
+const SINKING: f64 = 2.0;
 /// How much of the energy turned over the books may lack, in errors of a step and in roundings of the energies.
 const BOOKS_ERRORS: f64 = 1e3;
 const BOOKS_ROUNDINGS: f64 = 1e6 * f64::EPSILON;
@@ -203,9 +205,7 @@ impl World {
     }
 
     pub(crate) fn find_overlaps(&self, near: &mut NearPairs, findings: &mut Vec<Finding>) {
-        let settings = self.rigid_settings();
-        // Without contact forces bodies sink a little between impacts.
-        if settings.collisions && settings.impulse_step.is_none() {
+        if self.rigid_settings().collisions {
             self.overlaps(self.pairs_that_pass(), near, findings);
         }
     }
@@ -217,6 +217,8 @@ impl World {
         let boxes = self.bodies().map(|body| (self.shape(body).bounds_at(&pose(body)), self.is_fixed(body)));
         for &(a, b) in near.find(boxes, excluded) {
             let depth = overlap_depth(self.shape(a), &pose(a), self.shape(b), &pose(b));
+            // Without contact forces bodies sink a little between impacts.
+            let allowed = allowed + SINKING * self.room_to_sink([a, b]);
             if let Some(depth) = depth.filter(|depth| *depth > allowed) {
                 let [first, second] = [a, b].map(|body| self.name(body).to_owned());
                 findings.push(Finding::Overlap { first, second, depth, time: self.time() });

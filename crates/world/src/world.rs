@@ -274,6 +274,11 @@ impl World {
         self.sentry.tolerance
     }
 
+    /// How far [m] two slow bodies may sink into each other before they are put back; zero where contacts carry forces.
+    pub(crate) fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
+        self.system.room_to_sink(bodies)
+    }
+
     pub(crate) fn rigid_settings(&self) -> &RigidSettings {
         self.system.settings()
     }

@@ -208,17 +208,18 @@ impl RigidSystem {
         let rules = self.pairs.rules(pair);
         let target_gap = self.lanes[a.index()].halo.min(self.lanes[b.index()].halo);
         let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
+        let sunk = self.may_have_sunk_by([a, b]);
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
             let path_a: Path<'_> = flyer_a.path();
             let path_b: Path<'_> = flyer_b.path();
             let side_a = MovingShape { shape: shapes[0], motion: &path_a, offset: offset_a };
             let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
-            return self.search_shapes(&side_a, &side_b, (rules, &tolerances), span);
+            return self.search_shapes(&side_a, &side_b, (rules, &tolerances), sunk, span);
         };
         let side_a = MovingShape { shape: shapes[0], motion: flight_a, offset: offset_a };
         let side_b = MovingShape { shape: shapes[1], motion: flight_b, offset: offset_b };
-        self.search_shapes(&side_a, &side_b, (rules, &tolerances), span)
+        self.search_shapes(&side_a, &side_b, (rules, &tolerances), sunk, span)
     }
 
     fn search_shapes<A: Motion, B: Motion>(
@@ -226,12 +227,13 @@ impl RigidSystem {
         a: &MovingShape<'_, A>,
         b: &MovingShape<'_, B>,
         (rules, tolerances): (&[FeatureRule], &Tolerances),
+        sunk: f64,
         span: f64,
     ) -> Search {
         // A lowered target makes nothing lie on the far side of its body.
-        let depth = tolerances.target_gap.max(0.0) + self.settings.tolerances.target_gap;
+        let depth = tolerances.target_gap.max(0.0) + self.settings.tolerances.target_gap + sunk;
         let search = self.settings.search;
-        let settings = &SearchSettings { depth: search.depth.max(depth), ..search };
+        let settings = &SearchSettings { depth, ..search };
         PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
     }
 

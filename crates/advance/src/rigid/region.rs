@@ -152,19 +152,24 @@ impl RigidSystem {
         let tolerances = &self.settings.tolerances;
         let mut fresh = std::mem::take(&mut region.fresh);
         fresh.clear();
-        let depth = tolerances.distance_tol().max(self.settings.search.depth);
-        detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
         let bodies = [first.id, second.id];
+        let depth = tolerances.distance_tol().max(self.may_have_sunk_by(bodies));
+        detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
         let takes_over = region.run_off.is_some_and(|run_off| run_off.bodies == bodies);
         fresh.retain(|record| {
             self.counts_as_touching(record, bodies, region.at_start, takes_over)
                 && !self.is_passed_over(record)
         });
-        if let Some(fired) = region.fired.filter(|fired| fired.bodies == [first.id, second.id])
-            && !fresh.iter().any(|record| touch_of(record, fired.bodies) == Some(fired))
-        {
-            let moments = [first, second];
-            fresh.extend(record_features(moments, fired.features, tolerances, time.seconds()));
+        // What has fired takes part, and what is put back at a tick, though it may have been moved out of its zone.
+        let moved = self.ticks.moved;
+        let waiting: &[Touch] = if moved > 0.0 { &self.ticks.waiting } else { &[] };
+        for known in region.fired.iter().chain(waiting).filter(|known| known.bodies == bodies) {
+            if !fresh.iter().any(|record| touch_of(record, bodies) == Some(*known)) {
+                let record = record_features([first, second], known.features, tolerances, time.seconds());
+                let farthest = tolerances.distance_tol() + 2.0 * moved;
+                let is_near = |record: &Collision| record.geometry.distance <= farthest;
+                fresh.extend(record.filter(|record| region.fired == Some(*known) || is_near(record)));
+            }
         }
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
         if let Some(run_off) = region.run_off {

@@ -3,31 +3,43 @@
 //! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was seen last, does not fire.
 //! At the next tick of the step its velocity is stopped by an impulse and it is moved back to its target gap, by the least
 //! displacement in the metric of the masses. What is pressed so hard that it sinks deep meanwhile is stopped there, too.
+//!
+//! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another blow may drive one
+//! on into the other, and what has turned meanwhile touches elsewhere.
 
 use super::events::EventWork;
 use super::pairs::PairId;
-use super::region::Region;
+use super::region::{Region, Touch};
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, FeatureRule, GapKinematics};
+use halfgap_collision::{BodyId, BodyState, Tolerances};
 use halfgap_contact::{BodyId as RowBody, Problem, Row};
-use halfgap_geometry::{FeatureId, GapSample};
+use halfgap_geometry::FeatureId;
 
 /// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a part of the way.
 const ROUNDS: usize = 3;
 const SHORT_ROUNDS: usize = 5;
 /// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
 const LONGEST_WAY: f64 = 0.1;
-/// Part of the reach of the smaller body by which a pair may sink before it fires again.
+/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair may sink before it
+/// fires again, beside what it slowly closes by in a step.
 const SUNK_SHARE: f64 = 1e-2;
-/// Of that, what tells a pair that has sunk from one that has just been seen.
+const THIN_SHARE: f64 = 1e-1;
+/// Of that, by how much more it may sink whenever it fires again, slowly.
+const FURTHER_SHARE: f64 = 1.0 / 64.0;
+/// How many times that room it sinks at most, and what is deeper lies behind.
+const DEEPEST: f64 = 1.75;
+const BEHIND: f64 = 2.0;
+/// And what tells a fast pair that has sunk from one that has just been seen.
 const DEEP_SHARE: f64 = 0.5;
 
-/// The pairs that wait for the next tick.
+/// What waits for the next tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ticks {
-    waiting: Vec<PairId>,
+    pub(crate) waiting: Vec<Touch>,
+    /// How far [m] bodies have been moved in being put back, zero but at a tick.
+    pub(crate) moved: f64,
     /// Ticks that have gone by.
     count: f64,
     /// By how much bodies are to be moved apart, and the records of its rows.
@@ -43,33 +55,63 @@ impl RigidSystem {
     pub(crate) fn sinks(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let Some(step) = self.settings.impulse_step else { return false };
         let bodies = self.pairs.bodies(pair);
-        let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
-        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
-        let sample = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose);
-        let Some(sample) = sample else { return false };
-        let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
-        let rate = GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate;
-        let tolerances = &self.settings.tolerances;
-        let is_fast = -rate > tolerances.velocity_tol;
-        let reach = bodies.map(|body| self.flyer(body).reach());
-        let room = SUNK_SHARE * reach[0].min(reach[1]);
-        let seen = self.pairs.seen(pair).iter().find(|seen| seen.features == features);
-        let is_deep = seen.is_some_and(|seen| seen.gap - sample.gap > DEEP_SHARE * room);
-        if is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
+        let touch = Touch::new(bodies, features);
+        let (gap, rate) = self.gap_at(touch, self.now);
+        if gap == f64::INFINITY {
             return false;
         }
+        let tolerances = &self.settings.tolerances;
+        let room = self.room_to_sink(bodies);
+        let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
+        let is_fast = -rate > tolerances.velocity_tol;
+        let is_deepest = gap < tolerances.target_gap - DEEPEST * room;
+        if is_deepest || is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
+            return false;
+        }
+        let lowest = (tolerances.target_gap - room).min(gap - FURTHER_SHARE * room);
         let tick = self.next_tick(step);
         self.pairs.change_rules(pair, |rules| {
             rules.retain(|rule| rule.features != features);
-            rules.push(FeatureRule { features, target: Some(sample.gap - room) });
+            rules.push(touch.lowered_to(lowest));
         });
+        if !self.ticks.waiting.contains(&touch) {
+            self.ticks.waiting.push(touch);
+        }
         // The search goes on for the other features of the two bodies.
         self.predict(pair);
-        if !self.ticks.waiting.contains(&pair) {
-            self.ticks.waiting.push(pair);
-        }
         self.queue.set(self.tick_source(), tick);
         true
+    }
+
+    /// How far [m] a slow pair of bodies may sink before it fires again; zero where contacts carry forces.
+    #[must_use]
+    pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
+        let Some(step) = self.settings.impulse_step else { return 0.0 };
+        let reach = bodies.map(|body| self.flyer(body).reach());
+        let slow = self.settings.tolerances.velocity_tol * step;
+        (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies)) + slow
+    }
+
+    /// How far [m] one body may lie in another and be told from what has gone through it.
+    fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
+        let shares = bodies.map(|body| {
+            let flyer = self.flyer(body);
+            THIN_SHARE * flyer.body().shape.mass_properties().area / flyer.reach()
+        });
+        shares[0].min(shares[1])
+    }
+
+    /// How deep [m] two bodies, the lesser first, may lie in one another: where they have been left to sink, have been moved, or
+    /// would sink within a step; zero where contacts carry forces.
+    pub(crate) fn may_have_sunk_by(&self, bodies: [BodyId; 2]) -> f64 {
+        if self.settings.impulse_step.is_none() {
+            return 0.0;
+        }
+        if self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
+            return BEHIND * self.room_to_sink(bodies);
+        }
+        // Either may have been moved against the other.
+        self.settings.search.depth.max(2.0 * self.ticks.moved).min(self.thinness(bodies))
     }
 
     /// The first tick after the present time.
@@ -85,30 +127,58 @@ impl RigidSystem {
         self.queue.clear(self.tick_source());
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
-        work.seeds.extend(self.ticks.waiting.iter().flat_map(|&pair| self.pairs.bodies(pair)));
-        self.ticks.waiting.clear();
+        work.seeds.extend(self.ticks.waiting.iter().flat_map(|touch| touch.bodies));
         work.seeds.sort_unstable();
         work.seeds.dedup();
         self.at_tick = true;
         let outcome = self.handle_impact(&mut work);
         self.at_tick = false;
+        self.keep_what_is_sunk();
         self.work = Some(work);
         outcome
     }
 
-    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target.
-    pub(crate) fn put_back(&mut self, work: &mut EventWork) {
-        for &body in &work.region.bodies {
-            self.restart_flight(body, self.now);
+    /// What could not be put back altogether is put back further at the next tick.
+    fn keep_what_is_sunk(&mut self) {
+        let mut waiting = std::mem::take(&mut self.ticks.waiting);
+        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
+        waiting.retain(|touch| {
+            let gap = self.gap_at(*touch, self.now).0;
+            gap < target_gap - accuracy && gap >= -BEHIND * self.room_to_sink(touch.bodies)
+        });
+        self.ticks.waiting = waiting;
+        if let Some(step) = self.settings.impulse_step.filter(|_| !self.ticks.waiting.is_empty()) {
+            let tick = self.next_tick(step);
+            self.queue.set(self.tick_source(), tick);
         }
+    }
+
+    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target, and takes in what they come
+    /// upon.
+    pub(crate) fn put_back(&mut self, work: &mut EventWork) {
         let (mut full, mut short) = (0, 0);
         while full < ROUNDS && short < SHORT_ROUNDS {
+            for &body in &work.region.bodies {
+                self.restart_flight(body, self.now);
+            }
             let before = self.potential_of(&work.region);
             let Some(share) = self.move_apart(work) else { break };
             *(if share == 1.0 { &mut full } else { &mut short }) += 1;
-            self.remeasure(&mut work.region, self.now);
             self.ledger.projections += self.potential_of(&work.region) - before;
+            for &body in &work.region.bodies {
+                self.lanes[body.index()].follow(&self.flyers[body.index()]);
+            }
+            work.seeds.clear();
+            work.seeds.extend(&work.region.bodies);
+            self.collect_region(&mut work.region, &work.seeds, self.now);
+            self.cut_groups(&mut work.region);
+            self.remeasure(&mut work.region, self.now);
         }
+        self.ticks.moved = 0.0;
+        // Where connectors are put together again afterwards, what touches may yet sink.
+        self.ticks.waiting.extend(&work.region.touches);
+        self.ticks.waiting.sort_unstable();
+        self.ticks.waiting.dedup();
     }
 
     /// One round: tells which part of the way it went; `None` if nothing had to move.
@@ -117,11 +187,13 @@ impl RigidSystem {
         let moves = self.is_sunk(&work.region, &mut ticks) && work.settling.solve(&ticks.problem).is_ok();
         let mut moved = None;
         if moves {
-            let Ticks { shifts, rows, .. } = &mut ticks;
+            let Ticks { shifts, rows, moved: way, .. } = &mut ticks;
             shifts.clear();
             shifts.resize(work.region.bodies.len(), [0.0; 3]);
             work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
-            let share = self.sound_share(&work.region, shifts);
+            let longest = self.longest_way(&work.region, shifts);
+            let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
+            *way += share * longest.0;
             moved = Some(share);
             for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
                 let state = self.flyer(body).unwound_at(self.now);
@@ -134,14 +206,15 @@ impl RigidSystem {
         moved
     }
 
-    /// The part of a displacement (x, y, angle) of each of a region's bodies along which gaps are nearly linear.
-    fn sound_share(&self, region: &Region, shifts: &[[f64; 3]]) -> f64 {
-        let shares = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
-            let longest = LONGEST_WAY * self.flyer(body).reach();
-            let way = x.hypot(*y) + turn.abs() * self.flyer(body).reach();
-            if way > longest { longest / way } else { 1.0 }
+    /// The longest way [m] of a point of a region's bodies along a displacement (x, y, angle) of each, and the longest in parts of
+    /// its body's reach.
+    fn longest_way(&self, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
+        let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
+            let reach = self.flyer(body).reach();
+            let way = x.hypot(*y) + turn.abs() * reach;
+            (way, way / reach)
         });
-        shares.fold(1.0, f64::min)
+        ways.fold((0.0, 0.0), |most, way| (most.0.max(way.0), most.1.max(way.1)))
     }
 
     /// Sets up the least displacement of a region's bodies that leaves no gap less than its target; false if none is.
