@@ -26,12 +26,12 @@ const LONGEST_WAY: f64 = 0.1;
 /// fires again, beside what it slowly closes by in a step.
 const SUNK_SHARE: f64 = 1e-2;
 const THIN_SHARE: f64 = 1e-1;
-/// Of that, by how much more it may sink whenever it fires again, slowly.
+/// Part of that room by which it may sink further whenever it fires again, slowly.
 const FURTHER_SHARE: f64 = 1.0 / 64.0;
 /// How many times that room it sinks at most, and what is deeper lies behind.
 const DEEPEST: f64 = 1.75;
 const BEHIND: f64 = 2.0;
-/// And what tells a fast pair that has sunk from one that has just been seen.
+/// Part of that room at which a fast pair has sunk, rather than just been seen.
 const DEEP_SHARE: f64 = 0.5;
 
 /// What waits for the next tick.
