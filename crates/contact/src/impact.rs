@@ -75,6 +75,8 @@ struct Scratch {
     /// Rates [m/s] and impulses [N s] to go back to.
     rates: Vec<f64>,
     impulses: Vec<f64>,
+    /// What rows were unloaded by [N s], until they are solved.
+    carried: Vec<f64>,
     /// Made when first needed, for most impacts have one row or two.
     many: Option<Box<ManyRows>>,
 }
@@ -102,6 +104,7 @@ impl Impact {
         self.bound = 0.0;
         self.at_last = false;
         self.solves = 0;
+        self.scratch.carried.clear();
     }
 
     /// Takes from each row an impulse [N s] that it carries anyway, as the force of a contact does over some time. What is
@@ -115,6 +118,8 @@ impl Impact {
         for (row, &impulse) in impulses.iter().enumerate().filter(|(_, impulse)| **impulse != 0.0) {
             self.apply(row, -impulse);
         }
+        self.scratch.carried.clear();
+        self.scratch.carried.extend_from_slice(impulses);
     }
 
     /// The rows.

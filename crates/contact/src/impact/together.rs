@@ -2,6 +2,7 @@
 
 use super::Impact;
 use super::law::ImpactError;
+use super::many_rows::Beginning;
 use super::pair_problem::{solve_one, solve_two};
 use super::patience::Patience;
 
@@ -43,8 +44,8 @@ impl Impact {
 
     /// One problem without elasticity of the rows that close, rest, or open slowly; as long as others are driven to close,
     /// with these too. Without elasticity it is the nearest admissible motion that is found, and no row need stay out: the
-    /// fewer are left to be driven, the fewer problems there are. Each begins with the rows that carried impulses in the
-    /// one before.
+    /// fewer are left to be driven, the fewer problems there are. The first begins with what rows were unloaded by, each other
+    /// with the rows that carried impulses in the one before.
     pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
         self.aim_at_rest();
         self.scratch.rates.clone_from(&self.rates);
@@ -52,8 +53,11 @@ impl Impact {
         let mut set = std::mem::take(&mut self.scratch.set);
         let mut likely = std::mem::take(&mut self.scratch.listed);
         self.list_slow(&mut set, &mut likely, small);
+        let mut carried = std::mem::take(&mut self.scratch.carried);
+        let mut begin =
+            if carried.is_empty() { Beginning::Likely(&likely) } else { Beginning::Carried(&carried) };
         let outcome = loop {
-            if let Err(error) = self.solve_beginning_with(&set, &likely) {
+            if let Err(error) = self.solve_beginning_with(&set, begin) {
                 break Err(error);
             }
             let count = set.len();
@@ -64,7 +68,11 @@ impl Impact {
             set.sort_unstable();
             self.rates.clone_from(&self.scratch.rates);
             self.impulses.clone_from(&self.scratch.impulses);
+            begin = Beginning::Likely(&likely);
         };
+        // What is left after the first problem is little, and has nothing to do with what was carried.
+        carried.clear();
+        self.scratch.carried = carried;
         self.scratch.set = set;
         self.scratch.listed = likely;
         outcome
@@ -95,8 +103,8 @@ impl Impact {
     }
 
     /// As [`solve_together`](Self::solve_together), of many rows with the likely ones to begin with.
-    fn solve_beginning_with(&mut self, set: &[usize], likely: &[bool]) -> Result<(), ImpactError> {
-        if set.len() > 2 { self.solve_many(set, Some(likely)) } else { self.solve_together(set) }
+    fn solve_beginning_with(&mut self, set: &[usize], begin: Beginning<'_>) -> Result<(), ImpactError> {
+        if set.len() > 2 { self.solve_many(set, begin) } else { self.solve_together(set) }
     }
 
     /// Lists the rows that close or rest, and the bilateral ones.
@@ -153,7 +161,7 @@ impl Impact {
                 Ok(())
             }
             [first, second] => self.solve_pair(first, second),
-            _ => self.solve_many(set, None),
+            _ => self.solve_many(set, Beginning::Unknown),
         }
     }
 
@@ -163,7 +171,7 @@ impl Impact {
         let b = [first, second].map(|row| self.rates[row] - self.scratch.targets[row]);
         let bilateral = [first, second].map(|row| self.rows[row].bilateral);
         let Some(impulses) = solve_two(a, b, bilateral) else {
-            return self.solve_many(&[first, second], None);
+            return self.solve_many(&[first, second], Beginning::Unknown);
         };
         self.solves += 1;
         self.apply(first, impulses[0]);
