@@ -271,6 +271,20 @@ fn ropes_are_taut_within_a_coarse_zone() {
 }
 
 #[test]
+fn what_takes_over_from_a_contact_that_has_sunk_is_seen() {
+    // Blocks fit from wall to wall: rows that contradict each other drift, and a block that rolled from one corner to the next
+    // along its wall went through it. What else happens in such a jam is not looked at.
+    let scene =
+        Scene::parse(&variation_of_seed(14_724).to_string(), SceneFormat::Json).expect("it is a scene");
+    let mut world = World::from_scene(&scene).expect("it can be built");
+    let outcome = world.advance_to(0.48, &mut |_| ());
+    let findings = world.findings(f64::INFINITY);
+    let at_wall = |found: &Finding| matches!(found, Finding::Overlap { first, second, .. } if first == "wall_left" && second == "body6");
+    assert!(!findings.iter().any(at_wall), "{findings:?}, {outcome:?}");
+    assert!((world.time() - 0.48).abs() < 1e-12, "{outcome:?}");
+}
+
+#[test]
 fn what_was_broken_once_holds() {
     // What just touches at the start, and cannot be lifted, counts as shallow.
     let holds = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));

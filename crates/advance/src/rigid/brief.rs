@@ -70,13 +70,22 @@ pub(crate) struct Past {
     /// How long [s] the group lasted.
     lasted: f64,
     stiffness: Stiffness,
+    /// How deep [m] one of its contacts lay below where bodies touch, and when it ended.
+    sunk: f64,
+    ended: Time,
 }
 
 impl Past {
     /// Of a group that ends now.
     pub(crate) fn of(group: &Group, now: Time) -> Self {
         let step = if group.is_brief { group.full_step } else { group.next_step };
-        Self { step, lasted: now.since(group.made), stiffness: group.stiffness }
+        let (lasted, stiffness, sunk) = (now.since(group.made), group.stiffness, group.sunk);
+        Self { step, lasted, stiffness, sunk, ended: now }
+    }
+
+    /// How deep [m] a contact of the group lay that ends now; zero if it ended before.
+    pub(crate) fn sunk_until(&self, now: Time) -> f64 {
+        if self.ended == now { self.sunk } else { 0.0 }
     }
 }
 

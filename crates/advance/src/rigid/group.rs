@@ -105,6 +105,9 @@ pub(crate) struct Group {
     pub(crate) projected: f64,
     /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.
     pub(crate) largest_error: f64,
+    /// How deep [m] a held contact lies in the middle of the segment below where its bodies touch: rows that contradict each
+    /// other do not keep to their gaps.
+    pub(crate) sunk: f64,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
     /// Offset [s] up to which no contact can lose its force, as the stages of the step tell, while nobody has looked further.
@@ -129,6 +132,7 @@ impl Group {
         self.stiffness = Stiffness::default();
         self.roughness.clear();
         self.accepted = None;
+        self.sunk = 0.0;
         (self.event, self.look) = (None, None);
     }
 

@@ -16,6 +16,9 @@ use super::system::RigidSystem;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::Inertia;
 
+/// Where a contact has sunk, others of the same bodies may lie so many times as deep.
+const SUNK_BESIDE: f64 = 2.0;
+
 /// All groups, found by their bodies, and what their stepping needs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Groups {
@@ -81,6 +84,17 @@ impl RigidSystem {
     pub(crate) fn group_of(&self, body: BodyId) -> Option<&Group> {
         let leader = self.groups.leader_of[body.index()]?;
         self.groups.by_leader[leader.index()].as_deref()
+    }
+
+    /// How deep [m] two bodies may lie in one another, as the contacts of a group do that one of them is in, or was until now.
+    /// What takes over from a contact that has sunk lies as deep.
+    pub(crate) fn holds_deep(&self, bodies: [BodyId; 2]) -> f64 {
+        let depths = bodies.map(|body| match self.group_of(body) {
+            Some(group) => group.sunk,
+            None => self.groups.past_of[body.index()].sunk_until(self.now),
+        });
+        let sunk = depths[0].max(depths[1]);
+        if sunk > 0.0 { (SUNK_BESIDE * sunk).min(self.thinness(bodies)) } else { 0.0 }
     }
 
     /// A group with its dynamics.
@@ -492,5 +506,34 @@ impl RigidSystem {
             .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
             .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));
         pairs.find(|&[a, b]| (center(a) - center(b)).length() == length)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::resting_discs;
+    use super::*;
+
+    #[test]
+    fn how_deep_a_contact_has_sunk_holds_of_its_bodies_until_something_else_happens() {
+        let mut system = resting_discs(&[0.0, 1.5]);
+        let gap = system.settings.tolerances.target_gap;
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        system.with_group(&mut group, |dynamics, tools| {
+            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it rests");
+            dynamics.evaluate_end();
+            dynamics.group.state[1] -= 4.0 * gap;
+            dynamics.group.end_state[1] -= 4.0 * gap;
+            dynamics.make_dense(tools.stepper);
+            dynamics.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+        });
+        system.groups.put(group);
+        let [floor, sunk, other] = [0, 1, 2].map(BodyId);
+        assert!((system.holds_deep([floor, sunk]) / gap - 6.0).abs() < 1e-6);
+        assert_eq!(system.holds_deep([floor, other]), 0.0);
+        system.dissolve(sunk);
+        assert!((system.holds_deep([floor, sunk]) / gap - 6.0).abs() < 1e-6);
+        system.now = system.now.plus(1e-3);
+        assert_eq!(system.holds_deep([floor, sunk]), 0.0);
     }
 }

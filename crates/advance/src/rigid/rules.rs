@@ -3,6 +3,7 @@
 use super::events::EventWork;
 use super::pairs::PairId;
 use super::region::{Region, Touch};
+use super::settle::DEEPEST;
 use super::system::RigidSystem;
 use halfgap_collision::FeatureRule;
 
@@ -20,6 +21,15 @@ impl RigidSystem {
         (gap - self.sink()).min(self.settings.tolerances.target_gap)
     }
 
+    /// Gap [m] at which a contact fires that opens: where any pair does, however low the halos of its bodies. When others are
+    /// brought to where they are held it may be moved so deep that the search would take it for the far side of a body, and
+    /// it may come back before it is out: such a one fires where it lies.
+    fn returns_to(&self, touch: Touch) -> f64 {
+        let target = self.settings.tolerances.target_gap;
+        let (gap, _) = self.gap_at(touch, self.now);
+        if gap < -DEEPEST * target { gap } else { target }
+    }
+
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
     /// that touch without force.
     pub(crate) fn set_rules(&mut self, EventWork { region, settling, fired_open, .. }: &EventWork) {
@@ -35,12 +45,10 @@ impl RigidSystem {
             let rule: FeatureRule = if is_held || self.is_watched(*touch) {
                 touch.skipped()
             } else {
-                // What opens comes back to where any pair fires, however low the halos of its bodies.
                 // What fired although it does not close would do so again at once. It may sink no farther than its zone.
                 let fired_open = *fired_open && region.fired == Some(*touch) && gap > least;
                 let stays = rate <= rest || fired_open;
-                let target = if stays { self.sunk(gap) } else { self.settings.tolerances.target_gap };
-                touch.lowered_to(target)
+                touch.lowered_to(if stays { self.sunk(gap) } else { self.returns_to(*touch) })
             };
             if is_held {
                 self.leave_ends_alone(pair, touch);
@@ -129,6 +137,22 @@ mod tests {
     use super::super::test_scene::resting_discs;
     use super::*;
     use halfgap_collision::BodyId;
+
+    #[test]
+    fn what_opens_from_where_the_search_does_not_look_fires_where_it_lies() {
+        let mut system = resting_discs(&[0.0]);
+        let target = system.settings.tolerances.target_gap;
+        let mut work = EventWork::default();
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
+        system.dissolve(BodyId(1));
+        for (depth, returns_to) in [(-1.0, target), (0.4, target), (0.9, -0.9 * target)] {
+            let mut state = system.flyer(BodyId(1)).state_at(system.now);
+            state.position.y = 0.5 - depth * target;
+            system.flyers[1].fly_from(system.now, state);
+            assert!((system.returns_to(touch) - returns_to).abs() < 1e-9 * target, "{depth} target gaps");
+        }
+    }
 
     #[test]
     fn a_floor_on_which_a_contact_insists_fires_elsewhere_as_before() {

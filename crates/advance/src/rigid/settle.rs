@@ -22,7 +22,7 @@ const SEEN: f64 = 1e-4;
 /// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been lifted may sink once.
 const SUNK: f64 = 1.5;
 /// Depth of an overlap, in target gaps, from which a contact is lifted.
-const DEEPEST: f64 = 0.5;
+pub(super) const DEEPEST: f64 = 0.5;
 /// Part of its accuracy by which a rope or a stop that is lifted stays beyond its end.
 const ROPE_SHARE: f64 = 0.5;
 

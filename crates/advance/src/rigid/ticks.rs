@@ -93,7 +93,7 @@ impl RigidSystem {
     }
 
     /// How far [m] one body may lie in another and be told from what has gone through it.
-    fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
+    pub(crate) fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
         let shares = bodies.map(|body| {
             let flyer = self.flyer(body);
             THIN_SHARE * flyer.body().shape.mass_properties().area / flyer.reach()
@@ -102,10 +102,10 @@ impl RigidSystem {
     }
 
     /// How deep [m] two bodies, the lesser first, may lie in one another: where they have been left to sink, have been moved, or
-    /// would sink within a step; zero where contacts carry forces.
+    /// would sink within a step. Where contacts carry forces, because held ones do.
     pub(crate) fn may_have_sunk_by(&self, bodies: [BodyId; 2]) -> f64 {
         if self.settings.impulse_step.is_none() {
-            return 0.0;
+            return self.holds_deep(bodies);
         }
         if self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
             return BEHIND * self.room_to_sink(bodies);

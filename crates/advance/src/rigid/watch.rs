@@ -167,9 +167,9 @@ impl Dynamics<'_> {
 
     /// By how much held contacts are off between the ends of the segment, where dense output is less exact, in units of what is
     /// allowed so that nothing overlaps and what touches is seen to, or connectors, in units of what steps may err by. The
-    /// largest error of a connector is noted.
+    /// largest error of a connector is noted, and how deep a contact lies.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
-        self.group.largest_error = 0.0;
+        (self.group.largest_error, self.group.sunk) = (0.0, 0.0);
         let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
@@ -179,9 +179,13 @@ impl Dynamics<'_> {
         for &part in if any_contact { &INNER[..] } else { &INNER[..1] } {
             self.put_at(part * self.group.span);
             for row in &self.group.rows {
-                let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
+                let gap = self.physics.mechanism.gap(row, &self.stage.movings);
+                let error = gap - row.gap;
                 match row.source {
-                    RowSource::Contact(_) => excess = excess.max(error.abs() / least),
+                    RowSource::Contact(_) => {
+                        excess = excess.max(error.abs() / least);
+                        self.group.sunk = self.group.sunk.max(-gap);
+                    }
                     RowSource::Connector(..) => {
                         self.group.largest_error = self.group.largest_error.max(error.abs());
                     }
