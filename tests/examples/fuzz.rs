@@ -6,12 +6,15 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --billiard 4711   # the same without forces, ties and loss
 //! cargo run --release -p halfgap-tests --example fuzz -- --shrink 4711     # prints a smaller one that fails alike
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --coarse   # with zones that one can see
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --impulses # with contacts that carry impulses only
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --varied   # reference scenes with other numbers
 //! ```
 //!
 //! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.
 
-use halfgap_tests::generate::{billiard_of_seed, coarse_of_seed, scene_of_seed, variation_of_seed};
+use halfgap_tests::generate::{
+    billiard_of_seed, coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed,
+};
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
 use halfgap_tests::shrink::shrink;
 use serde_json::Value;
@@ -36,28 +39,28 @@ Runs generated scenes and counts what became of them.
   --billiard S  the same without forces, ties and loss
   --shrink S    prints a smaller one that fails alike
   --coarse      in all of this, scenes with zones that one can see
+  --impulses    or such whose contacts carry impulses only
   --varied      or reference scenes with other numbers";
 
 /// Options that a number follows, and those of the processes that this one starts.
 const WITH_NUMBER: [&str; 6] = ["--count", "--seed", "--jobs", "--scene", "--billiard", "--shrink"];
 const WORKER: &str = "--worker";
-const COARSE: &str = "--coarse";
-const VARIED: &str = "--varied";
 
 /// What is wrong with the arguments, if something is.
 fn complaint(arguments: &[String]) -> Option<String> {
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let takes_number = WITH_NUMBER.contains(&argument.as_str());
-        if !takes_number && ![WORKER, COARSE, VARIED].contains(&argument.as_str()) {
+        if !takes_number && argument != WORKER && Scenes::asked_for(argument).is_none() {
             return Some(format!("\"{argument}\" is no option"));
         }
         if takes_number && rest.next().is_none_or(|number| number.parse::<u64>().is_err()) {
             return Some(format!("a number must follow {argument}"));
         }
     }
-    let is_given = |option: &str| arguments.iter().any(|argument| argument == option);
-    (is_given(COARSE) && is_given(VARIED)).then(|| format!("either {COARSE} or {VARIED}"))
+    let mut kinds = arguments.iter().filter(|argument| Scenes::asked_for(argument).is_some());
+    let (first, second) = (kinds.next()?, kinds.next()?);
+    Some(format!("either {first} or {second}"))
 }
 
 fn main() {
@@ -76,13 +79,8 @@ fn main() {
     };
     let has = |name: &str| arguments.iter().any(|argument| argument == name);
     let (first, count) = (number("--seed", 1), number("--count", 1000));
-    let scenes = if has(COARSE) {
-        Scenes::Coarse
-    } else if has(VARIED) {
-        Scenes::Varied
-    } else {
-        Scenes::Fine
-    };
+    let asked = arguments.iter().find_map(|argument| Scenes::asked_for(argument));
+    let scenes = asked.unwrap_or(Scenes::Fine);
     if has("--scene") {
         println!("{:#}", scenes.of_seed(number("--scene", 1)));
     } else if has("--billiard") {
@@ -103,6 +101,8 @@ enum Scenes {
     Fine,
     /// With zones that one can see.
     Coarse,
+    /// With contacts that carry impulses only.
+    Impulses,
     /// Reference scenes with other numbers.
     Varied,
 }
@@ -112,6 +112,7 @@ impl Scenes {
         match self {
             Self::Fine => scene_of_seed(seed),
             Self::Coarse => coarse_of_seed(seed),
+            Self::Impulses => impulses_of_seed(seed),
             Self::Varied => variation_of_seed(seed),
         }
     }
@@ -120,9 +121,17 @@ impl Scenes {
     fn option(self) -> Option<&'static str> {
         match self {
             Self::Fine => None,
-            Self::Coarse => Some(COARSE),
-            Self::Varied => Some(VARIED),
+            Self::Coarse => Some("--coarse"),
+            Self::Impulses => Some("--impulses"),
+            Self::Varied => Some("--varied"),
         }
+    }
+
+    /// The scenes that an option asks for.
+    fn asked_for(option: &str) -> Option<Self> {
+        [Self::Coarse, Self::Impulses, Self::Varied]
+            .into_iter()
+            .find(|scenes| scenes.option() == Some(option))
     }
 }
 

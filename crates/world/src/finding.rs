@@ -20,8 +20,8 @@ const GAPS: f64 = 1.0;
 /// Where steps have a given length, and err by what they err, so many times as much may be off, and bodies may overlap so much
 /// more deeply.
 const ROUGHLY: f64 = 10.0;
-/// So many times the room that slow bodies have to sink between impulses may be used up, where contacts carry no forces.
-const SINKING: f64 = 2.0;
+/// So many times the room that bodies have to sink between impulses may be used up, where contacts carry no forces.
+const SINKING: f64 = 1.25;
 /// How much of the energy turned over the books may lack, in errors of a step and in roundings of the energies.
 const BOOKS_ERRORS: f64 = 1e3;
 const BOOKS_ROUNDINGS: f64 = 1e6 * f64::EPSILON;

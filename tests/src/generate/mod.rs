@@ -26,6 +26,8 @@ const FAR_AWAY: f64 = 0.05;
 const COARSE_GAP: f64 = 5e-3;
 const COARSE_ACCURACY: f64 = 0.6;
 const COARSE_SPEED: f64 = 0.2;
+/// Steps of a scene whose contacts carry impulses only.
+const IMPULSE_STEPS: f64 = 400.0;
 /// Impact laws: the default one, which most scenes use, thrice.
 const LAWS: [&str; 8] = [
     "hybrid",
@@ -131,6 +133,16 @@ pub fn coarse_of_seed(seed: u64) -> Value {
     if random.chance(0.5) {
         scene["run"]["velocity_tol"] = json!(COARSE_SPEED * units(&mut Random::new(seed)).speed());
     }
+    scene
+}
+
+/// The scene of a seed with contacts that carry impulses only, in steps in which most bodies move by little of their size.
+#[must_use]
+pub fn impulses_of_seed(seed: u64) -> Value {
+    let mut scene = scene_of_seed(seed);
+    let duration = scene["run"]["duration"].as_f64().unwrap_or_default();
+    scene["run"]["contacts"] = json!(false);
+    scene["run"]["time_step"] = json!(duration / IMPULSE_STEPS);
     scene
 }
 

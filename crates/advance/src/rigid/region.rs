@@ -160,9 +160,10 @@ impl RigidSystem {
             self.counts_as_touching(record, bodies, region.at_start, takes_over)
                 && !self.is_passed_over(record)
         });
-        // What has fired takes part, and what is put back at a tick, though it may have been moved out of its zone.
+        // What has fired takes part, and what is put back at a tick, though it may have been moved out of its zone, or may have
+        // turned by a little since: where a block lies flat, to put back one of its corners would sink the other.
         let moved = self.ticks.moved;
-        let waiting: &[Touch] = if moved > 0.0 { &self.ticks.waiting } else { &[] };
+        let waiting: &[Touch] = if self.at_tick { &self.ticks.waiting } else { &[] };
         for known in region.fired.iter().chain(waiting).filter(|known| known.bodies == bodies) {
             if !fresh.iter().any(|record| touch_of(record, bodies) == Some(*known)) {
                 let record = record_features([first, second], known.features, tolerances, time.seconds());

@@ -48,7 +48,7 @@ impl RigidSystem {
                 // What fired although it does not close would do so again at once. It may sink no farther than its zone.
                 let fired_open = *fired_open && region.fired == Some(*touch) && gap > least;
                 let stays = rate <= rest || fired_open;
-                touch.lowered_to(if stays { self.sunk(gap) } else { self.returns_to(*touch) })
+                touch.lowered_to(if stays { self.sinks_to(*touch, gap) } else { self.returns_to(*touch) })
             };
             if is_held {
                 self.leave_ends_alone(pair, touch);

@@ -22,17 +22,18 @@ const ROUNDS: usize = 3;
 const SHORT_ROUNDS: usize = 5;
 /// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
 const LONGEST_WAY: f64 = 0.1;
-/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair may sink before it
-/// fires again, beside what it slowly closes by in a step.
+/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair may sink, beside what
+/// it slowly closes by in a step.
 const SUNK_SHARE: f64 = 1e-2;
 const THIN_SHARE: f64 = 1e-1;
-/// Part of that room by which it may sink further whenever it fires again, slowly.
-const FURTHER_SHARE: f64 = 1.0 / 64.0;
-/// How many times that room it sinks at most, and what is deeper lies behind.
-const DEEPEST: f64 = 1.75;
-const BEHIND: f64 = 2.0;
+/// Part of that room to which it sinks before it fires again.
+const FIRST_SHARE: f64 = 0.6;
+/// Part of it by which it may sink further whenever it fires again, slowly.
+const FURTHER_SHARE: f64 = 1.0 / 96.0;
+/// So many times that room, what is deeper lies behind.
+const BEHIND: f64 = 1.25;
 /// Part of that room at which a fast pair has sunk, rather than just been seen.
-const DEEP_SHARE: f64 = 0.5;
+const DEEP_SHARE: f64 = 0.3;
 
 /// What waits for the next tick.
 #[derive(Clone, Debug, Default)]
@@ -64,11 +65,11 @@ impl RigidSystem {
         let room = self.room_to_sink(bodies);
         let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
         let is_fast = -rate > tolerances.velocity_tol;
-        let is_deepest = gap < tolerances.target_gap - DEEPEST * room;
+        let is_deepest = gap < tolerances.target_gap - room;
         if is_deepest || is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
             return false;
         }
-        let lowest = (tolerances.target_gap - room).min(gap - FURTHER_SHARE * room);
+        let lowest = (tolerances.target_gap - FIRST_SHARE * room).min(gap - FURTHER_SHARE * room);
         let tick = self.next_tick(step);
         self.pairs.change_rules(pair, |rules| {
             rules.retain(|rule| rule.features != features);
@@ -83,13 +84,25 @@ impl RigidSystem {
         true
     }
 
-    /// How far [m] a slow pair of bodies may sink before it fires again; zero where contacts carry forces.
+    /// How far [m] a pair of bodies may sink until it is put back; zero where contacts carry forces.
     #[must_use]
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         let Some(step) = self.settings.impulse_step else { return 0.0 };
         let reach = bodies.map(|body| self.flyer(body).reach());
         let slow = self.settings.tolerances.velocity_tol * step;
         (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies)) + slow
+    }
+
+    /// Gap [m] at which a contact without force fires that has a gap now and does not open. What has been stopped below its zone,
+    /// until it is put back, may be pressed on by what acts on its bodies, or by their turning, at once: it goes a part of the way
+    /// that is left to where it may sink no further.
+    pub(crate) fn sinks_to(&self, touch: Touch, gap: f64) -> f64 {
+        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
+        if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
+            return self.sunk(gap);
+        }
+        let left = gap - target_gap + self.room_to_sink(touch.bodies);
+        gap - self.sink().max(FURTHER_SHARE * left)
     }
 
     /// How far [m] one body may lie in another and be told from what has gone through it.
@@ -107,11 +120,13 @@ impl RigidSystem {
         if self.settings.impulse_step.is_none() {
             return self.holds_deep(bodies);
         }
-        if self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
-            return BEHIND * self.room_to_sink(bodies);
-        }
         // Either may have been moved against the other.
-        self.settings.search.depth.max(2.0 * self.ticks.moved).min(self.thinness(bodies))
+        let moved = 2.0 * self.ticks.moved;
+        if self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
+            // What is turned as it is put back sinks elsewhere.
+            return BEHIND * self.room_to_sink(bodies) + moved.min(self.thinness(bodies));
+        }
+        self.settings.search.depth.max(moved).min(self.thinness(bodies))
     }
 
     /// The first tick after the present time.
@@ -268,5 +283,32 @@ impl RigidSystem {
         let of_laws = laws.iter().filter_map(|&law| self.laws[law].potential(&now)).sum::<f64>();
         self.ticks.laws = laws;
         energy + of_laws
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::resting_discs;
+    use super::*;
+
+    #[test]
+    fn what_was_stopped_deep_sinks_a_part_of_what_is_left() {
+        let mut system = resting_discs(&[0.0]);
+        let Tolerances { target_gap, .. } = system.settings.tolerances;
+        let bodies = [BodyId(0), BodyId(1)];
+        let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
+        // With contact forces it sinks by no more than can be told.
+        assert_eq!(system.sinks_to(touch, -1e-3), -1e-3 - system.sink());
+        system.settings.impulse_step = Some(1e-3);
+        let room = system.room_to_sink(bodies);
+        let sinks_by = |depth: f64| {
+            let gap = target_gap - depth * room;
+            (gap - system.sinks_to(touch, gap)) / room
+        };
+        assert!((sinks_by(0.0) * room / system.sink() - 1.0).abs() < 1e-9, "it has not sunk yet");
+        for depth in [0.5, 0.75] {
+            assert!((sinks_by(depth) - (1.0 - depth) * FURTHER_SHARE).abs() < 1e-9);
+        }
+        assert!((sinks_by(1.0) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
     }
 }
