@@ -115,11 +115,11 @@ impl Impact {
     /// If there is not one impulse per row.
     pub fn unload(&mut self, impulses: &[f64]) {
         assert_eq!(impulses.len(), self.rows.len(), "one impulse per row");
+        self.scratch.carried.resize(self.rows.len(), 0.0);
         for (row, &impulse) in impulses.iter().enumerate().filter(|(_, impulse)| **impulse != 0.0) {
             self.apply(row, -impulse);
+            self.scratch.carried[row] += impulse;
         }
-        self.scratch.carried.clear();
-        self.scratch.carried.extend_from_slice(impulses);
     }
 
     /// The rows.
