@@ -3,7 +3,7 @@
 //! The example `fuzz` runs scenes of all kinds, as many as one likes.
 
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{Finding, World};
+use halfgap::{Finding, RunError, World};
 use halfgap_tests::generate::{
     billiard_of_seed, coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed,
 };
@@ -389,6 +389,16 @@ fn what_is_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks()
     world.advance_to(scene.run.end_time(), &mut |_| ()).expect("it comes to its end");
     let impacts = world.statistics().impacts;
     assert!(impacts < MOST, "{impacts} impacts");
+}
+
+#[test]
+fn what_strong_forces_press_into_each_other_ends_a_run_that_would_go_on_for_hours() {
+    // A spring presses a light corner into a box, a hundred times as far in a step as it may sink.
+    let scene = impulses_of_seed(50_401_174).to_string();
+    let scene = Scene::parse(&scene, SceneFormat::Json).expect("scenes of seeds are scenes");
+    let mut world = World::from_scene(&scene).expect("it can be built");
+    let outcome = world.advance_to(scene.run.end_time(), &mut |_| ());
+    assert!(matches!(outcome, Err(RunError::Pressed { .. })), "{outcome:?}");
 }
 
 /// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but its books, which are

@@ -43,6 +43,25 @@ pub enum RunError {
         /// How many times.
         events: u32,
     },
+    /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink, and collide again and
+    /// again within a step.
+    #[error(
+        "at {time} s \"{primary}\" and \"{normal}\" are pressed into each other and collide without end: {events} times within a \
+         time_step of {} s, a shorter one lets them sink less",
+        Rounded(*step)
+    )]
+    Pressed {
+        /// When [s].
+        time: f64,
+        /// Name of one body.
+        primary: String,
+        /// Name of the other body.
+        normal: String,
+        /// How many times those collided that had sunk.
+        events: u32,
+        /// After how long what has sunk is put back [s].
+        step: f64,
+    },
     /// The forces of contacts and connectors cannot be found.
     #[error("at {time} s in the contacts of {}: {source}", quoted(bodies))]
     Contacts {
@@ -150,6 +169,7 @@ impl RunError {
             | Self::Unresolved { time, .. }
             | Self::Crawls { time, .. }
             | Self::Astray { time, .. }
+            | Self::Pressed { time, .. }
             | Self::Stuck { time, .. } => Some(*time),
             Self::NotATime | Self::BadPlan { .. } | Self::Advance(_) => None,
         }
@@ -179,6 +199,10 @@ impl RunError {
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);
                 Self::Stuck { time, primary, normal, events }
+            }
+            AdvanceError::Pressed { time, between, events, step } => {
+                let (primary, normal) = names(between);
+                Self::Pressed { time, primary, normal, events, step }
             }
             other => Self::Advance(other),
         }

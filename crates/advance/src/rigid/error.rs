@@ -79,6 +79,22 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink, and collide again and
+    /// again within a step. In shorter steps they sink less.
+    #[error(
+        "at {time} s bodies {} and {} have collided {events} times, pressed into each other, within a step of {step:e} s",
+        between.primary.0, between.normal.0
+    )]
+    Pressed {
+        /// When [s].
+        time: f64,
+        /// Which bodies.
+        between: Between,
+        /// How many times those collided that had sunk.
+        events: u32,
+        /// After how long what has sunk is put back [s].
+        step: f64,
+    },
     /// The same two bodies collide again and again without any time going by.
     #[error(
         "stuck at {time} s: bodies {} and {} collided {events} times without any time going by",

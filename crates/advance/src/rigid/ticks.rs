@@ -7,6 +7,7 @@
 //! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another blow may drive one
 //! on into the other, and what has turned meanwhile touches elsewhere.
 
+use super::error::{AdvanceError, Between};
 use super::events::EventWork;
 use super::pairs::PairId;
 use super::region::{Region, Touch};
@@ -35,6 +36,9 @@ const BEHIND: f64 = 1.25;
 /// Part of that room at which a fast pair has sunk, rather than just been seen.
 const DEEP_SHARE: f64 = 0.3;
 
+/// So many collisions of what has sunk, within a step, are too many.
+const MOST_PRESSED: u32 = 100_000;
+
 /// What waits for the next tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ticks {
@@ -43,6 +47,8 @@ pub(crate) struct Ticks {
     pub(crate) moved: f64,
     /// Ticks that have gone by.
     count: f64,
+    /// How often what waits has collided since the last.
+    pressed: u32,
     /// By how much bodies are to be moved apart, and the records of its rows.
     problem: Problem,
     rows: Vec<usize>,
@@ -129,6 +135,22 @@ impl RigidSystem {
         self.settings.search.depth.max(moved).min(self.thinness(bodies))
     }
 
+    /// Counts the collisions of what has sunk within a step.
+    pub(crate) fn note_pressed(&mut self, pair: PairId) -> Result<(), AdvanceError> {
+        let Some(step) = self.settings.impulse_step else { return Ok(()) };
+        let bodies = self.pairs.bodies(pair);
+        if !self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
+            return Ok(());
+        }
+        self.ticks.pressed += 1;
+        if self.ticks.pressed <= MOST_PRESSED {
+            return Ok(());
+        }
+        let [primary, normal] = bodies;
+        let (time, events) = (self.now.seconds(), self.ticks.pressed);
+        Err(AdvanceError::Pressed { time, between: Between { primary, normal }, events, step })
+    }
+
     /// The first tick after the present time.
     fn next_tick(&mut self, step: f64) -> Time {
         let passed = (self.now.since(self.start) / step).floor();
@@ -138,8 +160,9 @@ impl RigidSystem {
     }
 
     /// Stops and puts back what has sunk; true if there was an impact.
-    pub(crate) fn handle_tick(&mut self) -> Result<bool, super::AdvanceError> {
+    pub(crate) fn handle_tick(&mut self) -> Result<bool, AdvanceError> {
         self.queue.clear(self.tick_source());
+        self.ticks.pressed = 0;
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.ticks.waiting.iter().flat_map(|touch| touch.bodies));
@@ -310,5 +333,24 @@ mod tests {
             assert!((sinks_by(depth) - (1.0 - depth) * FURTHER_SHARE).abs() < 1e-9);
         }
         assert!((sinks_by(1.0) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
+    }
+    #[test]
+    fn what_is_pressed_collides_only_so_often_in_a_step() {
+        let mut system = resting_discs(&[0.0]);
+        let bodies = [BodyId(0), BodyId(1)];
+        let pair = system.pairs.between(bodies[0], bodies[1]).expect("they touch");
+        let step = 1e-3;
+        system.settings.impulse_step = Some(step);
+        let notes =
+            |system: &mut RigidSystem, times: u32| (0..times).find_map(|_| system.note_pressed(pair).err());
+        assert_eq!(notes(&mut system, 2 * MOST_PRESSED), None, "nothing has sunk");
+        system.ticks.waiting.push(Touch { bodies, features: [FeatureId(5), FeatureId(0)] });
+        assert_eq!(notes(&mut system, MOST_PRESSED), None);
+        let between = Between { primary: bodies[0], normal: bodies[1] };
+        let (time, events) = (system.now.seconds(), MOST_PRESSED + 1);
+        let expected = AdvanceError::Pressed { time, between, events, step };
+        assert_eq!(notes(&mut system, 1), Some(expected));
+        system.handle_tick().expect("it rests");
+        assert_eq!(system.ticks.pressed, 0);
     }
 }
