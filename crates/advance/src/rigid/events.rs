@@ -90,7 +90,7 @@ impl RigidSystem {
         if self.sinks(pair, features) || self.passes_over(pair, features) {
             return Ok(false);
         }
-        self.note_pressed(pair)?;
+        self.note_pressed(Touch::new(bodies, features))?;
         let repeats = self.note_repeat(pair)?;
         let mut work = self.work.take().unwrap_or_default();
         work.repeats = repeats.saturating_sub(CALM_REPEATS);

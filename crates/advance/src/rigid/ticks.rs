@@ -29,6 +29,8 @@ const SUNK_SHARE: f64 = 1e-2;
 const THIN_SHARE: f64 = 1e-1;
 /// Part of that room to which it sinks before it fires again.
 const FIRST_SHARE: f64 = 0.6;
+/// Part of it beyond which it sinks no further, but for what others drive it.
+const DEEPEST: f64 = 0.9;
 /// Part of it by which it may sink further whenever it fires again, slowly.
 const FURTHER_SHARE: f64 = 1.0 / 96.0;
 /// So many times that room, what is deeper lies behind.
@@ -71,7 +73,7 @@ impl RigidSystem {
         let room = self.room_to_sink(bodies);
         let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
         let is_fast = -rate > tolerances.velocity_tol;
-        let is_deepest = gap < tolerances.target_gap - room;
+        let is_deepest = gap < tolerances.target_gap - DEEPEST * room;
         if is_deepest || is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
             return false;
         }
@@ -107,7 +109,7 @@ impl RigidSystem {
         if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
             return self.sunk(gap);
         }
-        let left = gap - target_gap + self.room_to_sink(touch.bodies);
+        let left = gap - target_gap + DEEPEST * self.room_to_sink(touch.bodies);
         gap - self.sink().max(FURTHER_SHARE * left)
     }
 
@@ -136,17 +138,17 @@ impl RigidSystem {
     }
 
     /// Counts the collisions of what has sunk within a step.
-    pub(crate) fn note_pressed(&mut self, pair: PairId) -> Result<(), AdvanceError> {
+    pub(crate) fn note_pressed(&mut self, touch: Touch) -> Result<(), AdvanceError> {
         let Some(step) = self.settings.impulse_step else { return Ok(()) };
-        let bodies = self.pairs.bodies(pair);
-        if !self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
+        let sunk = self.settings.tolerances.target_gap - DEEP_SHARE * self.room_to_sink(touch.bodies);
+        if self.gap_at(touch, self.now).0 >= sunk {
             return Ok(());
         }
         self.ticks.pressed += 1;
         if self.ticks.pressed <= MOST_PRESSED {
             return Ok(());
         }
-        let [primary, normal] = bodies;
+        let [primary, normal] = touch.bodies;
         let (time, events) = (self.now.seconds(), self.ticks.pressed);
         Err(AdvanceError::Pressed { time, between: Between { primary, normal }, events, step })
     }
@@ -330,27 +332,30 @@ mod tests {
         };
         assert!((sinks_by(0.0) * room / system.sink() - 1.0).abs() < 1e-9, "it has not sunk yet");
         for depth in [0.5, 0.75] {
-            assert!((sinks_by(depth) - (1.0 - depth) * FURTHER_SHARE).abs() < 1e-9);
+            assert!((sinks_by(depth) - (DEEPEST - depth) * FURTHER_SHARE).abs() < 1e-9);
         }
-        assert!((sinks_by(1.0) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
+        assert!((sinks_by(DEEPEST) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
     }
     #[test]
     fn what_is_pressed_collides_only_so_often_in_a_step() {
         let mut system = resting_discs(&[0.0]);
         let bodies = [BodyId(0), BodyId(1)];
-        let pair = system.pairs.between(bodies[0], bodies[1]).expect("they touch");
+        let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
         let step = 1e-3;
         system.settings.impulse_step = Some(step);
         let notes =
-            |system: &mut RigidSystem, times: u32| (0..times).find_map(|_| system.note_pressed(pair).err());
+            |system: &mut RigidSystem, times: u32| (0..times).find_map(|_| system.note_pressed(touch).err());
         assert_eq!(notes(&mut system, 2 * MOST_PRESSED), None, "nothing has sunk");
-        system.ticks.waiting.push(Touch { bodies, features: [FeatureId(5), FeatureId(0)] });
+        system.dissolve(bodies[1]);
+        let mut state = system.flyer(bodies[1]).state_at(system.now);
+        state.position.y -= 0.5 * system.room_to_sink(bodies);
+        system.flyers[1].fly_from(system.now, state);
         assert_eq!(notes(&mut system, MOST_PRESSED), None);
         let between = Between { primary: bodies[0], normal: bodies[1] };
         let (time, events) = (system.now.seconds(), MOST_PRESSED + 1);
         let expected = AdvanceError::Pressed { time, between, events, step };
         assert_eq!(notes(&mut system, 1), Some(expected));
-        system.handle_tick().expect("it rests");
+        system.handle_tick().expect("it can be put back");
         assert_eq!(system.ticks.pressed, 0);
     }
 }
