@@ -247,8 +247,7 @@ struct Inspector {
     tolerance: f64,
     /// How far [m] slow bodies sink where contacts carry impulses only, beside a part of their own size; `None` where they carry forces.
     sinks: Option<f64>,
-    /// The scene says itself what is slow: how much captures take is its own affair. So it is where what sinks is stopped once a step,
-    /// however it is pressed.
+    /// The scene says itself what is slow: how much captures take is its own affair.
     slow_is_given: bool,
     turned_over: f64,
     start_potential: f64,
@@ -344,14 +343,11 @@ impl Inspector {
         let allowed = (tolerances * self.tolerance + ENERGY_ROUNDING) * self.turned_over
             + CONNECTOR_ROUNDINGS * potential
             + self.no_energy;
-        // What has sunk is put back, which takes energy that sinking may have given to others.
-        let put_back = if self.sinks.is_some() { ledger.projections.max(0.0) } else { 0.0 };
-        let gained = ledger.now.total() - ledger.start - work - put_back;
+        let gained = ledger.now.total() - ledger.start - work;
         if gained > allowed {
             return Err(("energy gained", format!("{gained:e} J, {allowed:e} J allowed: {ledger:?}")));
         }
-        let tells_slow = !self.slow_is_given && self.sinks.is_none();
-        if tells_slow && ledger.captures < -(CAPTURED * self.turned_over + allowed) {
+        if !self.slow_is_given && ledger.captures < -(CAPTURED * self.turned_over + allowed) {
             let captures = ledger.captures;
             return Err(("captures", format!("{captures:e} J, {:e} J turned over", self.turned_over)));
         }

@@ -282,10 +282,10 @@ impl RigidSystem {
     fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
         work.region.in_storm = self.note_events(&work.region);
-        let is_storm = self.at_tick || work.region.in_storm || work.repeats > 0;
+        let is_storm = work.region.in_storm || work.repeats > 0;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
-        let manner = if is_storm { Manner::Inelastic } else { Manner::Lawful };
+        let manner = if is_storm || self.at_tick { Manner::Inelastic } else { Manner::Lawful };
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner);
         if outcome.is_ok() {
             self.book_impact(&report, is_storm);
