@@ -38,10 +38,8 @@ const WIDENED: usize = 2;
 pub(crate) enum Start<'a> {
     /// With the rows closed that would close without forces.
     Nothing,
-    /// With the rows closed that were so in an earlier answer.
+    /// With the rows closed that were so in an earlier answer, or are guessed to be.
     Earlier(&'a WarmStart),
-    /// With these rows closed as a guess, one flag per row.
-    Guessed(&'a [bool]),
     /// With these rows closed, one flag per row.
     #[cfg(feature = "qp")]
     Closed(&'a [bool]),
@@ -81,14 +79,14 @@ impl DualActiveSet {
         let system = &self.closed.system;
         let limit = self.settings.start_closed * system.scale;
         self.is_warm = match start {
-            Start::Nothing | Start::Guessed(_) => false,
+            Start::Nothing => false,
             Start::Earlier(warm) => !warm.is_guess(),
             #[cfg(feature = "qp")]
             Start::Closed(_) => true,
         };
         let lookup = match start {
             Start::Earlier(warm) => Some(warm.lookup(problem)),
-            Start::Nothing | Start::Guessed(_) => None,
+            Start::Nothing => None,
             #[cfg(feature = "qp")]
             Start::Closed(_) => None,
         };
@@ -106,7 +104,6 @@ impl DualActiveSet {
             let closed = match (start, earlier) {
                 #[cfg(feature = "qp")]
                 (Start::Closed(rows), _) => rows[row],
-                (Start::Guessed(rows), _) => rows[row],
                 (_, Some(earlier)) => earlier.closed,
                 (_, None) => system.b[row] <= limit,
             };

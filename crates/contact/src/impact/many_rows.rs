@@ -58,11 +58,9 @@ pub(super) struct ManyRows {
     solution: Solution,
     /// Place of each row of the impact in the problem, or `OUTSIDE`.
     place: Vec<u32>,
-    /// Whether each row of the problem is likely to carry an impulse, if that is known.
-    likely: Vec<bool>,
-    /// The impulses [N s] from which to look for the answer, if they are known.
+    /// What is known of the rows of the problem, if anything is.
     guess: WarmStart,
-    knows_impulses: bool,
+    is_guessed: bool,
     /// max |b/s|, the unit in which the solver measures contradictions.
     scale: f64,
 }
@@ -83,9 +81,8 @@ impl Default for ManyRows {
             problem,
             solution: Solution::new(),
             place: Vec::new(),
-            likely: Vec::new(),
             guess: WarmStart::new(),
-            knows_impulses: false,
+            is_guessed: false,
             scale: 0.0,
         }
     }
@@ -129,13 +126,11 @@ impl ManyRows {
 impl ManyRows {
     /// Takes what is known of the rows of a set.
     fn begin_with(&mut self, set: &[usize], begin: Beginning<'_>) {
-        self.likely.clear();
-        self.knows_impulses = false;
+        self.is_guessed = !matches!(begin, Beginning::Unknown);
         match begin {
             Beginning::Unknown => {}
-            Beginning::Likely(likely) => self.likely.extend(set.iter().map(|&row| likely[row])),
+            Beginning::Likely(likely) => self.guess.guess(set.iter().map(|&row| Some(likely[row]))),
             Beginning::Carried(carried) => {
-                self.knows_impulses = true;
                 self.guess.guess_forces(set.iter().map(|&row| Some(carried[row]).filter(|&j| j > 0.0)));
             }
         }
@@ -156,13 +151,7 @@ impl ManyRows {
 
     /// Solves as given, but for contradictions that are small.
     fn solve(&mut self) -> Result<(), SolveError> {
-        let start = if self.knows_impulses {
-            Start::Earlier(&self.guess)
-        } else if self.likely.is_empty() {
-            Start::Nothing
-        } else {
-            Start::Guessed(&self.likely)
-        };
+        let start = if self.is_guessed { Start::Earlier(&self.guess) } else { Start::Nothing };
         self.solver.run_modestly(&self.problem, start, &mut self.solution)
     }
 }
