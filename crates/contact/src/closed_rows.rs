@@ -15,6 +15,12 @@ const OPEN: u32 = u32::MAX;
 /// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
 const LOST: f64 = 0.25;
 
+/// Part of its square below which what is left of a row may be no more than rounding.
+const DOUBTFUL: f64 = 1e-6;
+
+/// Rounding of what is left of a row: so much times 1 + |z|², where z times the closed rows are closest to it.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+
 /// State shared by the phases of the dual active-set method.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClosedRows {
@@ -48,6 +54,8 @@ pub(crate) struct ClosedRows {
     reach: Vec<f64>,
     /// Where that may not be zero.
     reached: Range<usize>,
+    /// Shares of the closed rows in one that nearly depends on them.
+    shares: Vec<f64>,
     /// Solutions of systems with the factor.
     pub(crate) step: Vec<f64>,
     /// Least Schur complement of a row that is independent of the closed rows.
@@ -97,6 +105,8 @@ impl ClosedRows {
         self.factor.reset(n);
         self.rows.clear();
         self.rows.reserve(n);
+        self.shares.clear();
+        self.shares.reserve(n);
         self.kept = 0;
         self.free.clear();
         self.free.extend_from_slice(problem.bilateral());
@@ -130,7 +140,19 @@ impl ClosedRows {
         let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;
         let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
-        Relation { complement, dependent: complement <= dependence, first }
+        let dependent =
+            complement <= dependence || (complement <= DOUBTFUL && complement <= self.rounding(closed));
+        Relation { complement, dependent, first }
+    }
+
+    /// Rounding of the Schur complement of the row just considered: that of Â, enlarged where the closed rows nearly depend
+    /// on each other.
+    fn rounding(&mut self, closed: usize) -> f64 {
+        let shares = &mut self.shares;
+        shares.clear();
+        shares.extend_from_slice(&self.reach[..closed]);
+        self.factor.backward(shares);
+        ROUNDINGS * shares.iter().fold(1.0, |sum: f64, share| sum + share * share)
     }
 
     /// Closes the row last considered, which must be independent.

@@ -389,6 +389,46 @@ mod tests {
     }
 
     #[test]
+    fn pins_in_line_with_an_impact_do_not_pull_each_other_apart() -> Result<(), ImpactError> {
+        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the pins nearly depend on each
+        // other: what the fourth seems to have left of its square is rounding, but far more of it than usual.
+        let inertias = [(6.9e-4, 0.0138), (13.597459369453698, 81.58475621672218), (0.21, 1.24), (0.0, 0.0)];
+        let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, elasticity| {
+            let inertia = bodies.map(|body| {
+                let (inverse_mass, inverse_moment) = inertias[body as usize];
+                Inertia { inverse_mass, inverse_moment }
+            });
+            let bodies = bodies.map(|body| if body == 3 { BodyId::WORLD } else { BodyId(body) });
+            let jacobian = [x, y, turns[0], -x, -y, turns[1]];
+            let is_pin = bodies == [BodyId(1), BodyId(2)];
+            CollisionRow::new(bodies, jacobian, inertia, rate, elasticity, 0.015, is_pin)
+        };
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        for turn in 1..100 {
+            let angle = std::f64::consts::FRAC_PI_4 + 1e-5 * f64::from(turn);
+            let (near, far) = (0.4 * angle.cos(), 0.4 * angle.sin());
+            let mut impact = Impact::new();
+            impact.set_rows([
+                row([0, 1], [-0.7075174, 0.7066959], [0.27076, 0.157528], 0.0, 0.8),
+                row([1, 0], [0.7075811, -0.7066322], [0.499955, -0.071729], -0.865, 0.0),
+                row([1, 2], [1.0, 0.0], [-far, -near.next_down()], 0.0, 0.0),
+                row([1, 2], [0.0, 1.0], [near, -far.next_up()], 0.0, 0.0),
+                row([1, 2], [1.0, 0.0], [-near.next_up(), -far], 0.0, 0.0),
+                row([1, 2], [0.0, 1.0], [-far, near], 0.0, 0.0),
+                row([1, 3], [-half, half], [0.50029, 0.0], 0.0, 0.8),
+                row([1, 3], [-half, half], [-0.49971, 0.0], 0.0, 0.8),
+            ]);
+            ImpactLaw::SerialGroupedLastpass.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
+            let rates = impact.rows().iter().zip(impact.rates());
+            let violations = rates.map(|(row, rate)| if row.bilateral { rate.abs() } else { -rate });
+            let worst = violations.fold(0.0, f64::max);
+            let largest = impact.impulses().iter().fold(0.0f64, |most, impulse| most.max(impulse.abs()));
+            assert!(worst < 1e-9 && largest < 1e4, "{turn}: {worst:e} m/s, {largest:e} N s");
+        }
+        Ok(())
+    }
+
+    #[test]
     fn what_rows_were_unloaded_by_is_where_their_impulses_are_looked_for() -> Result<(), ImpactError> {
         // Discs in rows, each on two of the row below in directions that vary, fall onto a floor.
         const ACROSS: usize = 9;
