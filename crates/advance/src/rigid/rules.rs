@@ -10,6 +10,9 @@ use halfgap_collision::FeatureRule;
 /// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
 const SEAM_SHARE: f64 = 1.0 / 32.0;
 
+/// What is told to fire where it lies does not get so many times deeper.
+const MUCH_DEEPER: f64 = 2.0;
+
 impl RigidSystem {
     /// Distance [m] by which a contact without force may sink before it fires again.
     pub(crate) fn sink(&self) -> f64 {
@@ -33,10 +36,8 @@ impl RigidSystem {
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
     /// that touch without force.
     pub(crate) fn set_rules(&mut self, EventWork { region, settling, fired_open, .. }: &EventWork) {
-        for &body in &region.bodies {
-            self.pairs.clear_rules_of(body);
-        }
         let rest = self.rest_speed();
+        self.take_rules(region);
         let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
         self.set_halos(region);
         for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
@@ -57,6 +58,47 @@ impl RigidSystem {
                 self.pairs.change_rules(pair, |rules| rules.push(rule));
             }
         }
+        self.give_back_deep();
+    }
+
+    /// Drops what the search was told of the bodies of a region, and puts aside what it was told of contacts that lie deep.
+    fn take_rules(&mut self, region: &Region) {
+        let deepest = self.deepest();
+        self.deep.clear();
+        for &body in &region.bodies {
+            let pairs = self.pairs.of_body(body).iter().map(|link| link.pair);
+            for pair in pairs.filter(|&pair| self.pairs.get(pair).has_rules) {
+                let targets =
+                    self.pairs.rules(pair).iter().filter_map(|rule| Some((rule.features, rule.target?)));
+                let deep = targets.filter(|(_, target)| *target < deepest);
+                self.deep.extend(deep.map(|(features, target)| (pair, features, target)));
+            }
+            self.pairs.clear_rules_of(body);
+        }
+    }
+
+    /// A contact that was moved so deep that it fires where it lies is not seen by an event of other bodies, but goes on to do so
+    /// until it is out.
+    fn give_back_deep(&mut self) {
+        let deepest = self.deepest();
+        for index in 0..self.deep.len() {
+            let (pair, features, told) = self.deep[index];
+            let touch = Touch { bodies: self.pairs.bodies(pair), features };
+            let (gap, rate) = self.gap_at(touch, self.now);
+            // What lies deeper by far has gone round its body.
+            if gap < deepest && gap > MUCH_DEEPER * told {
+                let target = if rate.abs() <= self.rest_speed() { self.sunk(gap) } else { gap };
+                // What was told of the same features in this event comes first, and counts.
+                self.pairs.change_rules(pair, |rules| rules.push(touch.lowered_to(target)));
+            }
+        }
+    }
+
+    /// The gap [m] below which the search would take a contact for the far side of a body. Where contacts carry impulses only, it
+    /// looks as deep as they may sink.
+    fn deepest(&self) -> f64 {
+        let with_forces = self.settings.impulse_step.is_none();
+        if with_forces { -DEEPEST * self.settings.tolerances.target_gap } else { f64::NEG_INFINITY }
     }
 
     /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they would meet the other
@@ -151,6 +193,33 @@ mod tests {
             state.position.y = 0.5 - depth * target;
             system.flyers[1].fly_from(system.now, state);
             assert!((system.returns_to(touch) - returns_to).abs() < 1e-9 * target, "{depth} target gaps");
+        }
+    }
+
+    #[test]
+    fn what_fires_where_it_lies_goes_on_to_do_so_when_others_collide() {
+        let mut system = resting_discs(&[0.0]);
+        let target = system.settings.tolerances.target_gap;
+        let mut work = EventWork::default();
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
+        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they touch");
+        system.dissolve(BodyId(1));
+        // An event that does not see the contact.
+        work.region.touches.clear();
+        let told = [target, -0.9 * target].map(|target| touch.lowered_to(target));
+        for (rule, gap, is_kept) in [(0, -0.9, false), (1, -0.8, true), (1, -0.1, false), (1, -2.0, false)] {
+            let mut state = system.flyer(BodyId(1)).state_at(system.now);
+            (state.position.y, state.velocity.y) = (0.5 + gap * target, 1e-3);
+            system.flyers[1].fly_from(system.now, state);
+            system.pairs.clear_rules_of(BodyId(1));
+            system.pairs.change_rules(pair, |rules| rules.push(told[rule]));
+            system.set_rules(&work);
+            let rules = system.pairs.rules(pair);
+            assert_eq!(rules.len(), usize::from(is_kept), "{rules:?}");
+            let lies_at =
+                |rule: &FeatureRule| rule.target.is_some_and(|at| (at - gap * target).abs() < 1e-9 * target);
+            assert!(rules.iter().all(lies_at), "{rules:?}");
         }
     }
 

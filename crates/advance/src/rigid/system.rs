@@ -33,6 +33,7 @@ use halfgap_collision::{
     Body, BodyId, BodyState, BroadPhase, Connector, ConnectorId, Moving, RailHint, SearchSettings, Tolerances,
 };
 use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_geometry::FeatureId;
 use std::sync::Arc;
 
 /// How contacts are judged, impacts resolved, and motions integrated.
@@ -171,6 +172,8 @@ pub struct RigidSystem {
     /// Which of what begins is no change.
     pub(crate) goes_on: Vec<bool>,
     pub(crate) touched: Vec<PairId>,
+    /// Contacts that lie deep, and at which gap [m] they were to fire, while what the search is told is made anew.
+    pub(crate) deep: Vec<(PairId, [FeatureId; 2], f64)>,
     /// When contacts have fired again and again without time going by.
     pub(crate) last_insistent: Option<Time>,
     pub(crate) links: Vec<Link>,
@@ -230,6 +233,7 @@ impl RigidSystem {
             changes: ContactChanges::default(),
             goes_on: Vec::new(),
             touched: Vec::new(),
+            deep: Vec::new(),
             last_insistent: None,
             links: Vec::new(),
             neighbours: Vec::new(),
