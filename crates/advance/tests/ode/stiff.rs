@@ -189,6 +189,36 @@ fn the_heat_of_what_follows_a_slow_motion_is_that_of_where_it_comes_to() {
     assert!((end[2] - expected).abs() < 1e-10 * expected, "{end:?}: {expected}");
 }
 
+/// What rests but for the rounding of its rate, which is another each time.
+#[derive(Default)]
+struct Trembling {
+    times: f64,
+}
+
+impl Ode for Trembling {
+    type Error = Infallible;
+
+    fn derivative(&mut self, _offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        self.times += 1.0;
+        rates[0] = -FAST * state[0] + 1e-12 * self.times * self.times;
+        Ok(())
+    }
+}
+
+#[test]
+fn what_rests_goes_long_steps_however_its_rates_are_rounded() {
+    let (mut trembling, mut stepper) = (Trembling::default(), Stepper::new(Method::RadauIia5));
+    let scales = [1e-8];
+    stepper.set_scales(&scales);
+    for step in [1e-2, 1.0, 1e2].map(|times| times / FAST) {
+        let (start, mut rates, mut end) = ([0.0], [0.0], [0.0]);
+        let Ok(()) = trembling.derivative(0.0, &start, &mut rates);
+        let from = Point { offset: 0.0, state: &start, rates: &rates };
+        let Ok(()) = stepper.step(&mut trembling, from, step, &mut end);
+        assert!(stepper.error_norm(&scales) < 1e-3, "{step}: {}", stepper.error_norm(&scales));
+    }
+}
+
 /// Rates that are no numbers.
 struct Nothing;
 

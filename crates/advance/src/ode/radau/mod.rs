@@ -19,6 +19,9 @@ const ROUNDINGS: f64 = 16.0;
 /// A correction leaves at least this part of itself to correct, however much smaller it is than the one before: the first
 /// is the whole way of the step, and what is slow may hide that what is fast has yet to follow it.
 const LEAST_LEFT: f64 = 1e-2;
+/// A correction by less than this part of the acceptable error is none: where a system rests, each is what rounding makes of its
+/// rates, and does not get smaller.
+const NEGLIGIBLE: f64 = 1e-6;
 /// Corrections in one step; more mean that a shorter step costs less.
 const MOST_CORRECTIONS: usize = 10;
 /// Corrections that fall by less than this factor do not converge.
@@ -225,14 +228,12 @@ impl Radau {
             if !correction.is_finite() {
                 return Ok(false);
             }
-            let Some(last) = before.replace(correction) else {
-                if correction == 0.0 {
-                    return Ok(true);
-                }
-                continue;
-            };
+            if correction <= NEGLIGIBLE {
+                return Ok(true);
+            }
+            let Some(last) = before.replace(correction) else { continue };
             let factor = (correction / last).max(LEAST_LEFT);
-            if correction == 0.0 || factor / (1.0 - factor).max(0.0) * correction <= CONVERGED {
+            if factor / (1.0 - factor).max(0.0) * correction <= CONVERGED {
                 return Ok(true);
             }
             if factor > SLOWEST {
