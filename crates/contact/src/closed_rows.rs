@@ -60,6 +60,8 @@ pub(crate) struct ClosedRows {
     pub(crate) step: Vec<f64>,
     /// Least Schur complement of a row that is independent of the closed rows.
     dependence: f64,
+    /// Whether a row is dependent, too, of which no more than rounding is left.
+    doubts: bool,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
     /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; what forces then
@@ -81,7 +83,7 @@ pub(crate) struct Relation {
 
 impl ClosedRows {
     /// Loads a problem; all forces zero. The rows closed before and their factor stay if only b has changed.
-    pub(crate) fn load(&mut self, problem: &Problem, dependence: f64) {
+    pub(crate) fn load(&mut self, problem: &Problem, dependence: f64, doubts: bool) {
         let same = self.system.load(problem);
         let n = problem.len();
         self.was_spread = self.spread > 0.0 && self.dependence == dependence;
@@ -99,7 +101,7 @@ impl ClosedRows {
         self.system.prepare_to_gather(problem);
         let (start, column) = self.system.pattern();
         self.order.prepare(start, column, self.system.columns());
-        self.dependence = dependence;
+        (self.dependence, self.doubts) = (dependence, doubts);
         self.proximal = 0.0;
         self.spread = 0.0;
         self.factor.reset(n);
@@ -140,8 +142,8 @@ impl ClosedRows {
         let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;
         let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
-        let dependent =
-            complement <= dependence || (complement <= DOUBTFUL && complement <= self.rounding(closed));
+        let is_doubtful = self.doubts && complement <= DOUBTFUL;
+        let dependent = complement <= dependence || (is_doubtful && complement <= self.rounding(closed));
         Relation { complement, dependent, first }
     }
 

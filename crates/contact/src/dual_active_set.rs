@@ -90,6 +90,8 @@ pub(crate) enum HandOver {
 pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
     pub(crate) dependence: f64,
+    /// Whether what is no more than rounding is left of a row that depends on others, too: as given, forces may be as large as it takes.
+    pub(crate) doubts: bool,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     pub(crate) contradiction: f64,
     /// Whether what is left of bilateral rows that nearly depend on others counts as a contradiction, too.
@@ -159,7 +161,7 @@ impl DualActiveSet {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let Settings { dependence, inconsistency, .. } = self.settings;
-        let attempt = Attempt { dependence, contradiction: inconsistency, is_last: false };
+        let attempt = Attempt { dependence, doubts: true, contradiction: inconsistency, is_last: false };
         self.attempt(problem, start, solution, attempt)
     }
 
@@ -216,8 +218,8 @@ impl DualActiveSet {
     fn attempts(&self) -> [Attempt; 3] {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
-        let usual = Attempt { dependence, contradiction: as_given, is_last: false };
-        let strict = Attempt { dependence: least_dependence, ..usual };
+        let usual = Attempt { dependence, doubts: true, contradiction: as_given, is_last: false };
+        let strict = Attempt { dependence: least_dependence, doubts: false, ..usual };
         let least_squares = Attempt { contradiction: inconsistency, ..usual };
         let last = Attempt { is_last: true, ..least_squares };
         match self.settings.contradiction {
@@ -268,7 +270,7 @@ impl DualActiveSet {
         attempt: Attempt,
     ) {
         solution.reset(problem.len(), Method::DualActiveSet);
-        self.closed.load(problem, attempt.dependence);
+        self.closed.load(problem, attempt.dependence, attempt.doubts);
         self.shift.reset();
         self.contacts_contradict = false;
         (self.pivots, self.work, self.slight_swaps) = (0, 0, 0);

@@ -37,6 +37,7 @@ impl DualActiveSet {
         let raise = self.settings.raise;
         let attempt = Attempt {
             dependence: LOST * raise,
+            doubts: false,
             contradiction: self.settings.natural_residual / 2.0,
             is_last: false,
         };
