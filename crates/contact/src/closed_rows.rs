@@ -60,7 +60,7 @@ pub(crate) struct ClosedRows {
     pub(crate) step: Vec<f64>,
     /// Least Schur complement of a row that is independent of the closed rows.
     dependence: f64,
-    /// Whether a row is dependent, too, of which no more than rounding is left.
+    /// Whether a row of which no more than rounding is left counts as dependent, too.
     doubts: bool,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
@@ -92,7 +92,8 @@ impl ClosedRows {
             values.resize(n, 0.0);
         }
         self.reached = 0..0;
-        let plain = self.proximal == 0.0 && self.kept == 0 && self.dependence == dependence;
+        let plain =
+            self.proximal == 0.0 && self.kept == 0 && (self.dependence, self.doubts) == (dependence, doubts);
         self.reusable = same && plain && self.free == problem.bilateral;
         if self.reusable {
             self.system.form_entries(problem);
@@ -142,7 +143,8 @@ impl ClosedRows {
         let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;
         let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
-        let is_doubtful = self.doubts && complement <= DOUBTFUL;
+        // A raise is far more than rounding.
+        let is_doubtful = self.doubts && self.spread == 0.0 && complement <= DOUBTFUL;
         let dependent = complement <= dependence || (is_doubtful && complement <= self.rounding(closed));
         Relation { complement, dependent, first }
     }

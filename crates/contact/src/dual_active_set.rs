@@ -90,7 +90,8 @@ pub(crate) enum HandOver {
 pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
     pub(crate) dependence: f64,
-    /// Whether what is no more than rounding is left of a row that depends on others, too: as given, forces may be as large as it takes.
+    /// Whether a row of which no more than rounding is left counts as dependent, too: where no other attempt follows, and forces are
+    /// to be modest.
     pub(crate) doubts: bool,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     pub(crate) contradiction: f64,
@@ -218,8 +219,8 @@ impl DualActiveSet {
     fn attempts(&self) -> [Attempt; 3] {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
-        let usual = Attempt { dependence, doubts: true, contradiction: as_given, is_last: false };
-        let strict = Attempt { dependence: least_dependence, doubts: false, ..usual };
+        let usual = Attempt { dependence, doubts: false, contradiction: as_given, is_last: false };
+        let strict = Attempt { dependence: least_dependence, ..usual };
         let least_squares = Attempt { contradiction: inconsistency, ..usual };
         let last = Attempt { is_last: true, ..least_squares };
         match self.settings.contradiction {

@@ -22,8 +22,7 @@ pub struct Settings {
     pub greatest_growth: f64,
     /// Largest backward residual of an accepted answer of great growth.
     pub backward_residual: f64,
-    /// A row depends on the closed rows when what they leave of its squared length is at most this part of it, or no more than
-    /// rounding where these nearly depend on each other.
+    /// A row depends on the closed rows when what they leave of its squared length is at most this part of it.
     ///
     /// Larger treats nearly redundant contacts as redundant, smaller lets forces grow by up to its reciprocal.
     pub dependence: f64,
