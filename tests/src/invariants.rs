@@ -1,9 +1,10 @@
 //! What must hold whatever the scene: runs a scene step by step and looks.
 //!
-//! No panic, no number that is none, no penetration, no energy from nothing, connectors together, and an end within the
-//! budget: finished, or a clean error. Everything is judged from outside: distances by the geometry alone, energy from the
-//! states.
+//! No panic, no number that is none, no penetration, no energy from nothing, connectors together, contacts that touch and push,
+//! and an end within the budget: finished, or a clean error. Everything is judged from outside: distances by the geometry alone,
+//! energy from the states.
 
+use crate::touching::wrong_contact;
 use halfgap::force::{Moving, Snapshot, Wrench, Wrenches};
 use halfgap::geometry::{DVec2, Pose, Relation};
 use halfgap::scene::{ConnectorData, ForceData, Scene, SceneFormat};
@@ -316,6 +317,11 @@ impl Inspector {
             if error.is_nan() || error > allowed.max(zone) {
                 return broken("connector off", format!("{kind} {} is off by {error:e} m", connector.0));
             }
+        }
+        if let Some((kind, what)) =
+            wrong_contact(world, CONNECTOR_ROUNDINGS * coordinate, self.no_energy / coordinate)
+        {
+            return broken(kind, what);
         }
         self.look_at_energy(world).or_else(|(kind, what)| broken(kind, what))
     }

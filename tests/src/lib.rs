@@ -1,13 +1,14 @@
 //! Scenarios that cross the layers of halfgap, and the scenes that they run.
 //!
-//! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and looks, `shrink` makes small
-//! what fails, `random` is where the numbers come from.
+//! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and looks (`touching` at contacts),
+//! `shrink` makes small what fails, `random` is where the numbers come from.
 
 pub mod generate;
 pub mod invariants;
 pub mod mechanism;
 pub mod random;
 pub mod shrink;
+mod touching;
 
 use halfgap::scene::Scene;
 use halfgap::{CheckReport, World, check};

@@ -36,6 +36,7 @@ mod lane;
 mod law;
 mod ledger;
 mod marks;
+mod overdue;
 mod pace;
 mod pairs;
 mod path;

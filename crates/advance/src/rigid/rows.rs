@@ -164,6 +164,11 @@ impl Mechanism<'_> {
         }
     }
 
+    /// How far [m] beyond its features a contact has run off them.
+    pub(crate) fn change_margin(&self) -> f64 {
+        CHANGE_SHARE * self.tolerances.accuracy
+    }
+
     /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
     /// rows that cannot.
     pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
@@ -181,7 +186,7 @@ impl Mechanism<'_> {
                 let sample = self.sample(row.bodies, features, [a, b]);
                 let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };
                 let outside = sample.overrun.max(lean);
-                Some(CHANGE_SHARE * self.tolerances.accuracy - outside)
+                Some(self.change_margin() - outside)
             }
         }
     }

@@ -18,6 +18,9 @@ use crate::ode::Ode;
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
 pub(crate) const FORCE_SHARE: f64 = 1e-9;
 
+/// With so many times what counts as no force a contact may seem to pull by rounding when it is held.
+const PULL: f64 = 16.0;
+
 /// Part of the accuracy by which a held contact may be too near or too far within a step.
 const INNER_SHARE: f64 = 0.5;
 /// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
@@ -32,22 +35,25 @@ const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
 const STEEP: f64 = 4.0;
 
 /// Functions of the rows along a segment of which the first to fall below zero is an event.
-struct Watch {
+pub(super) struct Watch {
     /// Places the bodies at an offset [s], with all that reading needs.
     place: fn(&mut Dynamics<'_>, f64),
     /// The same of those on which a row depends.
-    place_for: fn(&mut Dynamics<'_>, usize, f64),
+    pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
     /// The value of a row there.
-    read: fn(&Dynamics<'_>, usize) -> f64,
+    pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
+    /// Below zero by how much it may be at the start, though it was not before.
+    pub(super) rounding: fn(&Dynamics<'_>, usize) -> f64,
     /// True if a fall of a row counts, with the bodies in place.
     counts: fn(&Dynamics<'_>, usize) -> bool,
-    end: fn(usize) -> SegmentEnd,
+    pub(super) end: fn(usize) -> SegmentEnd,
 }
 
 const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
     read: |dynamics, row| dynamics.pressure(row),
+    rounding: |dynamics, row| PULL * dynamics.stage.least[row],
     counts: |_, _| true,
     end: SegmentEnd::Release,
 };
@@ -55,6 +61,7 @@ const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
     read: |dynamics, row| dynamics.room(row),
+    rounding: |dynamics, _| dynamics.physics.mechanism.change_margin(),
     counts: |_, _| true,
     end: SegmentEnd::Change,
 };
@@ -62,6 +69,8 @@ const SINKINGS: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_leaning_at(row, offset),
     read: |dynamics, row| dynamics.height(row),
+    // It is lowered to where it lies.
+    rounding: |_, _| 0.0,
     // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
     counts: |dynamics, row| dynamics.is_within(row),
     end: SegmentEnd::Sink,
@@ -112,6 +121,7 @@ impl Dynamics<'_> {
         }
         let mut earliest = self.group.event;
         self.find_first(&mut earliest, &forces, &RELEASES);
+        self.find_overdue(&mut earliest, &forces, &RELEASES);
         self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
     }
@@ -123,6 +133,7 @@ impl Dynamics<'_> {
         self.find_early_sinking(&mut earliest, &samples);
         self.find_early_change(&mut earliest, &samples.rooms);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
+        self.find_overdue(&mut earliest, &samples.rooms, &CHANGES);
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
         let mut offer = |found: Option<f64>, end: SegmentEnd| {
