@@ -48,8 +48,7 @@ impl RigidSystem {
             } else {
                 // What fired although it does not close would do so again at once. It may sink no farther than its zone.
                 let fired_open = *fired_open && region.fired == Some(*touch) && gap > least;
-                // Nor may what has just run off its features, and seems to be on them still by rounding.
-                let stays = rate <= rest || fired_open || region.run_off == Some(*touch);
+                let stays = rate <= rest || fired_open;
                 touch.lowered_to(if stays { self.sinks_to(*touch, gap) } else { self.returns_to(*touch) })
             };
             if is_held {

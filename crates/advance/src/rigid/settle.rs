@@ -18,7 +18,7 @@ use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
 use halfgap_contact::{Row, SolveError};
 
 /// Part of the reach of a body from which the half-width of its zone can be seen.
-const SEEN: f64 = 1e-4;
+pub(super) const SEEN: f64 = 1e-4;
 /// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been lifted may sink once.
 const SUNK: f64 = 1.5;
 /// Depth of an overlap, in target gaps, from which a contact is lifted.
