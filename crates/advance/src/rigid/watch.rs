@@ -43,7 +43,7 @@ pub(super) struct Watch {
     pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
     /// The value of a row there.
     pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
-    /// Below zero by how much it may be at the start, though it was not before.
+    /// By how much it may be below zero at the start, by rounding alone; without end where that cannot be told.
     pub(super) rounding: fn(&Dynamics<'_>, usize) -> f64,
     /// True if a fall of a row counts, with the bodies in place.
     counts: fn(&Dynamics<'_>, usize) -> bool,
@@ -54,7 +54,9 @@ const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
     read: |dynamics, row| dynamics.pressure(row),
-    rounding: |dynamics, row| PULL * dynamics.stage.least[row],
+    rounding: |dynamics, row| {
+        if dynamics.is_seen(row) { f64::INFINITY } else { PULL * dynamics.stage.least[row] }
+    },
     counts: |_, _| true,
     end: SegmentEnd::Release,
 };
@@ -62,7 +64,9 @@ const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
     read: |dynamics, row| dynamics.room(row),
-    rounding: |dynamics, row| dynamics.change_rounding(row),
+    rounding: |dynamics, row| {
+        if dynamics.is_seen(row) { f64::INFINITY } else { dynamics.physics.mechanism.change_margin() }
+    },
     counts: |_, _| true,
     end: SegmentEnd::Change,
 };
@@ -391,14 +395,13 @@ impl Dynamics<'_> {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
-    /// How far [m] beyond its features a contact may be by rounding when it is held. In zones that one can see bodies are
-    /// beyond corners by parts of them, and no bound tells that from rounding: there such a contact is left to come back first.
-    fn change_rounding(&self, row: usize) -> f64 {
+    /// True if the zone in which a row is held is so wide, beside its bodies, that one sees where in it they are. There no bound
+    /// tells rounding from how contacts lie and are pressed, and what starts below zero is left to rise first.
+    fn is_seen(&self, row: usize) -> bool {
         let mechanism = &self.physics.mechanism;
         let movable = self.group.rows[row].bodies.into_iter().filter(|body| self.group.bodies.contains(body));
         let reach = movable.fold(0.0, |most: f64, body| most.max(mechanism.flyers[body.index()].reach()));
-        let is_seen = mechanism.tolerances.accuracy > SEEN * reach;
-        if is_seen { f64::INFINITY } else { mechanism.change_margin() }
+        mechanism.tolerances.accuracy > SEEN * reach
     }
 
     /// Distance [m] of a contact that is touched without force from its least gap.
