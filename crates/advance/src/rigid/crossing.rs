@@ -66,7 +66,8 @@ pub(crate) fn node(index: usize, span: f64) -> f64 {
 
 /// The first offset in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
 ///
-/// A function that starts below zero must rise first (but see [`fall_from_below`]). The answer lies behind the fall: there `f` is negative.
+/// A function that starts below zero must rise first, but see [`fall_from_below`]. The answer lies behind the fall: there `f` is
+/// negative.
 pub(crate) fn first_fall(values: &[f64; NODES], span: f64, f: impl FnMut(f64) -> f64) -> Option<f64> {
     first_fall_before(values, span, None, f)
 }

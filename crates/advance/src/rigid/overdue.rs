@@ -5,19 +5,24 @@
 use super::crossing::{NODES, fall_from_below};
 use super::dynamics::Dynamics;
 use super::group::SegmentEnd;
+use super::settle::SEEN;
 use super::watch::Watch;
 
 impl Dynamics<'_> {
     /// The earliest fall of any row of a watch that is below zero at the start and falls on, if it comes before what was found so
-    /// far.
+    /// far; with how far below zero a row may be by rounding alone.
     pub(super) fn find_overdue(
         &mut self,
         earliest: &mut Option<(f64, SegmentEnd)>,
         samples: &[[f64; NODES]],
         watch: &Watch,
+        rounding: impl Fn(&Self, usize) -> f64,
     ) {
-        for (row, values) in samples.iter().enumerate().filter(|(_, values)| values[0] < 0.0) {
-            let rounding = (watch.rounding)(self, row);
+        for (row, values) in samples.iter().enumerate() {
+            if values[0] >= 0.0 || self.is_seen(row) {
+                continue;
+            }
+            let rounding = rounding(self, row);
             let fall = fall_from_below(values, self.group.span, rounding, |offset| {
                 (watch.place_for)(self, row, offset);
                 (watch.read)(self, row)
@@ -26,6 +31,15 @@ impl Dynamics<'_> {
                 *earliest = Some((offset, (watch.end)(row)));
             }
         }
+    }
+
+    /// True if the zone in which a row is held is so wide, beside its bodies, that one sees where in it they are. There no bound
+    /// tells rounding from how contacts lie and are pressed, and what starts below zero is left to rise first.
+    fn is_seen(&self, row: usize) -> bool {
+        let mechanism = &self.physics.mechanism;
+        let movable = self.group.rows[row].bodies.into_iter().filter(|body| self.group.bodies.contains(body));
+        let reach = movable.fold(0.0, |most: f64, body| most.max(mechanism.flyers[body.index()].reach()));
+        mechanism.tolerances.accuracy > SEEN * reach
     }
 }
 

@@ -13,7 +13,6 @@ use super::group::{Group, SegmentEnd, Stop};
 use super::law::Snapshot;
 use super::rows::{HeldRow, RowSource, moving_of};
 use super::segment::StepControl;
-use super::settle::SEEN;
 use crate::ode::Ode;
 
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
@@ -43,8 +42,6 @@ pub(super) struct Watch {
     pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
     /// The value of a row there.
     pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
-    /// By how much it may be below zero at the start, by rounding alone; without end where that cannot be told.
-    pub(super) rounding: fn(&Dynamics<'_>, usize) -> f64,
     /// True if a fall of a row counts, with the bodies in place.
     counts: fn(&Dynamics<'_>, usize) -> bool,
     pub(super) end: fn(usize) -> SegmentEnd,
@@ -54,9 +51,6 @@ const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
     read: |dynamics, row| dynamics.pressure(row),
-    rounding: |dynamics, row| {
-        if dynamics.is_seen(row) { f64::INFINITY } else { PULL * dynamics.stage.least[row] }
-    },
     counts: |_, _| true,
     end: SegmentEnd::Release,
 };
@@ -64,9 +58,6 @@ const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
     read: |dynamics, row| dynamics.room(row),
-    rounding: |dynamics, row| {
-        if dynamics.is_seen(row) { f64::INFINITY } else { dynamics.physics.mechanism.change_margin() }
-    },
     counts: |_, _| true,
     end: SegmentEnd::Change,
 };
@@ -74,8 +65,6 @@ const SINKINGS: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_leaning_at(row, offset),
     read: |dynamics, row| dynamics.height(row),
-    // It is lowered to where it lies.
-    rounding: |_, _| 0.0,
     // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
     counts: |dynamics, row| dynamics.is_within(row),
     end: SegmentEnd::Sink,
@@ -126,7 +115,9 @@ impl Dynamics<'_> {
         }
         let mut earliest = self.group.event;
         self.find_first(&mut earliest, &forces, &RELEASES);
-        self.find_overdue(&mut earliest, &forces, &RELEASES);
+        self.find_overdue(&mut earliest, &forces, &RELEASES, |dynamics, row| {
+            PULL * dynamics.stage.least[row]
+        });
         self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
     }
@@ -138,7 +129,8 @@ impl Dynamics<'_> {
         self.find_early_sinking(&mut earliest, &samples);
         self.find_early_change(&mut earliest, &samples.rooms);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
-        self.find_overdue(&mut earliest, &samples.rooms, &CHANGES);
+        let margin = self.physics.mechanism.change_margin();
+        self.find_overdue(&mut earliest, &samples.rooms, &CHANGES, |_, _| margin);
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
         let mut offer = |found: Option<f64>, end: SegmentEnd| {
@@ -393,15 +385,6 @@ impl Dynamics<'_> {
     /// How far a row is from running off its features, without end for one that cannot.
     pub(crate) fn room(&self, row: usize) -> f64 {
         self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
-    }
-
-    /// True if the zone in which a row is held is so wide, beside its bodies, that one sees where in it they are. There no bound
-    /// tells rounding from how contacts lie and are pressed, and what starts below zero is left to rise first.
-    fn is_seen(&self, row: usize) -> bool {
-        let mechanism = &self.physics.mechanism;
-        let movable = self.group.rows[row].bodies.into_iter().filter(|body| self.group.bodies.contains(body));
-        let reach = movable.fold(0.0, |most: f64, body| most.max(mechanism.flyers[body.index()].reach()));
-        mechanism.tolerances.accuracy > SEEN * reach
     }
 
     /// Distance [m] of a contact that is touched without force from its least gap.
