@@ -152,6 +152,19 @@ fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &T
     } else {
         [sample.excess_normal, sample.excess_primary]
     };
-    let leans = |side: usize| excess[side] <= tolerances.accuracy / sides[side].0.lever(sides[side].1);
+    let levers = contact_levers(sides);
+    let leans = |side: usize| excess[side] <= tolerances.accuracy / levers[side];
     sample.overrun <= tolerances.accuracy && leans(0) && leans(1)
+}
+
+/// Lengths [m] over which angles outside of the ranges of two features that touch become distances: the levers of both, but that
+/// of a corner on a line is no longer than the line. So far at most the two bodies lie flat on each other.
+#[must_use]
+pub fn contact_levers(sides: [(&Shape, FeatureId); 2]) -> [f64; 2] {
+    let [own, other] = sides.map(|(shape, id)| shape.lever(id));
+    match sides.map(|(shape, id)| shape.feature(id)) {
+        [Feature::Round(corner), Feature::Line(_)] if corner.radius == 0.0 => [own.min(other), other],
+        [Feature::Line(_), Feature::Round(corner)] if corner.radius == 0.0 => [own, other.min(own)],
+        _ => [own, other],
+    }
 }

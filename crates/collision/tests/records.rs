@@ -170,6 +170,21 @@ fn a_block_flat_on_an_equal_block_touches_at_two_corners() {
 }
 
 #[test]
+fn a_corner_leans_off_a_short_side_as_far_as_that_side_shows() {
+    // A small block lies over the corner of a large one, and its end sinks: along its side by less than the accuracy, though
+    // along the large one's it would be more.
+    let (large, small) = (block(2.0, 2.0), block(0.1, 0.1));
+    let found = |angle: f64| {
+        detect((&large, still(0.0, 0.0)), (&small, at(1.0, 1.05 + TOLERANCES.target_gap, angle, DVec2::ZERO)))
+    };
+    for [few, many] in [[2e-3, 8e-3], [5e-3, 7e-3]] {
+        let corner = |record: &Collision| record.parties.primary.body == BodyId(3);
+        assert!(found(few).iter().any(corner), "{few}: {:?}", found(few));
+        assert!(!found(many).iter().any(corner), "{many}: {:?}", found(many));
+    }
+}
+
+#[test]
 fn a_tight_fit_has_its_own_thresholds() {
     // A pin in a bore with a clearance of two target gaps: its target is a quarter of that.
     let clearance = 2.0 * TOLERANCES.target_gap;

@@ -4,7 +4,7 @@ use super::flyer::Flyer;
 use glam::DVec2;
 use halfgap_collision::{
     BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailKnot, RailPath, RailPlace,
-    Tolerances,
+    Tolerances, contact_levers,
 };
 use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
 
@@ -265,8 +265,9 @@ impl Mechanism<'_> {
         let shape = |side: usize| self.shape(bodies[side]);
         let feature = |side: usize| (shape(side).feature(features[side]), &movings[side].pose);
         sample.find_excess([feature(0), feature(1)]);
-        let lever = |side: usize| shape(side).lever(features[side]);
-        (sample.excess_primary * lever(0)).max(sample.excess_normal * lever(1))
+        let levers = contact_levers([0, 1].map(|side| (shape(side), features[side])));
+        let [primary, normal] = if sample.primary_is_a { levers } else { [levers[1], levers[0]] };
+        (sample.excess_primary * primary).max(sample.excess_normal * normal)
     }
 }
 
@@ -288,4 +289,38 @@ pub(crate) fn knot_rooms(path: &RailPath, knot: &RailKnot, place: &RailPlace) ->
     let before = (knot.before == place.piece()).then_some(end - place.arc_length);
     let after = (knot.after == place.piece()).then_some(place.arc_length - knot.arc_length);
     [before, after]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::block_on_its_corner;
+    use super::*;
+    use halfgap_geometry::Pose;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_corner_leans_by_what_it_is_long_itself_whichever_body_is_named_first() {
+        // A corner of 0.1 m on a floor of 20 m, which is body 0.
+        let system = block_on_its_corner();
+        let group = system.group_of(BodyId(1)).expect("it is held");
+        let row = HeldRow { leans: false, ..group.rows[0] };
+        let RowSource::Contact([first, second]) = row.source else { panic!("it is a contact") };
+        let source = RowSource::Contact([second, first]);
+        let swapped = HeldRow { bodies: [row.bodies[1], row.bodies[0]], source, ..row };
+        let mechanism = system.mechanism();
+        let room = |row: &HeldRow, lean: f64| {
+            let mut movings = [0, 1].map(|body| system.flyer(BodyId(body)).moving_at(system.now));
+            let position = movings[1].pose.position;
+            movings[1].pose = Pose::new(position, FRAC_PI_2 + lean / 0.1);
+            mechanism.room(row, &movings).expect("the corner ends")
+        };
+        let margin = mechanism.change_margin();
+        for part in [0.1, 0.5, 0.9, 1.1, 2.0] {
+            let expected = (1.0 - part) * margin;
+            for found in [&row, &swapped].map(|row| room(row, part * margin)) {
+                // Features reach a little beyond smooth joints.
+                assert!((found - expected).abs() < 0.02 * margin, "{part}: {found} m for {expected} m");
+            }
+        }
+    }
 }
