@@ -312,6 +312,11 @@ const COARSE_BROKEN: &[(u64, &str)] = &[
     (40_001_854, "a rope was longer each time it had been taut without force"),
     (40_004_352, "the same between two bodies"),
     (41_004_915, "the same of a rope that hardly slackened"),
+    (
+        46_100_268,
+        "a contact that began a little beyond its features was held along an edge that is not there",
+    ),
+    (46_201_347, "the same on the floor"),
 ];
 
 #[test]

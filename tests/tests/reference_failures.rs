@@ -10,12 +10,13 @@ fn world(scene: &Scene) -> World {
     World::from_scene(scene).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The reference's grinder works only while its start is exactly aligned.
+/// The reference's grinder works only while its start is exactly aligned. Its shuttles fit into their slots so closely that they
+/// are held on both sides, and were held for good where corners of both sides came to lie opposite each other.
 #[test]
 fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
-    for body in [0, 1] {
+    for (body, nudge) in [(0, 1e-9), (1, 1e-9), (2, -1e-9), (1, 1e-8)] {
         let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
-        scene.bodies[body].angle += 1e-9;
+        scene.bodies[body].angle += nudge;
         scene.set_duration(100.0, "duration").expect("a fine duration");
         let mut world = world(&scene);
         let handle = world.find("handle").expect("it is there");
@@ -24,11 +25,8 @@ fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
             assert!(connector_error(&world) < 1e-6, "{} m at {second} s", connector_error(&world));
         }
         // A constant force drives it round.
-        assert!(
-            world.state(handle).angle.abs() > std::f64::consts::TAU,
-            "turned by {}",
-            world.state(handle).angle
-        );
+        let turned = world.state(handle).angle.abs();
+        assert!(turned > 16.0 * std::f64::consts::TAU, "turned by {turned}");
     }
 }
 

@@ -71,20 +71,33 @@ impl RigidSystem {
         time: Time,
         manner: Manner,
     ) -> Result<bool, AdvanceError> {
-        self.set_rows(region, impact);
-        let random = self.counts.impacts;
-        let outcome = match manner {
-            Manner::Lawful => self.settings.law.resolve(impact, self.settings.order, random),
-            Manner::Inelastic => impact.resolve_inelastic(),
-            Manner::Trial => impact.try_inelastic(),
-        };
+        let outcome = self.find_impulses(region, impact, manner);
         outcome.map_err(|source| impact_error(region, time, source))?;
+        if self.leave_out_jammed(region, impact) {
+            let outcome = self.find_impulses_of_pressed(region, impact, manner);
+            outcome.map_err(|source| impact_error(region, time, source))?;
+        }
         self.conclude_impact(region, impact, report, time);
         // What comes to rest without closing is a contact that begins, not an impact.
         Ok(report
             .rows
             .iter()
             .any(|row| row.collision.parties.bilateral || row.rate_before < -self.rest_speed()))
+    }
+
+    /// Finds the impulses of a region's rows.
+    pub(super) fn find_impulses(
+        &self,
+        region: &Region,
+        impact: &mut Impact,
+        manner: Manner,
+    ) -> Result<(), ImpactError> {
+        self.set_rows(region, impact);
+        match manner {
+            Manner::Lawful => self.settings.law.resolve(impact, self.settings.order, self.counts.impacts),
+            Manner::Inelastic => impact.resolve_inelastic(),
+            Manner::Trial => impact.try_inelastic(),
+        }
     }
 
     /// Gives an impact the rows of a region.
@@ -113,26 +126,11 @@ impl RigidSystem {
     }
 
     fn apply_impulses(&mut self, region: &mut Region, impact: &Impact, time: Time) {
-        let mut changes = std::mem::take(&mut region.changes);
-        changes.clear();
-        changes.resize(region.bodies.len(), [0.0; 3]);
-        let mut struck = std::mem::take(&mut region.struck);
-        struck.clear();
-        struck.resize(region.bodies.len(), false);
-        for (row, &impulse) in impact.rows().iter().zip(impact.impulses()) {
-            for (side, place) in row.bodies.iter().map(|&body| region.place(body)).enumerate() {
-                let Some(place) = place else { continue };
-                struck[place] |= impulse != 0.0;
-                for (change, response) in changes[place].iter_mut().zip(&row.response[3 * side..]) {
-                    *change += response * impulse;
-                }
-            }
-        }
-        for (&body, &[x, y, spin]) in region.bodies.iter().zip(&changes) {
+        region.sum_changes(impact);
+        for (&body, &[x, y, spin]) in region.bodies.iter().zip(&region.changes) {
             self.restart_flight(body, time);
             self.flyer_mut(body).cut(time, DVec2::new(x, y), spin);
         }
-        (region.changes, region.struck) = (changes, struck);
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);
             if !record.parties.bilateral {

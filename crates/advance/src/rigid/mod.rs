@@ -31,6 +31,7 @@ mod group;
 mod groups;
 mod hops;
 mod impacts;
+mod jams;
 mod kinks;
 mod lane;
 mod law;

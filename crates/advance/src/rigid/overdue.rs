@@ -5,7 +5,6 @@
 use super::crossing::{NODES, fall_from_below};
 use super::dynamics::Dynamics;
 use super::group::SegmentEnd;
-use super::settle::SEEN;
 use super::watch::Watch;
 
 impl Dynamics<'_> {
@@ -19,7 +18,7 @@ impl Dynamics<'_> {
         rounding: impl Fn(&Self, usize) -> f64,
     ) {
         for (row, values) in samples.iter().enumerate() {
-            if values[0] >= 0.0 || self.is_seen(row) {
+            if values[0] >= 0.0 {
                 continue;
             }
             let rounding = rounding(self, row);
@@ -31,15 +30,6 @@ impl Dynamics<'_> {
                 *earliest = Some((offset, (watch.end)(row)));
             }
         }
-    }
-
-    /// True if the zone in which a row is held is so wide, beside its bodies, that one sees where in it they are. There no bound
-    /// tells rounding from how contacts lie and are pressed, and what starts below zero is left to rise first.
-    fn is_seen(&self, row: usize) -> bool {
-        let mechanism = &self.physics.mechanism;
-        let movable = self.group.rows[row].bodies.into_iter().filter(|body| self.group.bodies.contains(body));
-        let reach = movable.fold(0.0, |most: f64, body| most.max(mechanism.flyers[body.index()].reach()));
-        mechanism.tolerances.accuracy > SEEN * reach
     }
 }
 

@@ -9,6 +9,7 @@ use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
 };
+use halfgap_contact::Impact;
 use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
@@ -44,6 +45,8 @@ pub(crate) struct Region {
     pub(crate) changes: Vec<[f64; 3]>,
     /// Whether an impulse acts on each of them.
     pub(crate) struck: Vec<bool>,
+    /// Records that were left out because they jam.
+    pub(super) left_out: Vec<Collision>,
     /// Place of each body in `bodies`, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
     stamp: u32,
@@ -68,6 +71,25 @@ impl Region {
     pub(crate) fn place(&self, body: BodyId) -> Option<usize> {
         let &(stamp, place) = self.places.get(body.index())?;
         (stamp == self.stamp).then_some(place as usize)
+    }
+
+    /// Sums what an impact changes of the velocities of the bodies.
+    pub(super) fn sum_changes(&mut self, impact: &Impact) {
+        let (mut changes, mut struck) = (std::mem::take(&mut self.changes), std::mem::take(&mut self.struck));
+        changes.clear();
+        changes.resize(self.bodies.len(), [0.0; 3]);
+        struck.clear();
+        struck.resize(self.bodies.len(), false);
+        for (row, &impulse) in impact.rows().iter().zip(impact.impulses()) {
+            for (side, place) in row.bodies.iter().map(|&body| self.place(body)).enumerate() {
+                let Some(place) = place else { continue };
+                struck[place] |= impulse != 0.0;
+                for (change, response) in changes[place].iter_mut().zip(&row.response[3 * side..]) {
+                    *change += response * impulse;
+                }
+            }
+        }
+        (self.changes, self.struck) = (changes, struck);
     }
 
     pub(crate) fn add(&mut self, body: BodyId) {

@@ -18,7 +18,7 @@ use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
 use halfgap_contact::{Row, SolveError};
 
 /// Part of the reach of a body from which the half-width of its zone can be seen.
-pub(super) const SEEN: f64 = 1e-4;
+const SEEN: f64 = 1e-4;
 /// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been lifted may sink once.
 const SUNK: f64 = 1.5;
 /// Depth of an overlap, in target gaps, from which a contact is lifted.
@@ -108,12 +108,12 @@ impl RigidSystem {
             return Ok(Solved::Soundly);
         }
         self.drop_distant(region, settling, stage);
-        let (mut found, mut solved) = (settling.solve_strictly(), Solved::Somehow);
-        if is_sound && found.is_ok() && self.presses_dropped(region, settling, stage) {
-            settling.take_back_dropped();
+        let mut found = settling.solve_strictly();
+        while is_sound && found.is_ok() && self.take_back_pressed(region, settling, stage) {
             self.pose_problem(region, settling, stage);
-            (found, solved) = (settling.solve_strictly(), Solved::Soundly);
+            found = settling.solve_strictly();
         }
+        let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
         if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
             // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
             if scale > rest * rest / self.settings.steps.length {
@@ -192,20 +192,26 @@ impl RigidSystem {
         self.pose_problem(region, settling, stage);
     }
 
-    /// True if what was left out is pressed all the same by the forces found without it. What fits with little room is not: it
-    /// goes the way of what it touches. In an arch that is nearly straight all contacts carry forces that are far
-    /// larger than all loads.
-    fn presses_dropped(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+    /// Lets in again what is pressed all the same by the forces found without it; true if there is any. Of what fits with little
+    /// room only one side is: it goes the way of what it touches. In an arch that is nearly straight all contacts carry forces that
+    /// are far larger than all loads, and where those that were let in again jam, so does the rest.
+    fn take_back_pressed(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         if settling.dropped.is_empty() {
             return false;
         }
+        if self.is_jammed(region, settling, stage) {
+            settling.take_back(|_| true);
+            return true;
+        }
         self.push_bodies(region, settling, stage);
         let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-        let mut offsets = settling
-            .dropped
-            .iter()
-            .map(|&index| offset_under(region, &region.records[index], &settling.pushed));
-        offsets.any(|offset| offset < -SMALL_CONTRADICTION * scale)
+        let pushed = std::mem::take(&mut settling.pushed);
+        let is_pressed = |index: usize| {
+            offset_under(region, &region.records[index], &pushed) < -SMALL_CONTRADICTION * scale
+        };
+        let any = settling.take_back(is_pressed);
+        settling.pushed = pushed;
+        any
     }
 
     fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {

@@ -144,10 +144,17 @@ impl Settling {
         }));
     }
 
-    /// Lets in again what was left out.
-    pub(super) fn take_back_dropped(&mut self) {
-        self.candidates.append(&mut self.dropped);
-        self.candidates.sort_unstable();
+    /// Lets in again some of what was left out; true if there is any.
+    pub(super) fn take_back(&mut self, is_wanted: impl Fn(usize) -> bool) -> bool {
+        let before = self.dropped.len();
+        let Self { candidates, dropped, .. } = self;
+        dropped.retain(|&index| {
+            let is_wanted = is_wanted(index);
+            candidates.extend(is_wanted.then_some(index));
+            !is_wanted
+        });
+        candidates.sort_unstable();
+        dropped.len() < before
     }
 
     pub(super) fn solve_leniently(&mut self) -> Result<(), SolveError> {
