@@ -317,6 +317,7 @@ const COARSE_BROKEN: &[(u64, &str)] = &[
         "a contact that began a little beyond its features was held along an edge that is not there",
     ),
     (46_201_347, "the same on the floor"),
+    (46_202_155, "the same, by many short steps, each of which went on by less than it was beyond already"),
 ];
 
 #[test]

@@ -74,6 +74,9 @@ pub(crate) struct Group {
     pub(crate) forces: Vec<f64>,
     /// Force [N] of each row at the end of the segment.
     pub(crate) end_forces: Vec<f64>,
+    /// How far [m] each row was off its features already, and by what force [N] it pulled, when it was first seen to; 0 of others.
+    pub(crate) overrun: Vec<f64>,
+    pub(crate) pulled: Vec<f64>,
     /// x, y and angle of each body along the segment.
     pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
     /// Their velocities, by place as in the state, and then works [J], along the segment. The paths' own derivatives hold
@@ -120,6 +123,8 @@ impl Group {
         self.bodies.clear();
         self.rows.clear();
         self.sides.clear();
+        self.overrun.clear();
+        self.pulled.clear();
         self.leaning.clear();
         self.stops.clear();
         self.laws.clear();

@@ -9,20 +9,26 @@ use super::watch::Watch;
 
 impl Dynamics<'_> {
     /// The earliest fall of any row of a watch that is below zero at the start and falls on, if it comes before what was found so
-    /// far; with how far below zero a row may be by rounding alone.
+    /// far; with the samples, how far each was below zero when it was first seen to be, which is noted (0 of others), and how far a
+    /// row may be by rounding alone. A row may fall on along many segments.
     pub(super) fn find_overdue(
         &mut self,
         earliest: &mut Option<(f64, SegmentEnd)>,
-        samples: &[[f64; NODES]],
+        (samples, below): (&[[f64; NODES]], &mut Vec<f64>),
         watch: &Watch,
         rounding: impl Fn(&Self, usize) -> f64,
     ) {
-        for (row, values) in samples.iter().enumerate() {
+        below.resize(samples.len(), 0.0);
+        for (row, (values, below)) in samples.iter().zip(below).enumerate() {
             if values[0] >= 0.0 {
+                *below = 0.0;
                 continue;
             }
-            let rounding = rounding(self, row);
-            let fall = fall_from_below(values, self.group.span, rounding, |offset| {
+            if *below == 0.0 {
+                *below = -values[0];
+            }
+            let allowed = 2.0 * rounding(self, row).max(*below);
+            let fall = fall_from_below(values, self.group.span, allowed, |offset| {
                 (watch.place_for)(self, row, offset);
                 (watch.read)(self, row)
             });
@@ -42,6 +48,7 @@ mod tests {
     use crate::time::Time;
     use glam::DVec2;
     use halfgap_collision::BodyId;
+    use std::f64::consts::{FRAC_PI_4, SQRT_2};
     use std::sync::Arc;
 
     /// Weight of a body [N].
@@ -114,5 +121,34 @@ mod tests {
             let way = offset / beyond;
             assert!(way > 0.5 && way < 3.0, "{beyond} rad beyond: {offset} s");
         }
+    }
+
+    #[test]
+    fn a_contact_that_goes_on_beyond_its_features_by_many_short_steps_runs_off() {
+        const BEYOND: f64 = 1e-4;
+        let mut system = block_on_its_corner();
+        system.settings.steps.largest_step = Some(0.3 * BEYOND);
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        let upright = |group: &Group| 0.4 * SQRT_2 * (group.state[2] - FRAC_PI_4).cos();
+        group.state[1] -= upright(&group);
+        group.state[2] += 0.2 + BEYOND;
+        group.state[1] += upright(&group);
+        (group.state[4], group.state[5]) = (-0.4 * SQRT_2 * (group.state[2] - FRAC_PI_4).sin(), 1.0);
+        group.end_state.clone_from(&group.state);
+        group.end_rates.clone_from(&group.rates);
+        group.span = 0.0;
+        system.groups.put(group);
+        let mut turned = 0.0;
+        for _ in 0..10 {
+            system.continue_group(BodyId(1)).expect("it topples");
+            let group = system.group_of(BodyId(1)).expect("it is held");
+            if let Some((offset, SegmentEnd::Change(0))) = group.event {
+                turned += offset;
+                assert!(turned > 0.5 * BEYOND && turned < 3.0 * BEYOND, "{turned} rad");
+                return;
+            }
+            turned += group.span;
+        }
+        panic!("it is held after {turned} rad");
     }
 }

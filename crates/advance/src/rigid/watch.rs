@@ -115,9 +115,11 @@ impl Dynamics<'_> {
         }
         let mut earliest = self.group.event;
         self.find_first(&mut earliest, &forces, &RELEASES);
-        self.find_overdue(&mut earliest, &forces, &RELEASES, |dynamics, row| {
+        let mut pulled = std::mem::take(&mut self.group.pulled);
+        self.find_overdue(&mut earliest, (&forces, &mut pulled), &RELEASES, |dynamics, row| {
             PULL * dynamics.stage.least[row]
         });
+        self.group.pulled = pulled;
         self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
     }
@@ -130,7 +132,9 @@ impl Dynamics<'_> {
         self.find_early_change(&mut earliest, &samples.rooms);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
         let margin = self.physics.mechanism.change_margin();
-        self.find_overdue(&mut earliest, &samples.rooms, &CHANGES, |_, _| margin);
+        let mut overrun = std::mem::take(&mut self.group.overrun);
+        self.find_overdue(&mut earliest, (&samples.rooms, &mut overrun), &CHANGES, |_, _| margin);
+        self.group.overrun = overrun;
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
         let mut offer = |found: Option<f64>, end: SegmentEnd| {
