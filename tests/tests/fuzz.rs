@@ -204,6 +204,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         15_011_546,
         "dense output had a held contact farther apart than what touches: where it ran off its edge, none took over",
     ),
+    (
+        65_001_514,
+        "a contact beyond its features went far off and came back within a step, and was held on the way",
+    ),
 ];
 
 /// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or masses too far apart. The

@@ -119,7 +119,11 @@ pub(crate) fn fall_from_below(
     if values[0] < -allowed {
         return Some(0.0);
     }
-    first_fall(&values.map(|value| value + allowed), span, |offset| f(offset) + allowed)
+    let mut raised = |offset| f(offset) + allowed;
+    let values = values.map(|value| value + allowed);
+    // What is off already may go far and come back before the first node.
+    let early = std::array::from_fn(|index| raised(early_node(index, span)));
+    early_fall(values[0], &early, span, &mut raised).or_else(|| first_fall(&values, span, raised))
 }
 
 /// Where between two nodes the quartic through the samples lies below zero, lowest of a few places; in nodes.
@@ -253,6 +257,11 @@ mod tests {
         assert_eq!(fall(2.0 * BELOW, -1.0), None);
         // What is lower already has.
         assert_eq!(fall(0.5 * BELOW, -1.0), Some(0.0));
+        // What is back by the first node had.
+        let dips = |t: f64| -BELOW - t * (0.3 - t);
+        let values = std::array::from_fn(|index| dips(node(index, 2.0)));
+        let offset = fall_from_below(&values, 2.0, 2.0 * BELOW, dips).expect("it dips");
+        assert!(dips(offset) < -2.0 * BELOW && offset < 1e-12, "{offset}");
     }
 
     #[test]
