@@ -124,6 +124,10 @@ impl RigidSystem {
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
         let Some((_, end)) = group.event else { return Ok(false) };
+        if group.made == self.now && matches!(end, SegmentEnd::Release(_)) {
+            self.last_pull = Some(self.now);
+        }
+        let Some(group) = self.group_of(leader) else { return Ok(false) };
         let changed_row = match end {
             SegmentEnd::Change(row) => Some(group.rows[row]),
             SegmentEnd::Sink(row) => {

@@ -74,6 +74,8 @@ pub(crate) struct Group {
     pub(crate) forces: Vec<f64>,
     /// Force [N] of each row at the end of the segment.
     pub(crate) end_forces: Vec<f64>,
+    /// Another group was ended when this one was made, as a contact pulled from the start: it may again.
+    pub(crate) is_patient: bool,
     /// How far [m] each row was off its features already, and by what force [N] it pulled, when it was first seen to; 0 of others.
     pub(crate) overrun: Vec<f64>,
     pub(crate) pulled: Vec<f64>,

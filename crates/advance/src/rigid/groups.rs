@@ -8,6 +8,7 @@ use super::extending::Tools;
 use super::group::{Group, Work};
 use super::pairs::Prediction;
 use super::region::{Region, Touch};
+use super::repeats::is_same_time;
 use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settling::Settling;
@@ -337,6 +338,7 @@ impl RigidSystem {
     fn start_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
         (group.start, group.made) = (self.now, self.now);
+        group.is_patient = self.last_pull.is_some_and(|last| is_same_time(last, self.now));
         let count = group.bodies.len();
         let dimension = group.dimension();
         let mut inertias = std::mem::take(&mut self.groups.inertias);

@@ -176,6 +176,8 @@ pub struct RigidSystem {
     pub(crate) deep: Vec<(PairId, [FeatureId; 2], f64)>,
     /// When contacts have fired again and again without time going by.
     pub(crate) last_insistent: Option<Time>,
+    /// When a group was ended as it was made, because a contact pulled.
+    pub(crate) last_pull: Option<Time>,
     pub(crate) links: Vec<Link>,
     pub(crate) neighbours: Vec<BodyId>,
     pub(crate) marks: Marks,
@@ -235,6 +237,7 @@ impl RigidSystem {
             touched: Vec::new(),
             deep: Vec::new(),
             last_insistent: None,
+            last_pull: None,
             links: Vec::new(),
             neighbours: Vec::new(),
             marks: Marks::default(),

@@ -113,7 +113,7 @@ impl Dynamics<'_> {
             }
             self.sample_forces(&mut forces, index);
         }
-        let mut earliest = self.group.event;
+        let mut earliest = self.pull_at_start(&forces).or(self.group.event);
         self.find_first(&mut earliest, &forces, &RELEASES);
         let mut pulled = std::mem::take(&mut self.group.pulled);
         self.find_overdue(&mut earliest, (&forces, &mut pulled), &RELEASES, |dynamics, row| {
@@ -122,6 +122,17 @@ impl Dynamics<'_> {
         self.group.pulled = pulled;
         self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
+    }
+
+    /// The release of a contact that pulls as the group is made, by more than rounding.
+    fn pull_at_start(&self, forces: &[[f64; NODES]]) -> Option<(f64, SegmentEnd)> {
+        let Group { start, made, .. } = *self.group;
+        if self.group.is_patient || start != made {
+            return None;
+        }
+        let pulls = |(values, least): (&[f64; NODES], &f64)| values[0] < -PULL * least;
+        let row = forces.iter().zip(&self.stage.least).position(pulls)?;
+        Some((0.0, SegmentEnd::Release(row)))
     }
 
     /// The earliest event that bodies' places tell.
