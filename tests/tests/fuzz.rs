@@ -340,6 +340,10 @@ const VARIED_BROKEN: &[(u64, &str)] = &[
     (545, "a block that one corner's blow drove onto the other sank there, without contact forces"),
     (817, "a point on the continuation of a rail's end was looked for on that of the other end"),
     (13_090, "blocks on each other, off by a billionth, could not be lifted off each other"),
+    (
+        72_001_914,
+        "corners a tenth of a millimetre apart held two blocks with forces that hardly anything told apart, and let go without end",
+    ),
     (71_000_399, "a block was held a metre away from what it had touched"),
     (
         71_002_285,

@@ -7,6 +7,9 @@ use std::cmp::Ordering;
 /// corner.
 const PARALLEL: f64 = 1e-6;
 
+/// The same where one lies beyond its edge.
+const OVERHANG: f64 = 0.1;
+
 /// Part of the accuracy by which a contact may lie outside of its features and counts as within.
 const HAIR: f64 = 1.0 / 64.0;
 
@@ -29,11 +32,19 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     let swapped = a.parties.primary.body != b.parties.primary.body;
     let normal_b = if swapped { -b.geometry.normal } else { b.geometry.normal };
     let normal_a = a.geometry.normal;
-    let parallel =
-        normal_a.dot(normal_b) > 0.0 && normal_a.perp_dot(normal_b).abs() < PARALLEL.max(lean(a, b));
     let middle = |c: &Collision| 0.5 * (c.geometry.point_primary + c.geometry.point_normal);
+    let apart = (middle(a) - middle(b)).length();
+    let sine = PARALLEL.max(lean(a, b)).max(overhang(a, b, apart));
+    let parallel = normal_a.dot(normal_b) > 0.0 && normal_a.perp_dot(normal_b).abs() < sine;
     let near = a.tolerances.distance_tol().max(b.tolerances.distance_tol());
-    parallel && (middle(a) - middle(b)).length() <= near
+    parallel && apart <= near
+}
+
+/// Sine of the angle between the normals of one spot that is beyond an edge, but for the accuracy, and found within another, too.
+fn overhang(a: &Collision, b: &Collision, apart: f64) -> f64 {
+    let is_one_beyond = (beyond(a) > 0.0) != (beyond(b) > 0.0);
+    let is_near = apart <= a.tolerances.accuracy.max(b.tolerances.accuracy);
+    if is_one_beyond && is_near { OVERHANG } else { 0.0 }
 }
 
 /// Angle [rad] between the normals of one spot found on both sides of a seam: over an arc's radius it makes up twice the
