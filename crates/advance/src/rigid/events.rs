@@ -124,10 +124,7 @@ impl RigidSystem {
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
         let Some((_, end)) = group.event else { return Ok(false) };
-        if group.made == self.now && matches!(end, SegmentEnd::Release(_)) {
-            self.last_pull = Some(self.now);
-        }
-        let Some(group) = self.group_of(leader) else { return Ok(false) };
+        let is_pull = group.made == self.now && matches!(end, SegmentEnd::Release(_));
         let changed_row = match end {
             SegmentEnd::Change(row) => Some(group.rows[row]),
             SegmentEnd::Sink(row) => {
@@ -136,6 +133,9 @@ impl RigidSystem {
             }
             SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
         };
+        if is_pull {
+            self.last_pull = Some(self.now);
+        }
         work.region.run_off = None;
         match changed_row.map(|row| (row.bodies, row.source)) {
             Some((bodies, RowSource::Contact(features))) => {
