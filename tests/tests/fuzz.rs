@@ -344,6 +344,10 @@ const VARIED_BROKEN: &[(u64, &str)] = &[
         72_001_914,
         "corners a tenth of a millimetre apart held two blocks with forces that hardly anything told apart, and let go without end",
     ),
+    (
+        71_000_303,
+        "a contact lost its force and was held again without end: others beside it were moved meanwhile",
+    ),
     (71_000_399, "a block was held a metre away from what it had touched"),
     (
         71_002_285,

@@ -125,6 +125,10 @@ impl RigidSystem {
         work.seeds.extend(&group.bodies);
         let Some((_, end)) = group.event else { return Ok(false) };
         let is_pull = group.made == self.now && matches!(end, SegmentEnd::Release(_));
+        let released = match end {
+            SegmentEnd::Release(row) => group.rows[row].touch(),
+            _ => None,
+        };
         let changed_row = match end {
             SegmentEnd::Change(row) => Some(group.rows[row]),
             SegmentEnd::Sink(row) => {
@@ -136,7 +140,7 @@ impl RigidSystem {
         if is_pull {
             self.last_pull = Some(self.now);
         }
-        work.region.run_off = None;
+        (work.region.run_off, work.region.released) = (None, released);
         match changed_row.map(|row| (row.bodies, row.source)) {
             Some((bodies, RowSource::Contact(features))) => {
                 let touch = Touch::new(bodies, features);
@@ -149,7 +153,7 @@ impl RigidSystem {
             return self.handle_impact(work);
         }
         let outcome = self.handle_change(work);
-        work.region.run_off = None;
+        (work.region.run_off, work.region.released) = (None, None);
         outcome
     }
 

@@ -3,6 +3,7 @@
 
 use super::lane::LaneKind;
 use super::pairs::Link;
+use super::rows::{HeldRow, RowSource};
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
@@ -40,6 +41,8 @@ pub(crate) struct Region {
     pub(crate) fired: Option<Touch>,
     /// A contact that has just run off its features: its neighbours take over, if they touch.
     pub(crate) run_off: Option<Touch>,
+    /// A contact that has just lost its force: what is found of it again may be what others were moved by meanwhile.
+    pub(crate) released: Option<Touch>,
     fresh: Vec<Collision>,
     /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
     pub(crate) changes: Vec<[f64; 3]>,
@@ -257,6 +260,16 @@ fn sorted(a: BodyId, b: BodyId) -> [BodyId; 2] {
 
 fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Option<Touch> {
     Touch::of(record).filter(|touch| touch.bodies == bodies)
+}
+
+impl HeldRow {
+    /// The features of a contact; `None` for a connector's row.
+    pub(crate) fn touch(&self) -> Option<Touch> {
+        match self.source {
+            RowSource::Contact(features) => Some(Touch::new(self.bodies, features)),
+            RowSource::Connector(..) => None,
+        }
+    }
 }
 
 impl Touch {

@@ -6,7 +6,7 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
-use super::region::Region;
+use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::segment::LONGEST_STEP;
 use super::settling::{SMALL_CONTRADICTION, Settling};
@@ -25,6 +25,10 @@ const SUNK: f64 = 1.5;
 pub(super) const DEEPEST: f64 = 0.5;
 /// Part of its accuracy by which a rope or a stop that is lifted stays beyond its end.
 const ROPE_SHARE: f64 = 0.5;
+
+/// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its force. With less it
+/// sinks so slowly that it may as well be touched again.
+const RELEASED_SHARE: f64 = 1e-3;
 
 /// Forces this many times larger than all loads together jam.
 const JAM: f64 = 100.0;
@@ -275,7 +279,9 @@ impl RigidSystem {
             let force = forces.next().copied().unwrap_or_default();
             let record = region.records[index];
             let loads = places_of(region, &record).map(|place| gross[place]);
-            let least = FORCE_SHARE * loads.fold(f64::INFINITY, f64::min);
+            let is_released = region.released.is_some() && Touch::of(&record) == region.released;
+            let share = if is_released { RELEASED_SHARE } else { FORCE_SHARE };
+            let least = share * loads.fold(f64::INFINITY, f64::min);
             let lies_deep = self.lifted(&record).is_some();
             let stays = record.parties.bilateral || force > least || lies_deep;
             region.records[index].response.force = Some(if stays { force } else { 0.0 });
@@ -396,7 +402,6 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 mod tests {
     use super::super::events::EventWork;
     use super::super::flyer::FlightLaw;
-    use super::super::region::Touch;
     use super::super::system::RigidParts;
     use super::super::test_scene::FINE;
     use super::*;

@@ -4,7 +4,7 @@
 
 use super::region::{Region, Touch};
 use super::report::RowForce;
-use super::rows::{HeldRow, RowSource};
+use super::rows::HeldRow;
 use halfgap_collision::BodyId;
 use halfgap_contact::{Auto, Inertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
@@ -168,10 +168,7 @@ impl Settling {
 
     pub(super) fn list_touches(&mut self) {
         self.touches.clear();
-        self.touches.extend(self.held.iter().filter_map(|(_, row)| match row.source {
-            RowSource::Contact(features) => Some(Touch::new(row.bodies, features)),
-            RowSource::Connector(..) => None,
-        }));
+        self.touches.extend(self.held.iter().filter_map(|(_, row)| row.touch()));
         self.touches.sort_unstable();
     }
 
