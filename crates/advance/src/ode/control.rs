@@ -9,6 +9,9 @@ const SMALLEST_FACTOR: f64 = 0.2;
 /// A step grows by this factor at most, since the estimate says little about much longer steps.
 const LARGEST_FACTOR: f64 = 6.0;
 
+/// After error norms below this a step grows by the largest factor, whatever the order: (0.9/6)^8 is 2.6e-7.
+const NO_ERROR: f64 = 1e-7;
+
 /// Error norms below this tell nothing about a trend.
 const TELLING_ERROR: f64 = 1e-2;
 
@@ -31,6 +34,9 @@ impl Method {
         let Some(order) = self.error_order() else { return 1.0 };
         if !error_norm.is_finite() {
             return SMALLEST_FACTOR;
+        }
+        if error_norm < NO_ERROR {
+            return LARGEST_FACTOR;
         }
         let factor = SAFETY / root(error_norm, order + 1);
         factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)

@@ -105,9 +105,12 @@ impl Group {
 
     /// Goes back to the method that is asked for, if brief steps are held up by their errors or by what is fast.
     pub(crate) fn end_brief(&mut self) {
+        if !self.is_brief {
+            return;
+        }
         let grows = self.accepted.is_some_and(|step| BRIEF_METHOD.step_factor(step.error) >= BRIEF_GROWTH);
         let is_allowed = self.next_step.is_none_or(|step| self.stiffness.allows(step));
-        if self.is_brief && !(grows && is_allowed) {
+        if !(grows && is_allowed) {
             self.is_brief = false;
             self.next_step = self.full_step;
             self.accepted = None;
