@@ -12,8 +12,9 @@ use super::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::{Impact, ImpactError};
 
-/// Impulses this many times larger than what they change of the momentum of any body jam.
-const JAM: f64 = 100.0;
+/// Impulses this many times larger than what they change of the momentum of any body jam, as do forces that are so much larger than
+/// all loads together.
+pub(super) const JAM: f64 = 100.0;
 
 impl RigidSystem {
     /// Leaves out of a region what is farther away than where bodies fire, if the impulses of contacts cancel each other by far;
@@ -49,7 +50,7 @@ impl RigidSystem {
     }
 
     /// True if a record is no farther away than where bodies fire, or holds them anyway.
-    fn is_close(&self, record: &Collision) -> bool {
+    pub(super) fn is_close(&self, record: &Collision) -> bool {
         record.parties.bilateral || record.distance_to_target() <= self.sink()
     }
 

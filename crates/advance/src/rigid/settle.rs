@@ -6,6 +6,7 @@
 
 use super::dynamics::{Physics, Stage};
 use super::error::AdvanceError;
+use super::jams::JAM;
 use super::region::{Region, Touch};
 use super::rows::{HeldRow, RowSource};
 use super::segment::LONGEST_STEP;
@@ -29,9 +30,6 @@ const ROPE_SHARE: f64 = 0.5;
 /// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its force. With less it
 /// sinks so slowly that it may as well be touched again.
 const RELEASED_SHARE: f64 = 1e-3;
-
-/// Forces this many times larger than all loads together jam.
-const JAM: f64 = 100.0;
 
 /// How the forces of the candidates were found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,12 +182,8 @@ impl RigidSystem {
     /// Leaves out what is farther away than its target gap, and need not be in contact: where a body fits between two
     /// others with little room, it touches at most one of them.
     fn drop_distant(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
-        let sink = self.sink();
         let Settling { candidates, dropped, .. } = settling;
-        let may_stay = |index: &usize| {
-            let record = &region.records[*index];
-            record.parties.bilateral || record.distance_to_target() <= sink
-        };
+        let may_stay = |index: &usize| self.is_close(&region.records[*index]);
         dropped.clear();
         dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
         candidates.retain(may_stay);
