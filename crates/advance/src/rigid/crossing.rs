@@ -1,9 +1,10 @@
 //! When does a function that is sampled along a segment first fall below zero?
 //!
 //! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them shows
-//! whether the function may dip below zero in between, and a sample there tells. The bracket is closed by the Illinois
-//! variant of false position, which keeps it (M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11, 1971), and
-//! by bisection where that is slow: some functions have a kink where they fall.
+//! whether the function may dip below zero in between, and a sample there tells. The bracket is closed by inverse parabolas
+//! where they are sure to serve, else by bisection: some functions have a kink where they fall (T. Chandrupatla, "A new hybrid
+//! quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives", Advances in
+//! Engineering Software 28, 1997).
 
 /// Samples along a segment: both ends and three places between, equally far apart.
 pub(crate) const NODES: usize = 5;
@@ -11,9 +12,6 @@ pub(crate) const NODES: usize = 5;
 const LOOKS: usize = 4;
 /// Cap on the steps that close a bracket.
 const MOST_STEPS: usize = 200;
-/// Every so many steps a bracket that is not this many times shorter is bisected.
-const PATIENCE: usize = 3;
-const GAIN: f64 = 8.0;
 /// A bracket is closed when it is this part of the segment.
 const CLOSED: f64 = 1e-14;
 
@@ -148,42 +146,51 @@ fn quartic(values: &[f64; NODES], place: f64) -> f64 {
     column[0]
 }
 
+/// A place and the value there.
+type Sample = (f64, f64);
+
 /// Closes a bracket from `above` (not negative) to `below` (negative).
-fn close(above: (f64, f64), below: (f64, f64), span: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-    let ((mut a, mut fa), (mut b, mut fb)) = (above, below);
-    // The value at b, halved whenever b has stayed: the Illinois rule.
-    let mut last_side = 0;
-    let mut length = b - a;
-    for step in 1..=MOST_STEPS {
-        if (b - a).abs() <= CLOSED * span {
+fn close(above: Sample, below: Sample, span: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    // The bracket is between the last place and the far one; the one before was left.
+    let (mut last, mut far, mut left) = (above, below, None);
+    for _ in 0..MOST_STEPS {
+        let width = far.0 - last.0;
+        // A guess is no nearer to the ends than that: once the fall is found, the next place is on its other side.
+        let nearest = 0.5 * CLOSED * span / width.abs();
+        if nearest > 0.5 {
             break;
         }
-        let guess = b - fb * (b - a) / (fb - fa);
-        let is_review = step % PATIENCE == 0;
-        let is_slow = is_review && GAIN * (b - a) > length;
-        if is_review {
-            length = b - a;
-        }
-        let inside = if guess > a && guess < b && !is_slow { guess } else { 0.5 * (a + b) };
-        if inside <= a || inside >= b {
+        let part = match left {
+            None => last.1 / (last.1 - far.1),
+            Some(left) => part_by_parabola(last, far, left).unwrap_or(0.5),
+        };
+        let inside = last.0 + part.clamp(nearest, 1.0 - nearest) * width;
+        if inside == last.0 || inside == far.0 {
             break;
         }
         let value = f(inside);
-        if value < 0.0 {
-            (b, fb) = (inside, value);
-            if last_side == -1 {
-                fa *= 0.5;
-            }
-            last_side = -1;
+        if (value < 0.0) == (last.1 < 0.0) {
+            left = Some(last);
         } else {
-            (a, fa) = (inside, value);
-            if last_side == 1 {
-                fb *= 0.5;
-            }
-            last_side = 1;
+            left = Some(far);
+            far = last;
         }
+        last = (inside, value);
     }
-    b
+    if last.1 < 0.0 { last.0 } else { far.0 }
+}
+
+/// Which part of the way from the last place to the far one the inverse parabola through three samples vanishes at; `None` where
+/// that parabola is no function between them.
+fn part_by_parabola(last: Sample, far: Sample, left: Sample) -> Option<f64> {
+    let place = (last.0 - far.0) / (left.0 - far.0);
+    let height = (last.1 - far.1) / (left.1 - far.1);
+    let is_function = height * height < place && (1.0 - height) * (1.0 - height) < 1.0 - place;
+    let share = |p: Sample, q: Sample| p.1 / (q.1 - p.1);
+    let way = (left.0 - last.0) / (far.0 - last.0);
+    is_function.then(|| {
+        share(last, far) * left.1 / (far.1 - left.1) + way * share(last, left) * far.1 / (left.1 - far.1)
+    })
 }
 
 #[cfg(test)]
@@ -199,6 +206,21 @@ mod tests {
     fn a_fall_is_found_from_behind() {
         let fall = sampled(2.0, |t| 1.0 - t * t).expect("it falls at 1");
         assert!((fall - 1.0).abs() < 1e-12 && fall >= 1.0);
+    }
+
+    #[test]
+    fn a_smooth_fall_takes_few_looks() {
+        for (start, end) in [(0.3, 1.0), (1.0, 1e-3), (1e-6, 1.0)] {
+            let mut looks = 0;
+            // From the start to minus the end, ever steeper.
+            let f = |t: f64| start - (start + end) * t * (1.0 + t * t) / 2.0;
+            let fall = close((0.0, f(0.0)), (1.0, f(1.0)), 1.0, |t| {
+                looks += 1;
+                f(t)
+            });
+            assert!(f(fall) < 0.0 && f(fall - 2.0 * CLOSED) >= 0.0, "{fall}");
+            assert!(looks <= 11, "{looks} looks");
+        }
     }
 
     #[test]
