@@ -48,7 +48,7 @@ impl Explicit {
         }
     }
 
-    /// See [`Stepper::step`](super::Stepper::step).
+    /// See [`Stepper::step_open`](super::Stepper::step_open).
     pub(super) fn step<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
@@ -63,11 +63,18 @@ impl Explicit {
         }
         self.move_along(tableau.weights);
         end.copy_from_slice(&self.trial.as_flattened()[..self.size]);
-        if tableau.needs_end_rates {
-            self.ask(system, tableau.end_stage(), 1.0)?;
+        if !tableau.needs_end_rates {
+            self.estimate_errors();
         }
-        self.estimate_errors(tableau);
         Ok(())
+    }
+
+    /// See [`Stepper::close`](super::Stepper::close).
+    pub(super) fn close(&mut self, end_rates: &[f64]) {
+        if self.tableau.needs_end_rates {
+            self.place_mut(self.tableau.end_stage()).copy_from_slice(end_rates);
+            self.estimate_errors();
+        }
     }
 
     /// See [`Stepper::error_norm`](super::Stepper::error_norm), of the components from `first` on. DOP853 has two estimates,
@@ -147,8 +154,8 @@ impl Explicit {
         system.derivative(self.offset + node * self.length, state, rates)
     }
 
-    fn estimate_errors(&mut self, tableau: &Tableau) {
-        for (row, terms) in tableau.errors.iter().enumerate() {
+    fn estimate_errors(&mut self) {
+        for (row, terms) in self.tableau.errors.iter().enumerate() {
             for lane in 0..self.lanes {
                 let sum = weighted_sum(&self.rates, self.lanes, lane, terms);
                 self.errors[row * self.lanes + lane] = sum.map(|sum| self.length * sum);

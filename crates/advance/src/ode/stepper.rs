@@ -84,9 +84,55 @@ impl Stepper {
         step: f64,
         end: &mut [f64],
     ) -> Result<(), S::Error> {
+        self.step_open(system, from, step, end)?;
+        if self.needs_end_rates() {
+            let mut rates = std::mem::take(&mut self.trial_rates);
+            rates.clear();
+            rates.resize(end.len(), 0.0);
+            let outcome = system.derivative(from.offset + step, end, &mut rates);
+            if outcome.is_ok() {
+                self.close(&rates);
+            }
+            self.trial_rates = rates;
+            outcome?;
+        }
+        Ok(())
+    }
+
+    /// As [`step`](Self::step), but where [`needs_end_rates`](Self::needs_end_rates), nothing is known of the error before
+    /// [`close`](Self::close). So who changes the end by about its error, and goes on from there, asks for the rates once.
+    ///
+    /// # Errors
+    /// The first error of the system; then nothing is known about the step.
+    ///
+    /// # Panics
+    /// If the states and rates differ in length.
+    pub fn step_open<S: Ode + ?Sized>(
+        &mut self,
+        system: &mut S,
+        from: Point<'_>,
+        step: f64,
+        end: &mut [f64],
+    ) -> Result<(), S::Error> {
         match &mut self.kind {
             Kind::Explicit(explicit) => explicit.step(system, from, step, end),
             Kind::Implicit(radau) => radau.step(system, from, step, end),
+        }
+    }
+
+    /// True if the error estimate of the method takes the rates at the end of the step.
+    #[must_use]
+    pub fn needs_end_rates(&self) -> bool {
+        matches!(&self.kind, Kind::Explicit(explicit) if explicit.tableau.needs_end_rates)
+    }
+
+    /// Takes the rates at the end of a step that was made by [`step_open`](Self::step_open), for methods that need them.
+    ///
+    /// # Panics
+    /// If they do not fit the state of the last step.
+    pub fn close(&mut self, end_rates: &[f64]) {
+        if let Kind::Explicit(explicit) = &mut self.kind {
+            explicit.close(end_rates);
         }
     }
 

@@ -41,10 +41,7 @@ impl Dynamics<'_> {
     /// Extends the group by a step whose dense output will not swing when somebody looks.
     fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
         for tries in 0.. {
-            self.extend(tools.stepper, &tools.settings.steps, tools.scales)?;
-            self.end_on_rows(tools);
-            self.follow_rails();
-            self.evaluate_end();
+            self.extend(tools)?;
             let told = self.tell_stiffness(tools);
             let swing = told.map_or(0.0, |told| told.dense_error);
             if swing <= 1.0 || tries >= DEEP_SHORTENINGS {
@@ -68,10 +65,7 @@ impl Dynamics<'_> {
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
         let (mut proposed, mut before) = (None, f64::INFINITY);
         for tries in 0.. {
-            self.extend(tools.stepper, &steps, tools.scales)?;
-            let energy = self.end_on_rows(tools);
-            self.follow_rails();
-            self.evaluate_end();
+            let energy = self.extend(tools)?;
             self.make_dense(tools.stepper);
             let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
             let proposed = *proposed.get_or_insert(self.group.next_step);
@@ -174,7 +168,7 @@ mod tests {
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         group.next_step = Some(1e-9);
         let velocity = system.with_group(&mut group, |dynamics, tools| {
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it falls");
+            dynamics.extend(tools).expect("it falls");
             // As a projection might: over this step it would be 1 m/s.
             dynamics.group.end_state[1] += 1e-9;
             dynamics.evaluate_end();
@@ -196,7 +190,7 @@ mod tests {
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         group.next_step = Some(UNTOLD / RATE);
         system.with_group(&mut group, |dynamics, tools| {
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it decays");
+            dynamics.extend(tools).expect("it decays");
             assert_eq!(dynamics.group.span, UNTOLD / RATE);
             dynamics.group.next_step = Some(UNTOLD / RATE);
             dynamics.extend_on_rows(tools).expect("it decays");
@@ -209,8 +203,7 @@ mod tests {
         let mut system = pendulum();
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         let [kept, lost] = system.with_group(&mut group, |dynamics, tools| {
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it swings");
-            let energy = dynamics.end_on_rows(tools);
+            let energy = dynamics.extend(tools).expect("it swings");
             let kept = dynamics.lost_energy(&tools.settings.steps, energy);
             // As what does work where rows all but depend on each other.
             dynamics.group.end_state[4] *= 1.0 - 1e-6;

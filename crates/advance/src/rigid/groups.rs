@@ -2,14 +2,14 @@
 
 use super::brief::Past;
 use super::connectors::is_stop;
-use super::dynamics::{Dynamics, body_state, set_body_state};
+use super::dynamics::{Dynamics, Physics, body_state, set_body_state};
 use super::error::AdvanceError;
 use super::extending::Tools;
 use super::group::{Group, Work};
 use super::pairs::Prediction;
 use super::region::{Region, Touch};
 use super::repeats::is_same_time;
-use super::rows::{HeldRow, RowSource};
+use super::rows::{HeldRow, Mechanism, RowSource};
 use super::segment::StepFailure;
 use super::settling::Settling;
 use super::system::RigidSystem;
@@ -104,21 +104,11 @@ impl RigidSystem {
         group: &mut Group,
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
-        let (start, stepping) = (group.start, group.stepping());
-        let mut stage = std::mem::take(&mut self.stage);
-        let mut stepper = std::mem::take(self.steppers.of(stepping));
-        let mut scales = std::mem::take(&mut self.scales);
-        let answer = {
-            let physics = self.physics();
-            let mut dynamics = Dynamics { physics, group, stage: &mut stage, start };
-            act(
-                &mut dynamics,
-                &mut Tools { stepper: &mut stepper, scales: &mut scales, settings: &self.settings },
-            )
-        };
-        (self.stage, self.scales) = (stage, scales);
-        *self.steppers.of(stepping) = stepper;
-        answer
+        let Self { flyers, connectors, laws, settings, stage, steppers, scales, .. } = self;
+        let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
+        let physics = Physics { mechanism, laws, extra: settings.extra };
+        let (start, stepper) = (group.start, steppers.of(group.stepping()));
+        act(&mut Dynamics { physics, group, stage, start }, &mut Tools { stepper, scales, settings })
     }
 
     /// Ends a group, whose bodies fly on; its works are booked.
@@ -522,8 +512,7 @@ mod tests {
         let gap = system.settings.tolerances.target_gap;
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         system.with_group(&mut group, |dynamics, tools| {
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it rests");
-            dynamics.evaluate_end();
+            dynamics.extend(tools).expect("it rests");
             dynamics.group.state[1] -= 4.0 * gap;
             dynamics.group.end_state[1] -= 4.0 * gap;
             dynamics.make_dense(tools.stepper);

@@ -42,13 +42,12 @@ impl Dynamics<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::group::Group;
-    use super::super::test_scene::{block_on_its_corner, resting_discs};
+    use super::super::test_scene::{block_on_its_corner, resting_discs, turn_on_its_corner};
     use super::super::{ForceLaw, RigidSystem, Snapshot, Wrenches};
     use super::*;
     use crate::time::Time;
     use glam::DVec2;
     use halfgap_collision::BodyId;
-    use std::f64::consts::{FRAC_PI_4, SQRT_2};
     use std::sync::Arc;
 
     /// Weight of a body [N].
@@ -78,8 +77,7 @@ mod tests {
         change(&mut group);
         system.with_group(&mut group, |dynamics, tools| {
             dynamics.set_out();
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it moves");
-            dynamics.evaluate_end();
+            dynamics.extend(tools).expect("it moves");
             dynamics.make_dense(tools.stepper);
             dynamics.find_event();
         });
@@ -111,8 +109,7 @@ mod tests {
         // The corner goes 0.2 rad on; the block topples on.
         for beyond in [1e-7, 1e-4] {
             let group = stepped(block_on_its_corner(), |group| {
-                group.state[2] += 0.2 + beyond;
-                group.state[5] = 1.0;
+                turn_on_its_corner(group, group.state[2] + 0.2 + beyond, 1.0);
                 group.next_step = Some(1e-2);
             });
             let Some((offset, SegmentEnd::Change(0))) = group.event else {
@@ -129,11 +126,8 @@ mod tests {
         let mut system = block_on_its_corner();
         system.settings.steps.largest_step = Some(0.3 * BEYOND);
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
-        let upright = |group: &Group| 0.4 * SQRT_2 * (group.state[2] - FRAC_PI_4).cos();
-        group.state[1] -= upright(&group);
-        group.state[2] += 0.2 + BEYOND;
-        group.state[1] += upright(&group);
-        (group.state[4], group.state[5]) = (-0.4 * SQRT_2 * (group.state[2] - FRAC_PI_4).sin(), 1.0);
+        let angle = group.state[2] + 0.2 + BEYOND;
+        turn_on_its_corner(&mut group, angle, 1.0);
         group.end_state.clone_from(&group.state);
         group.end_rates.clone_from(&group.rates);
         group.span = 0.0;

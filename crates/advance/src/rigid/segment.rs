@@ -2,6 +2,7 @@
 
 use super::brief::Stepping;
 use super::dynamics::{Dynamics, body_state};
+use super::energy::Energy;
 use super::extending::Tools;
 use super::group::Group;
 use super::rows::RowSource;
@@ -88,53 +89,71 @@ impl Dynamics<'_> {
         self.group.rates = rates;
     }
 
-    /// Extends the group by one accepted step from its state and rates; its end is projected.
-    pub(crate) fn extend(
-        &mut self,
-        stepper: &mut Stepper,
-        control: &StepControl,
-        scales: &mut Vec<f64>,
-    ) -> Result<(), StepFailure> {
+    /// Extends the group by one accepted step from its state and rates; its end is projected, and the rates there are known.
+    /// Returns the energy at the end, if anybody had to look.
+    pub(crate) fn extend(&mut self, tools: &mut Tools<'_>) -> Result<Option<Energy>, StepFailure> {
+        let control = &tools.settings.steps;
         if !self.is_resolved(control) {
             return Err(StepFailure::Unresolved(self.group.force_length));
         }
-        self.set_scales(control, scales);
-        stepper.set_scales(scales);
+        self.set_scales(control, tools.scales);
+        tools.stepper.set_scales(tools.scales);
+        let method = tools.stepper.method();
         let turning = self.longest_turning_step();
         let longest = self.longest_sound_step().min(self.longest_watched_step()).min(turning);
         let longest = longest.min(self.longest_smooth_step(control));
-        let longest = longest.min(self.longest_stable_step(stepper.method()));
+        let longest = longest.min(self.longest_stable_step(method));
         self.note_damping();
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
         let work_scale = self.work_scale(control);
         let mut rejected = false;
-        let outcome = loop {
+        loop {
             if step.is_nan() || step <= shortest {
-                break Err(StepFailure::Collapsed(step));
+                return Err(StepFailure::Collapsed(step));
             }
-            self.step(stepper, step);
-            let mut error = stepper.error_norm(scales);
+            self.group.span = step;
+            self.step(tools.stepper, step);
+            // Where the error takes the rates at the end, they are asked for once: where the end is in the end.
+            let closed = tools.stepper.needs_end_rates().then(|| self.close_step(tools));
+            let mut error = tools.stepper.error_norm(tools.scales);
             if error <= 1.0 {
-                error = error.max(self.work_error(stepper, scales.len(), work_scale));
+                error = error.max(self.work_error(tools.stepper, tools.scales.len(), work_scale));
             }
             if !error.is_finite() {
                 (step, rejected) = (step * RETREAT, true);
                 continue;
             }
-            let method = stepper.method();
             if error <= 1.0 {
                 let accepted = Accepted { length: step, error };
                 let before = self.group.accepted.replace(accepted);
                 let most = if rejected { 1.0 } else { self.largest_growth() };
                 self.group.next_step = Some(step * method.factor_after(accepted, before).min(most));
-                break Ok(());
+                let energy = closed.unwrap_or_else(|| self.end_with_rates(tools));
+                self.follow_rails();
+                return Ok(energy);
             }
             (step, rejected) = (step * method.step_factor(error), true);
-        };
-        self.group.span = step;
-        outcome
+        }
+    }
+
+    /// Projects the end and evaluates the rates there. Returns the energy at the end, if anybody had to look.
+    fn end_with_rates(&mut self, tools: &Tools<'_>) -> Option<Energy> {
+        let energy = self.end_on_rows(tools);
+        self.evaluate_end();
+        energy
+    }
+
+    /// The same of a step whose error takes these rates.
+    fn close_step(&mut self, tools: &mut Tools<'_>) -> Option<Energy> {
+        let energy = self.end_with_rates(tools);
+        if self.group.tree.is_used() {
+            self.close_step_of_tree(tools.stepper);
+        } else {
+            tools.stepper.close(&self.group.end_rates);
+        }
+        energy
     }
 
     /// Goes a step from the group's state and rates to its end state, in the coordinates that the group is stepped in.
@@ -149,7 +168,7 @@ impl Dynamics<'_> {
         let from = Point { offset: 0.0, state: &state, rates: &rates };
         self.stage.clear_force_ranges(self.group.rows.len());
         self.stage.asks_force_ranges = true;
-        let Ok(()) = stepper.step(self, from, step, &mut end);
+        let Ok(()) = stepper.step_open(self, from, step, &mut end);
         self.stage.asks_force_ranges = false;
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
     }

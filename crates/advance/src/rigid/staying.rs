@@ -142,22 +142,23 @@ fn stays_between_ends(sample: &GapSample, primary: &Side<'_>, other: &Side<'_>, 
 
 #[cfg(test)]
 mod tests {
+    use super::super::group::Group;
     use super::super::system::RigidSystem;
-    use super::super::test_scene::{block_on_its_corner, resting_discs};
+    use super::super::test_scene::{block_on_its_corner, resting_discs, turn_on_its_corner};
     use halfgap_collision::BodyId;
 
     /// Length of a segment [s].
     const SPAN: f64 = 0.125;
 
-    /// Whether the contact of body 1, which sets out at a speed [m/s] along the floor and turns [rad/s], is said to stay on its
-    /// features along a segment, and whether it does.
-    fn said_and_done(mut system: RigidSystem, speed: f64, spin: f64) -> [bool; 2] {
+    /// Whether the contact of body 1, which sets out otherwise, is said to stay on its features along a segment, and whether it
+    /// does.
+    fn said_and_done(mut system: RigidSystem, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
-        (group.state[3], group.state[5], group.next_step) = (speed, spin, Some(SPAN));
+        set_out(&mut group);
+        group.next_step = Some(SPAN);
         system.with_group(&mut group, |dynamics, tools| {
             dynamics.set_out();
-            dynamics.extend(tools.stepper, &tools.settings.steps, tools.scales).expect("it slides");
-            dynamics.evaluate_end();
+            dynamics.extend(tools).expect("it slides");
             dynamics.make_dense(tools.stepper);
             let span = dynamics.group.span;
             dynamics.find_bounds();
@@ -176,7 +177,11 @@ mod tests {
         // The floor ends 1 m from the disc, which neither speeds up nor turns.
         for speed in [-150.0, 0.0, 1.0, 7.5, 7.99, 8.01, 9.0, 50.0] {
             let expected = speed * SPAN < 1.0;
-            assert_eq!(said_and_done(resting_discs(&[9.0]), speed, 0.0), [expected; 2], "{speed} m/s");
+            assert_eq!(
+                said_and_done(resting_discs(&[9.0]), |disc| disc.state[3] = speed),
+                [expected; 2],
+                "{speed} m/s"
+            );
         }
     }
 
@@ -184,7 +189,8 @@ mod tests {
     fn what_rolls_over_a_round_corner_stays_up_to_its_ends() {
         let spins = (0..=60).map(|index| 0.25 * f64::from(index));
         let answers = spins.map(|spin| {
-            let [said, done] = said_and_done(block_on_its_corner(), 0.0, spin);
+            let [said, done] =
+                said_and_done(block_on_its_corner(), |block| turn_on_its_corner(block, block.state[2], spin));
             assert!(done || !said, "{spin} rad/s");
             [said, done]
         });

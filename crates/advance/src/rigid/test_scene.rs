@@ -1,6 +1,7 @@
 //! Settings and bodies for tests: discs at rest on a floor, for what happens between bodies that are held.
 
 use super::flyer::FlightLaw;
+use super::group::Group;
 use super::segment::StepControl;
 use super::system::{RigidParts, RigidSettings, RigidSystem};
 use crate::ode::Method;
@@ -72,6 +73,15 @@ pub(super) fn block_on_its_corner() -> RigidSystem {
     let position = DVec2::new(0.0, 0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP);
     let state = BodyState { position, angle: FRAC_PI_4 + tilt, ..BodyState::default() };
     resting([(shape, state)].into_iter())
+}
+
+/// Turns the block of [`block_on_its_corner`], whose group this is, to an angle [rad] at a spin [rad/s]; its corner stays on the
+/// floor.
+pub(super) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
+    let tilt = angle - FRAC_PI_4;
+    let (height, rise) = (0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP, -0.4 * SQRT_2 * tilt.sin() * spin);
+    (group.state[1], group.state[2]) = (height, angle);
+    (group.state[4], group.state[5]) = (rise, spin);
 }
 
 /// Bodies of 1 kg and as much inertia as a disc of radius 0.5 m at rest on a floor.

@@ -52,6 +52,26 @@ fn the_estimate_falls_with_its_order() {
 }
 
 #[test]
+fn an_open_step_that_is_closed_is_a_step() {
+    for method in [Method::Dop853, Method::DormandPrince5, Method::RadauIia5] {
+        let (state, mut end, mut open_end) = (exact(1.0), [0.0; SIZE], [0.0; SIZE]);
+        let rates = rates_at(1.0, &state);
+        let start = Point { offset: 1.0, state: &state, rates: &rates };
+        let (mut stepper, mut opened) = (Stepper::new(method), Stepper::new(method));
+        let (mut planet, mut saving) = (Planet::default(), Planet::default());
+        let Ok(()) = stepper.step(&mut planet, start, 0.1, &mut end);
+        let Ok(()) = opened.step_open(&mut saving, start, 0.1, &mut open_end);
+        assert_eq!(open_end, end, "{method:?}");
+        let saved = usize::from(opened.needs_end_rates());
+        assert_eq!(saving.derivatives + saved, planet.derivatives, "{method:?}");
+        opened.close(&rates_at(1.1, &end));
+        let scales = [1e-9; SIZE];
+        assert_eq!(opened.error_norm(&scales), stepper.error_norm(&scales), "{method:?}");
+    }
+    assert!(Stepper::new(Method::DormandPrince5).needs_end_rates());
+}
+
+#[test]
 fn the_norm_is_measured_by_the_scales() {
     let (mut stepper, state, mut end) = (Stepper::new(Method::Dop853), exact(1.0), [0.0; SIZE]);
     let rates = rates_at(1.0, &state);

@@ -69,12 +69,18 @@ impl Dynamics<'_> {
         end.clear();
         end.resize(state.len(), 0.0);
         let from = Point { offset: 0.0, state: &state, rates: &rates };
-        let Ok(()) = stepper.step(&mut Hanging(self), from, step, &mut end);
+        let Ok(()) = stepper.step_open(&mut Hanging(self), from, step, &mut end);
         let mut whole = std::mem::take(&mut self.group.end_state);
         self.unfold(&end, &mut whole);
         self.group.end_state = whole;
         let tree = &mut self.group.tree;
         (tree.state, tree.rates, tree.end) = (state, rates, end);
+    }
+
+    /// Tells the stepper the rates at the end of a step whose error takes them.
+    pub(crate) fn close_step_of_tree(&mut self, stepper: &mut Stepper) {
+        self.group.gather_end();
+        stepper.close(&self.group.tree.end_rates);
     }
 
     /// Turns a state of the tree into one of the group.
