@@ -1,6 +1,7 @@
 //! The collision records of two bodies at one moment.
 
 use crate::body::{Body, BodyId};
+use crate::march::UNKNOWN_DIRECTION;
 use crate::merge::merge_collisions;
 use crate::motion::Moving;
 use crate::record::{Collision, Detector, Participant, Parties};
@@ -64,7 +65,8 @@ pub fn detect_features_of_pair(
 }
 
 /// The record of one pair of features, wherever on them its contact is and however far they are apart: of a pair that a
-/// search says is in contact. `None` if the two cannot touch inside their ranges.
+/// search says is in contact. `None` if the two cannot touch inside their ranges, as corners so near each other that the
+/// direction between them is all rounding, and not such that they touch.
 #[must_use]
 pub fn record_features(
     [a, b]: [&Moment<'_>; 2],
@@ -74,7 +76,10 @@ pub fn record_features(
 ) -> Option<Collision> {
     let (shape_a, shape_b) = (a.body.shape.feature(features[0]), b.body.shape.feature(features[1]));
     let sample = GapSample::measure(shape_a, &a.moving.pose, shape_b, &b.moving.pose)?;
-    Some(record([a, b], features, &sample, pair_tolerances(shape_a, shape_b, tolerances), time))
+    let is_known = shape_a.radius() != Some(0.0)
+        || shape_b.radius() != Some(0.0)
+        || sample.excess_primary.max(sample.excess_normal) <= UNKNOWN_DIRECTION;
+    is_known.then(|| record([a, b], features, &sample, pair_tolerances(shape_a, shape_b, tolerances), time))
 }
 
 fn detect_features(

@@ -29,6 +29,9 @@ use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, Pose,
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
+/// Angle [rad] by which the direction between two centres may be unknown at most.
+pub(crate) const UNKNOWN_DIRECTION: f64 = 0.1;
+
 /// Two bodies' motions over a window, with bounds that hold in all of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Window<'a, A, B> {
@@ -311,7 +314,8 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         (direction_rate, u, u_max, a_max): (f64, f64, f64, f64),
     ) -> Option<f64> {
         let [excess_a, excess_b] = gap.excess(round_a, &a.pose, round_b, &b.pose);
-        let [slack_a, slack_b] = pair.slack.map(|slack| slack.max(direction_rounding(gap)));
+        let [slack_a, slack_b] =
+            pair.slack.map(|slack| slack.max(direction_rounding(gap.center_a, gap.center_b)));
         if excess_a <= slack_a && excess_b <= slack_b {
             return None;
         }
@@ -431,10 +435,11 @@ fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, slack:
     }
 }
 
-/// Rounding [rad] of the direction between two centres.
-pub(crate) fn direction_rounding(gap: &CenterGap) -> f64 {
-    let size = gap.center_a.abs().max(gap.center_b.abs()).max_element();
-    rounding(1.0) + quotient(rounding(size), gap.center_distance)
+/// Rounding [rad] of the direction between two centres. What is outside of its features by more has been so, for centres that
+/// all but coincide were farther apart before: corners that pass through each other have come from where they do not touch.
+pub(crate) fn direction_rounding(center_a: DVec2, center_b: DVec2) -> f64 {
+    let size = center_a.abs().max(center_b.abs()).max_element();
+    rounding(1.0) + quotient(rounding(size), center_a.distance(center_b)).min(UNKNOWN_DIRECTION)
 }
 
 /// The longer of two waits, either of which may be absent.
@@ -451,7 +456,7 @@ pub(crate) fn contact_is_within(pair: &Pair<'_>, poses: [&Pose; 2]) -> bool {
     match (pair.feature_a, pair.feature_b) {
         (Feature::Round(a), Feature::Round(b)) => {
             let gap = CenterGap::measure(a, poses[0], b, poses[1], pair.kind == PairKind::Inner);
-            let least = direction_rounding(&gap);
+            let least = direction_rounding(gap.center_a, gap.center_b);
             let [excess_a, excess_b] = gap.excess(a, poses[0], b, poses[1]);
             excess_a <= least.max(slack_a) && excess_b <= least.max(slack_b)
         }

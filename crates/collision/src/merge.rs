@@ -1,6 +1,7 @@
 //! Two detectors can find one spot twice; the more exact record stays.
 
-use crate::record::Collision;
+use crate::march::direction_rounding;
+use crate::record::{Collision, Detector};
 use std::cmp::Ordering;
 
 /// Two normals are one when their directions agree to this sine [-] at least: far more than rounding, far less than a
@@ -9,6 +10,9 @@ const PARALLEL: f64 = 1e-6;
 
 /// The same where one lies beyond its edge.
 const OVERHANG: f64 = 0.1;
+
+/// Two normals may differ by so many roundings.
+const UNKNOWN_SHARE: f64 = 4.0;
 
 /// Part of the accuracy by which a contact may lie outside of its features and counts as within.
 const HAIR: f64 = 1.0 / 64.0;
@@ -34,7 +38,7 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     let normal_a = a.geometry.normal;
     let middle = |c: &Collision| 0.5 * (c.geometry.point_primary + c.geometry.point_normal);
     let apart = (middle(a) - middle(b)).length();
-    let sine = PARALLEL.max(lean(a, b)).max(overhang(a, b, apart));
+    let sine = PARALLEL.max(lean(a, b)).max(overhang(a, b, apart)).max(unknown(a)).max(unknown(b));
     let parallel = normal_a.dot(normal_b) > 0.0 && normal_a.perp_dot(normal_b).abs() < sine;
     let near = a.tolerances.distance_tol().max(b.tolerances.distance_tol());
     parallel && apart <= near
@@ -45,6 +49,16 @@ fn overhang(a: &Collision, b: &Collision, apart: f64) -> f64 {
     let is_one_beyond = (beyond(a) > 0.0) != (beyond(b) > 0.0);
     let is_near = apart <= a.tolerances.accuracy.max(b.tolerances.accuracy);
     if is_one_beyond && is_near { OVERHANG } else { 0.0 }
+}
+
+/// Rounding [rad] of the normal of a record: that of two corners is the direction between them, as a search saw it and as it is
+/// measured now.
+fn unknown(record: &Collision) -> f64 {
+    if record.parties.detector != Detector::CornerCorner {
+        return 0.0;
+    }
+    let [a, b] = [record.geometry.point_primary, record.geometry.point_normal];
+    UNKNOWN_SHARE * direction_rounding(a, b)
 }
 
 /// Angle [rad] between the normals of one spot found on both sides of a seam: over an arc's radius it makes up twice the

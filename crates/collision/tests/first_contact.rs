@@ -6,7 +6,7 @@ use halfgap_collision::{
     BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
     disc_contact, first_contact,
 };
-use halfgap_geometry::{EdgeSpec, FeatureId, PathSpec, Shape};
+use halfgap_geometry::{EdgeSpec, Feature, FeatureId, PathSpec, Shape};
 
 /// Pairs of bodies that are tried.
 const PAIRS: u64 = 10_000;
@@ -351,6 +351,50 @@ fn a_rule_with_a_gap_far_below_the_surface_fires_however_short_the_search() {
         PairSearch { a: &side_a, b: &side_b, tolerances: &tolerances, settings: &settings, rules: &rules };
     let Search::Contact(found) = search.step(0.0, 2e-4) else { panic!("it gets there") };
     assert!((found.time - 1e-3 / speed).abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn corners_that_come_out_past_each_other_at_no_distance_do_not_meet() {
+    // A block falls along the side of a tower of which it has come past the lower end but for its upper corner.
+    let (tower, block) =
+        (Shape::block(1.0, 4.0).expect("a fine tower"), Shape::block(1.0, 1.0).expect("a fine block"));
+    let tolerances = Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 };
+    let settings = SearchSettings::default();
+    let corner = |shape: &Shape, wanted: DVec2| {
+        let is_there = |feature: &Feature| matches!(feature, Feature::Round(round) if round.center == wanted);
+        let place = shape.features().iter().position(is_there).expect("a corner");
+        FeatureId(u32::try_from(place).expect("few features"))
+    };
+    let lower = corner(&tower, DVec2::new(0.5, -2.0));
+    let upper = corner(&block, DVec2::new(-0.5, 0.5));
+    let of = |shape: &Shape| (0..).map(FeatureId).take(shape.features().len()).collect::<Vec<_>>();
+    let pairs = of(&tower).into_iter().flat_map(|a| of(&block).into_iter().map(move |b| [a, b]));
+    let others = pairs.filter(|&features| features != [lower, upper]);
+    let rules: Vec<FeatureRule> = others.map(|features| FeatureRule { features, target: None }).collect();
+    for part in 0..200 {
+        let turn = DVec2::from_angle(0.031 * f64::from(part));
+        let (place, angle) = (turn.rotate(DVec2::new(1.0, -2.4)) + DVec2::new(2.7, -4.1), turn.to_angle());
+        let start = BodyState { position: place, angle, ..BodyState::default() };
+        let fall = Flight::new(start, turn.rotate(DVec2::new(0.0, -10.0)), 0.0, 0.0);
+        let rest = Flight::fixed(DVec2::new(2.7, -4.1), angle);
+        let side_a = MovingShape { shape: &tower, motion: &rest, offset: 0.0 };
+        let side_b = MovingShape { shape: &block, motion: &fall, offset: 0.0 };
+        let search = PairSearch {
+            a: &side_a,
+            b: &side_b,
+            tolerances: &tolerances,
+            settings: &settings,
+            rules: &rules,
+        };
+        let mut from = 0.0;
+        while from < 0.5 {
+            let Search::NoneBefore(time) = search.step(from, 0.5) else {
+                panic!("they meet, turned by {angle}")
+            };
+            assert!(time > from, "it goes on");
+            from = time;
+        }
+    }
 }
 
 #[test]

@@ -187,6 +187,20 @@ fn corners_that_pass_each_other_by_less_than_the_accuracy_touch_once() {
 }
 
 #[test]
+fn corners_that_meet_at_a_distance_of_rounding_touch_as_their_sides_do() {
+    // Side by side, corner at corner, and so near that the direction between the corners is off by some 1e-4 rad.
+    let apart = 1e-12;
+    for turn in [0.0f64, 0.3, 1.0, -2.4] {
+        let offset = DVec2::from_angle(turn).rotate(DVec2::new(1.0 + apart, 1.0));
+        let squares =
+            [DVec2::ZERO, offset].map(|offset| at(3.0 + offset.x, 2.0 + offset.y, turn, DVec2::ZERO));
+        let found = detect((&block(1.0, 1.0), squares[0]), (&block(1.0, 1.0), squares[1]));
+        let is_of_corners = |record: &Collision| record.parties.detector == Detector::CornerCorner;
+        assert!(!found.is_empty() && !found.iter().any(is_of_corners), "{turn}: {found:?}");
+    }
+}
+
+#[test]
 fn a_corner_leans_off_a_short_side_as_far_as_that_side_shows() {
     // A small block lies over the corner of a large one, and its end sinks: along its side by less than the accuracy, though
     // along the large one's it would be more.

@@ -4,6 +4,7 @@ use super::{impacts, within};
 use halfgap::BodyState;
 use halfgap::geometry::{DVec2, Shape};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+use halfgap_tests::world_of;
 
 #[test]
 fn a_disc_in_a_ring_wider_by_1e_9_stays_in_and_keeps_its_energy() {
@@ -114,4 +115,56 @@ fn two_needles_that_meet_point_to_point_keep_energy_and_momentum() {
     assert!(world.statistics().impacts > 0);
     within("needles point to point: momentum [N s]", momentum.length(), 1e-14);
     within("needles point to point: energy [J]", world.energy().kinetic - 1.0, 1e-13);
+}
+
+/// Where a block of 1 m comes to that falls for a time [s] in a channel between walls, wider than itself by a clearance [m], and how
+/// far that is off [m]. All is turned by an angle [rad] about the origin and shifted.
+fn off_through_channel(
+    (tolerance, elasticity): (f64, f64),
+    (clearance, height): (f64, f64),
+    (angle, shift): (f64, DVec2),
+) -> f64 {
+    const TIME: f64 = 1.3;
+    let place = |x: f64, y: f64| DVec2::from_angle(angle).rotate(DVec2::new(x, y)) + shift;
+    let down = DVec2::from_angle(angle).rotate(DVec2::new(0.0, -GRAVITY));
+    let body = |name: &str, size: &str, place: DVec2| {
+        format!(
+            "[[body]]\nname = '{name}'\nshape = {{ block = {{ width = 1.0, height = {size} }} }}\n\
+             position = [{:?}, {:?}]\nangle = {angle:?}\nelasticity = {elasticity:?}\n",
+            place.x, place.y
+        )
+    };
+    let wall = |name: &str, side: f64| body(name, "4.0", place(side * (1.0 + 0.5 * clearance), 0.0));
+    let scene = format!(
+        "format = 'halfgap-scene-1'\ntitle = 'channel'\n[run]\nduration = 2.0\ntolerance = {tolerance:?}\n\
+         {}fixed = true\n{}fixed = true\n{}mass = 1.0\n[[force]]\ngravity = {{ acceleration = [{:?}, {:?}] }}\n",
+        wall("left", -1.0),
+        wall("right", 1.0),
+        body("block", "1.0", place(0.0, height)),
+        down.x,
+        down.y
+    );
+    let mut world = world_of(&scene);
+    let block = world.find("block").expect("it is there");
+    advance(&mut world, TIME);
+    world.state(block).position.distance(place(0.0, height - 0.5 * GRAVITY * TIME * TIME))
+}
+
+#[test]
+fn a_block_falls_through_a_channel_as_wide_as_itself() {
+    // Its corners come out past those of the walls, at a distance that is nothing but rounding.
+    let placements =
+        [(0.0, DVec2::ZERO), (0.7, DVec2::ZERO), (-2.3, DVec2::new(3.0, 4.0)), (1.9, DVec2::new(-4.4, 0.3))];
+    let mut furthest = 0.0f64;
+    for tolerance in [1e-5, 1e-8, 1e-10] {
+        for clearance in [0.0, 1e-12, 1e-11, 5e-11, 1e-10, 1e-8] {
+            for (elasticity, height) in [(0.0, 1.0), (1.0, 1.0), (0.0, 3.0), (1.0, 3.0)] {
+                for placement in placements {
+                    let off = off_through_channel((tolerance, elasticity), (clearance, height), placement);
+                    furthest = furthest.max(off);
+                }
+            }
+        }
+    }
+    within("block falls through a channel as wide as itself: place [m]", furthest, 1e-7);
 }

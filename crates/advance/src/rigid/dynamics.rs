@@ -16,7 +16,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 /// Part of the forces on a body below which what is left of them is rounding: a slope of this many radians is level.
-const LEVEL: f64 = 1e-12;
+pub(super) const LEVEL: f64 = 1e-12;
 
 /// Velocities are corrected through accelerations: an older remedy against drift, kept for scenes recorded with it.
 #[derive(Clone, Copy, Debug, PartialEq)]

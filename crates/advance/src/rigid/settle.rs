@@ -4,7 +4,7 @@
 //! equation from then on; one that does not is left to the search for contacts, which watches its gap. Forces of redundant
 //! rows are not unique: those that the solution leaves without force follow from the others.
 
-use super::dynamics::{Physics, Stage};
+use super::dynamics::{LEVEL, Physics, Stage};
 use super::error::AdvanceError;
 use super::jams::JAM;
 use super::region::{Region, Touch};
@@ -237,8 +237,9 @@ impl RigidSystem {
             let record = &region.records[index];
             let sides = [record.parties.primary.body, record.parties.normal.body];
             let places = sides.map(|body| region.place(body));
-            // What moves nothing in the longest time is rounding.
+            // What moves nothing in the longest time is rounding, and what is left of accelerations across the normal.
             let offset = free_offset(region, record, stage);
+            let least = least.max(LEVEL * largest_acceleration(region, record, stage));
             let offset = if offset.abs() > least { offset } else { 0.0 };
             let j = &record.motion.kinematics.jacobian;
             let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
@@ -382,6 +383,12 @@ fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]])
     record.motion.kinematics.acceleration(&spins[0], &spins[1])
 }
 
+/// Largest acceleration [m/s^2] of the centre of a record's bodies without the forces of rows.
+fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    let linear = places_of(region, record).map(|place| spin(stage.accelerations[place]).linear.length());
+    linear.fold(0.0, f64::max)
+}
+
 /// Places of the movable bodies of a record.
 fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item = usize> + use<'a> {
     let bodies = [record.parties.primary.body, record.parties.normal.body];
@@ -439,6 +446,30 @@ mod tests {
         system.settle(region, settling, &mut stage, system.now, true).expect("it rests");
         assert!(settling.held.len() >= 2, "the posts hold the beam");
         settling.holds_touch(touch)
+    }
+
+    #[test]
+    fn what_is_left_of_a_pull_across_the_normal_presses_nothing() {
+        // A block falls along two walls that it just fits between, and that narrow by rounding.
+        let body = |shape: Result<Shape, _>, inverse: f64| Body {
+            shape: shape.expect("a fine size"),
+            inverse_mass: inverse,
+            inverse_moment: inverse,
+            elasticity: 0.0,
+        };
+        let at = |x: f64, angle: f64| {
+            let position = DVec2::new(x, 0.0);
+            BodyState { position, angle, ..BodyState::default() }
+        };
+        let wall = |side: f64| {
+            let apart = 1.0 + FINE.tolerances.target_gap;
+            (body(Shape::block(1.0, 8.0), 0.0), FlightLaw::default(), at(side * apart, -1e-14 * side))
+        };
+        let fall = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
+        let block = (body(Shape::block(1.0, 1.0), 1.0), fall, at(0.0, 0.0));
+        let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
+        let system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it falls");
+        assert!(system.group_of(BodyId(2)).is_none(), "nothing holds it");
     }
 
     #[test]
