@@ -2,8 +2,8 @@
 
 use super::within;
 use halfgap::geometry::DVec2;
-use halfgap::{BodyId, World};
-use halfgap_tests::mechanism::{Workshop, advance, connector_error, pendulum_period};
+use halfgap::{BodyId, BodyState, World};
+use halfgap_tests::mechanism::{Workshop, advance, block, connector_error, pendulum_period};
 
 const WORLD: BodyId = BodyId::WORLD;
 
@@ -81,6 +81,48 @@ fn a_parallelogram_goes_through_its_dead_points_without_losing_energy() {
         worst = worst.max((world.energy().total() / energy - 1.0).abs());
     }
     within("parallelogram, 20 s through its dead points: energy, relative", worst, 1e-9);
+}
+
+/// A weightless parallelogram of cranks of 1 m, the second of them fifty times as heavy, that turns at 2 rad/s from where its cranks
+/// stand across by an angle [rad]; all is turned by another.
+fn turning_parallelogram(tolerance: f64, across: f64, turned: f64) -> (World, BodyId) {
+    const SPIN: f64 = 2.0;
+    let mut shop = Workshop::weightless(tolerance);
+    let (along, arm) = (2.0 * DVec2::from_angle(turned), DVec2::from_angle(turned + across));
+    let moving = |position: DVec2, angle: f64, velocity: DVec2, angular_velocity: f64| BodyState {
+        position,
+        angle,
+        velocity,
+        angular_velocity,
+    };
+    let swing = |way: DVec2| SPIN * way.perp();
+    let cranks = [(DVec2::ZERO, 1.0), (along, 50.0)].map(|(foot, mass)| {
+        let state = moving(foot + 0.5 * arm, turned + across, swing(0.5 * arm), SPIN);
+        let crank = shop.body(if mass > 1.0 { "heavy" } else { "light" }, block(1.0, 0.1), mass, state);
+        shop.pin(WORLD, crank, foot);
+        crank
+    });
+    let state = moving(0.5 * along + arm, turned, swing(arm), 0.0);
+    let coupler = shop.body("coupler", block(2.0, 0.1), 1.0, state);
+    shop.pin(cranks[0], coupler, arm);
+    shop.pin(cranks[1], coupler, along + arm);
+    shop.builder.let_pass(cranks[0], cranks[1]);
+    (shop.build(), cranks[0])
+}
+
+#[test]
+fn a_parallelogram_turns_on_through_its_dead_points_whatever_the_tolerance() {
+    // It turns as if its cranks were one, through 63 points where it could go over into its other way of turning.
+    for tolerance in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
+        let mut worst: f64 = 0.0;
+        for (across, turned) in [(1.5707963267948966, 0.7), (0.4, 0.0), (2.0, -1.9), (1.0, 0.2)] {
+            let (mut world, crank) = turning_parallelogram(tolerance, across, turned);
+            let start = world.state(crank).angle;
+            advance(&mut world, 100.0);
+            worst = worst.max((world.state(crank).angle - start - 200.0).abs());
+        }
+        within(&format!("parallelogram turned by 200 rad at {tolerance}: angle [rad]"), worst, 1e-4);
+    }
 }
 
 #[test]

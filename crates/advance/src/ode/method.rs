@@ -71,6 +71,18 @@ impl Method {
         }
     }
 
+    /// The part of a step in the middle of the widest interval in which none of its rates is asked for, dense output included; `None`
+    /// for methods without error estimate and implicit ones.
+    #[must_use]
+    pub fn widest_gap(self) -> Option<f64> {
+        let tableau = self.tableau().filter(|_| self.is_adaptive())?;
+        let stages = tableau.stages.iter().chain(tableau.dense_stages);
+        let nodes = || [0.0, 1.0].into_iter().chain(stages.clone().map(|stage| stage.node));
+        let next = |node: f64| nodes().filter(|&other| other > node).fold(1.0, f64::min);
+        let gaps = nodes().map(|node| (node, next(node)));
+        gaps.max_by(|a, b| (a.1 - a.0).total_cmp(&(b.1 - b.0))).map(|(from, to)| 0.5 * (from + to))
+    }
+
     /// Coefficients of an explicit method.
     pub(super) fn tableau(self) -> Option<&'static Tableau> {
         Some(match self {

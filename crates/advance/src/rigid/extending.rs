@@ -38,16 +38,22 @@ impl Dynamics<'_> {
         Ok(())
     }
 
-    /// Extends the group by a step whose dense output will not swing when somebody looks.
+    /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go on otherwise, it keeps to
+    /// its rows and its energy, too.
     fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
         for tries in 0.. {
-            self.extend(tools)?;
+            let energy = self.extend(tools)?;
             let told = self.tell_stiffness(tools);
-            let swing = told.map_or(0.0, |told| told.dense_error);
-            if swing <= 1.0 || tries >= DEEP_SHORTENINGS {
+            let mut excess = told.map_or(0.0, |told| told.dense_error);
+            if self.group.tree.nears_singular() {
+                self.make_dense(tools.stepper);
+                let off = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+                excess = excess.max(off).max(self.lost_energy(&tools.settings.steps, energy));
+            }
+            if excess <= 1.0 || tries >= DEEP_SHORTENINGS {
                 return Ok(told);
             }
-            self.limit_next_step(tools.stepper.method().step_factor(swing));
+            self.limit_next_step(tools.stepper.method().step_factor(excess));
         }
         Ok(None)
     }

@@ -37,6 +37,8 @@ const WORTHWHILE: f64 = 0.5;
 /// Bodies that move by so many times the error of their rows have other rates there: rows that all but depend on each other
 /// carry forces that do work on what is left of them.
 const FAR: f64 = 8.0;
+/// What bodies of loops move by for less than this part of the length changes none of their rates.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
 /// A change of velocities by more than so many times what is fast corrects nothing: to stop a group altogether, some points change
 /// by a little more than the fastest moves.
 const ALL_OF_IT: f64 = 2.0;
@@ -54,6 +56,9 @@ const CLEAR_SHARE: f64 = 0.5;
 const DENSE_ERROR: f64 = 0.1;
 /// What is smooth and begins with the square of the part of a step is at most this times that square of what it is in the middle.
 const EARLY_SHARE: f64 = 16.0;
+
+/// How often a step is made otherwise so that no stage of it comes near a point where its rows depend on each other.
+const MOST_PLACEMENTS: usize = 4;
 
 /// Part of its reach by which a body with contacts may move in one step.
 const WATCHED_SHARE: f64 = 0.5;
@@ -108,13 +113,19 @@ impl Dynamics<'_> {
         let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
         let work_scale = self.work_scale(control);
-        let mut rejected = false;
+        let (mut rejected, mut placements, mut is_led, proposed) = (false, 0, false, step);
         loop {
             if step.is_nan() || step <= shortest {
                 return Err(StepFailure::Collapsed(step));
             }
             self.group.span = step;
             self.step(tools.stepper, step);
+            if placements < MOST_PLACEMENTS
+                && let Some(better) = self.group.tree.better_length(step, method)
+            {
+                (step, placements, is_led) = (better, placements + 1, true);
+                continue;
+            }
             // Where the error takes the rates at the end, they are asked for once: where the end is in the end.
             let closed = tools.stepper.needs_end_rates().then(|| self.close_step(tools));
             let mut error = tools.stepper.error_norm(tools.scales);
@@ -125,16 +136,24 @@ impl Dynamics<'_> {
                 (step, rejected) = (step * RETREAT, true);
                 continue;
             }
-            if error <= 1.0 {
+            if error <= 1.0 || self.group.tree.errs_by_rounding(step, error) {
+                self.group.tree.note_accepted(step);
                 let accepted = Accepted { length: step, error };
-                let before = self.group.accepted.replace(accepted);
-                let most = if rejected { 1.0 } else { self.largest_growth() };
+                // A step that was made short of such a point tells nothing about those after it.
+                let before = self.group.accepted.replace(accepted).filter(|_| !is_led);
+                let most = match (is_led, rejected) {
+                    (true, _) => proposed / step,
+                    (false, true) => 1.0,
+                    (false, false) => self.largest_growth(),
+                };
                 self.group.next_step = Some(step * method.factor_after(accepted, before).min(most));
                 let energy = closed.unwrap_or_else(|| self.end_with_rates(tools));
                 self.follow_rails();
                 return Ok(energy);
             }
-            (step, rejected) = (step * method.step_factor(error), true);
+            let shorter = step * method.step_factor(error);
+            step = self.group.tree.shorter_length(shorter);
+            (rejected, is_led) = (true, is_led || step < shorter);
         }
     }
 
@@ -425,7 +444,9 @@ impl Dynamics<'_> {
         let speed = self.speed_in(&end, control);
         let velocities = self.group.velocities();
         let mut rates = std::mem::take(&mut self.stage.rates);
-        let is_soft = self.group.held.is_soft();
+        // Errors of loops decide which way they go on from where they could go both, unless there are hardly any.
+        let is_singular = self.group.tree.may_near_singular();
+        let is_soft = self.group.held.is_soft() || is_singular;
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
@@ -448,7 +469,7 @@ impl Dynamics<'_> {
                 break;
             }
             self.change(&mut end, 0);
-            is_far = way > FAR * error;
+            is_far = if is_singular { way > ROUNDED * length } else { way > FAR * error };
             // Newton's method squares the relative error.
             let is_enough = if is_soft {
                 error <= f64::EPSILON * length || (round > 0 && error > WORTHWHILE * before)

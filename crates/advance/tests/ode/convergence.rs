@@ -75,6 +75,42 @@ fn a_step_costs_the_derivatives_it_says() {
     }
 }
 
+/// A system that notes when its rates are asked for.
+#[derive(Default)]
+struct Asked(Vec<f64>);
+
+impl Ode for Asked {
+    type Error = Infallible;
+
+    fn derivative(&mut self, offset: f64, _state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        self.0.push(offset);
+        rates.fill(1.0);
+        Ok(())
+    }
+}
+
+#[test]
+fn no_rates_are_asked_for_near_the_middle_of_the_widest_interval() {
+    for method in [Method::Dop853, Method::DormandPrince5] {
+        let (mut asked, mut stepper, mut end) = (Asked::default(), Stepper::new(method), [0.0]);
+        let start = Point { offset: 0.0, state: &[0.0], rates: &[1.0] };
+        let Ok(()) = stepper.step(&mut asked, start, 1.0, &mut end);
+        let end_point = Point { offset: 1.0, state: &end, rates: &[1.0] };
+        let Ok(()) = stepper.dense(&mut asked, end_point, 0..1, &mut [Default::default()]);
+        let middle = method.widest_gap().expect("it has stages");
+        let nearest =
+            |place: f64| asked.0.iter().fold(place, |near, offset| near.min((offset - place).abs()));
+        assert!(nearest(middle) > 0.13, "{method:?}: {middle}");
+        // Nowhere are they farther.
+        let places = (1..1000).map(|place| f64::from(place) / 1000.0);
+        let farthest = places.map(|place| nearest(place).min(1.0 - place)).fold(0.0, f64::max);
+        assert!(farthest <= nearest(middle) + 1e-12, "{method:?}: {farthest}");
+    }
+    for method in [Method::Rk4, Method::Euler, Method::RadauIia5] {
+        assert_eq!(method.widest_gap(), None, "{method:?}");
+    }
+}
+
 /// Rates that are powers of the offset, and nothing else.
 struct Powers;
 

@@ -3,6 +3,7 @@
 //! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and J the rows,
 //! the forces follow from G f = -(J v' + gamma), G = J C. There are few of them, so G is dense.
 
+use super::singular::Seen;
 use super::{Hinge, JointTree};
 use crate::rigid::dynamics::{Dynamics, Stage};
 use crate::rigid::group::Group;
@@ -34,8 +35,10 @@ pub(super) struct Rest {
     columns: Vec<[f64; 3]>,
     /// Lower triangle of the factors L D L^T of G, line by line.
     factor: Vec<f64>,
-    /// The least part of a row's square that was kept so far.
+    /// The least part of a row's square that was kept so far, and when the rows were factorised last.
     pub(super) least_kept: f64,
+    pub(super) kept: f64,
+    pub(super) seen: Seen,
     /// The largest part of what a row keeps, softness included, that is softness.
     softness: f64,
     /// What forces leave of each row's equation, and the forces that this asks for.
@@ -51,7 +54,7 @@ impl JointTree {
         columns.clear();
         columns.resize(jacobians.len() * bodies, [0.0; 3]);
         self.rest.factor.clear();
-        self.rest.softness = 0.0;
+        (self.rest.softness, self.rest.kept) = (0.0, f64::INFINITY);
         for (row, jacobian) in jacobians.iter().enumerate() {
             let column = &mut columns[row * bodies..][..bodies];
             self.pull(jacobian, sides(row), column);
@@ -138,6 +141,7 @@ impl Rest {
         // A row that moves nothing depends on any other.
         let whole = if whole > 0.0 { whole } else { 1.0 };
         let kept = line[row].max(0.0) / whole;
+        self.kept = self.kept.min(kept);
         self.least_kept = self.least_kept.min(kept);
         let softness = SOFTNESS * (SOFTNESS / (kept + SOFTNESS)).powi(2);
         line[row] = whole * (kept + softness);

@@ -1,0 +1,209 @@
+//! Steps over points where rows beside the pins of a tree depend on each other for a moment, as those of a parallelogram do
+//! when it lies flat.
+//!
+//! There a loop could go on in two ways, and its motion says in which it does. Forces near such a point follow from the rows
+//! divided by what a row keeps, which falls with the square of the distance, so near it rates are all rounding, and errors of
+//! the loop decide which way it goes. Far from it nothing of that shows, so steps are made such that no stage comes near it: it is
+//! passed in the widest interval between stages. Whether a loop does pass such a point, or only nearly, tells how it is held along the
+//! step.
+
+use super::JointTree;
+use crate::ode::Method;
+
+/// A stage is near such a point when the point is less than this part of the step away.
+const CLOSE: f64 = 0.08;
+/// A step comes to such a point if the root of what a row keeps falls to this part of its largest.
+const LOW: f64 = 0.35;
+/// Such a point may be ahead where it has fallen to this part.
+const LOWER: f64 = 0.7;
+/// Where a step cannot pass the point between its stages, it ends at this part of the way there.
+const SHORT_OF_IT: f64 = 0.5;
+
+/// A step astride of such a point may err by so many times what is acceptable, if shorter ones err by no less: that is rounding.
+const MOST_ROUNDING: f64 = 100.0;
+
+/// What the rows beside the pins kept at the stages of a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    /// Offset [s] and the root of the least part that a row kept.
+    stages: Vec<(f64, f64)>,
+    /// The largest such root since there is the tree.
+    most: f64,
+    /// The least of the last step.
+    least: f64,
+    /// The place in the list of the stage at which a row kept least, if that is little.
+    lowest: Option<usize>,
+    /// Somebody looks.
+    is_open: bool,
+    /// Error norm of the last step astride of a point that erred by too much.
+    missed: Option<f64>,
+}
+
+impl Seen {
+    /// Forgets another tree.
+    pub(super) fn clear(&mut self) {
+        self.stages.clear();
+        (self.most, self.least, self.lowest, self.missed) = (0.0, 0.0, None, None);
+    }
+
+    pub(super) fn open(&mut self) {
+        self.stages.clear();
+        self.is_open = true;
+    }
+
+    pub(super) fn close(&mut self) {
+        self.is_open = false;
+        self.lowest = None;
+        let roots = || self.stages.iter().map(|stage| stage.1);
+        self.most = roots().fold(self.most, f64::max);
+        self.least = roots().fold(f64::INFINITY, f64::min);
+        if self.least < LOW * self.most {
+            self.stages.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            self.stages.dedup_by_key(|stage| stage.0);
+            let numbered = self.stages.iter().enumerate();
+            self.lowest = numbered.min_by(|a, b| a.1.1.total_cmp(&b.1.1)).map(|(place, _)| place);
+        }
+    }
+
+    /// Notes the least part that a row kept at an offset [s].
+    pub(super) fn note(&mut self, offset: f64, kept: f64) {
+        if self.is_open {
+            self.stages.push((offset, kept.sqrt()));
+        }
+    }
+
+    /// How fast [1/s] the root of what a row keeps falls towards a point where it keeps nothing, and rises again.
+    fn slope(&self) -> f64 {
+        let slopes =
+            self.stages.windows(2).map(|pair| ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).abs());
+        slopes.fold(0.0, f64::max)
+    }
+
+    /// The point [s] where a row keeps nothing, or nearly, and how far [s] from it the nearest stage is.
+    fn point(&self) -> Option<(f64, f64)> {
+        let place = self.lowest?;
+        let (offset, root) = self.stages[place];
+        let slope = self.slope();
+        if slope == 0.0 {
+            return None;
+        }
+        let away = root / slope;
+        // Towards the point the root falls short of what its slope makes of the way to the next stage.
+        let short = |other: Option<&(f64, f64)>| {
+            other.map_or(0.0, |other| slope * (other.0 - offset).abs() - other.1)
+        };
+        let before = short(place.checked_sub(1).and_then(|before| self.stages.get(before)));
+        let after = short(self.stages.get(place + 1));
+        Some((if before > after { offset - away } else { offset + away }, away))
+    }
+}
+
+impl JointTree {
+    /// True if the last step came to a point where rows depend on each other, or nearly.
+    pub(crate) fn nears_singular(&self) -> bool {
+        self.rest.seen.lowest.is_some()
+    }
+
+    /// True if the next steps may come to such a point: what a loop is off by grows on the way there.
+    pub(crate) fn may_near_singular(&self) -> bool {
+        let Seen { least, most, .. } = self.rest.seen;
+        least < LOWER * most
+    }
+
+    /// A length [s] for the last step with which it will not come near such a point by one of its stages; `None` if it has not.
+    pub(crate) fn better_length(&self, length: f64, method: Method) -> Option<f64> {
+        let (point, away) = self.rest.seen.point()?;
+        // Where the step begins at the point, its first stages are as far from it as they can be.
+        if away > CLOSE * length || point <= CLOSE * length {
+            return None;
+        }
+        let astride = point / method.widest_gap()?;
+        Some(if astride <= length { astride } else { SHORT_OF_IT * point })
+    }
+
+    /// True if a step that passed such a point between its stages, and whose error norm is too large, may pass all the same: a longer
+    /// one before it erred by no more, so no shorter one will err by less.
+    pub(crate) fn errs_by_rounding(&mut self, length: f64, error: f64) -> bool {
+        let seen = &mut self.rest.seen;
+        let is_astride = seen.point().is_some_and(|(point, away)| point < length && away > CLOSE * length);
+        if !is_astride {
+            return false;
+        }
+        let before = seen.missed.replace(error);
+        error <= MOST_ROUNDING && before.is_some_and(|before| error >= before)
+    }
+
+    /// Notes that a step was accepted: beyond a point, or where none is ahead, what erred before it tells nothing any more.
+    pub(crate) fn note_accepted(&mut self, length: f64) {
+        let seen = &mut self.rest.seen;
+        let rises = || seen.stages.last().map(|stage| stage.1) >= seen.stages.first().map(|stage| stage.1);
+        if seen.lowest.is_none() || rises() || seen.point().is_some_and(|(point, _)| point < length) {
+            seen.missed = None;
+        }
+    }
+
+    /// A length [s] for a step that erred by so much that it is to be made shorter, to a length given: it would come near such a
+    /// point if it ended there or a little later.
+    pub(crate) fn shorter_length(&self, shorter: f64) -> f64 {
+        match self.rest.seen.point() {
+            Some((point, _)) if point > 0.0 && shorter > SHORT_OF_IT * point => SHORT_OF_IT * point,
+            _ => shorter,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const METHOD: Method = Method::Dop853;
+
+    /// A tree that has seen a row keep the square of the way to a point [s], at the stages of a step of so many seconds.
+    fn seen(length: f64, point: f64, floor: f64) -> JointTree {
+        let mut tree = JointTree::default();
+        tree.rest.seen.open();
+        for node in [0.25, 0.05, 0.08, 0.12, 0.28, 1.0 / 3.0, 0.31, 0.65, 0.6, 0.86, 1.0, 1.0] {
+            let way = 7.0 * (node * length - point);
+            tree.rest.seen.note(node * length, floor + way * way);
+        }
+        tree.rest.seen.close();
+        tree
+    }
+
+    #[test]
+    fn a_step_is_led_astride_of_a_point_that_a_stage_comes_near() {
+        for (length, point) in [(1.0, 0.3), (1.0, 0.27), (0.01, 0.0025), (2.0, 0.31)] {
+            let better = seen(length, point, 0.0).better_length(length, METHOD).expect("a stage is near");
+            assert!(better < length);
+            // The next one sees the point in the widest interval, and is left as it is.
+            assert!((point / better - METHOD.widest_gap().expect("it has stages")).abs() < 1e-2, "{better}");
+            assert_eq!(seen(better, point, 0.0).better_length(better, METHOD), None);
+        }
+    }
+
+    #[test]
+    fn a_step_that_cannot_pass_a_point_between_its_stages_ends_well_before_it() {
+        for point in [0.6, 0.86, 0.97, 1.03] {
+            let better = seen(1.0, point, 0.0).better_length(1.0, METHOD).expect("a stage is near");
+            assert!((better / point - SHORT_OF_IT).abs() < 1e-2, "{point}: {better}");
+        }
+    }
+
+    #[test]
+    fn what_rows_keep_otherwise_leads_no_step() {
+        // Far from a point, or beyond it, or where rows come near to depending on each other but do not.
+        for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
+            assert_eq!(seen(1.0, point, floor).better_length(1.0, METHOD), None, "{point}");
+        }
+        assert_eq!(seen(1.0, 0.3, 0.0).better_length(1.0, Method::Rk4), None);
+    }
+
+    #[test]
+    fn what_is_made_shorter_does_not_end_at_a_point() {
+        let tree = seen(1.0, 0.45, 0.0);
+        for (shorter, expected) in [(0.9, 0.225), (0.45, 0.225), (0.3, 0.225), (0.2, 0.2)] {
+            assert!((tree.shorter_length(shorter) - expected).abs() < 5e-3, "{shorter}");
+        }
+        assert_eq!(seen(1.0, 1.6, 0.0).shorter_length(0.9), 0.9);
+    }
+}
