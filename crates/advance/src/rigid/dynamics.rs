@@ -449,6 +449,10 @@ impl Ode for Dynamics<'_> {
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
         self.find_rates(offset, state, rates, Self::solve_rows);
+        let Group { held, kept, dependent, .. } = &mut *self.group;
+        if kept.is_open() && held.is_soft() {
+            kept.note(offset, held.kept_beyond(*dependent));
+        }
         Ok(())
     }
 }

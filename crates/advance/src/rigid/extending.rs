@@ -45,7 +45,7 @@ impl Dynamics<'_> {
             let energy = self.extend(tools)?;
             let told = self.tell_stiffness(tools);
             let mut excess = told.map_or(0.0, |told| told.dense_error);
-            if self.group.tree.nears_singular() {
+            if self.group.kept.nears_singular() {
                 self.make_dense(tools.stepper);
                 let off = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
                 excess = excess.max(off).max(self.lost_energy(&tools.settings.steps, energy));

@@ -1,6 +1,7 @@
 //! A group: bodies that share their steps because rows or force laws couple them.
 
 use super::rows::HeldRow;
+use super::singular::Kept;
 use super::stiff::Stiffness;
 use super::tree::JointTree;
 use crate::ode::{Accepted, SegmentPolynomial};
@@ -60,6 +61,10 @@ pub(crate) struct Group {
     pub(crate) held: HeldRows,
     /// In whose coordinates it is stepped, if it hangs together by pins alone.
     pub(crate) tree: JointTree,
+    /// What rows of loops keep that depend on each other for a moment.
+    pub(crate) kept: Kept,
+    /// How many rows depend on others all along, where such rows share what they hold.
+    pub(crate) dependent: usize,
     /// When its segment started.
     pub(crate) start: Time,
     /// Length of the segment [s].
@@ -132,6 +137,8 @@ impl Group {
         self.laws.clear();
         self.works.clear();
         self.tree.clear();
+        self.kept.clear();
+        self.dependent = 0;
         self.state.clear();
         self.rates.clear();
         (self.next_step, self.full_step) = (None, None);

@@ -51,6 +51,7 @@ mod rules;
 mod segment;
 mod settle;
 mod settling;
+mod singular;
 mod staying;
 mod stiff;
 mod storms;

@@ -121,7 +121,7 @@ impl Dynamics<'_> {
             self.group.span = step;
             self.step(tools.stepper, step);
             if placements < MOST_PLACEMENTS
-                && let Some(better) = self.group.tree.better_length(step, method)
+                && let Some(better) = self.group.kept.better_length(step, method)
             {
                 (step, placements, is_led) = (better, placements + 1, true);
                 continue;
@@ -136,8 +136,8 @@ impl Dynamics<'_> {
                 (step, rejected) = (step * RETREAT, true);
                 continue;
             }
-            if error <= 1.0 || self.group.tree.errs_by_rounding(step, error) {
-                self.group.tree.note_accepted(step);
+            if error <= 1.0 || self.group.kept.passes_astride(step, error) {
+                self.group.kept.note_accepted(step);
                 let accepted = Accepted { length: step, error };
                 // A step that was made short of such a point tells nothing about those after it.
                 let before = self.group.accepted.replace(accepted).filter(|_| !is_led);
@@ -152,7 +152,7 @@ impl Dynamics<'_> {
                 return Ok(energy);
             }
             let shorter = step * method.step_factor(error);
-            step = self.group.tree.shorter_length(shorter);
+            step = self.group.kept.shorter_length(shorter, method);
             (rejected, is_led) = (true, is_led || step < shorter);
         }
     }
@@ -177,9 +177,17 @@ impl Dynamics<'_> {
 
     /// Goes a step from the group's state and rates to its end state, in the coordinates that the group is stepped in.
     fn step(&mut self, stepper: &mut Stepper, step: f64) {
+        self.group.kept.open();
         if self.group.tree.is_used() {
-            return self.step_tree(stepper, step);
+            self.step_tree(stepper, step);
+        } else {
+            self.step_rows(stepper, step);
         }
+        self.group.kept.close();
+    }
+
+    /// The same in the numbers of the group's state.
+    fn step_rows(&mut self, stepper: &mut Stepper, step: f64) {
         let (state, rates) = (std::mem::take(&mut self.group.state), std::mem::take(&mut self.group.rates));
         let mut end = std::mem::take(&mut self.group.end_state);
         end.clear();
@@ -432,6 +440,7 @@ impl Dynamics<'_> {
         let mut connectors = (0..rows.len()).filter(|&row| rows[row].bilateral);
         if dependent > 0 && connectors.any(|row| held.is_dependent(row)) {
             held.soften(|row| rows[row].bilateral);
+            self.group.dependent = dependent;
         }
     }
 
@@ -445,7 +454,7 @@ impl Dynamics<'_> {
         let velocities = self.group.velocities();
         let mut rates = std::mem::take(&mut self.stage.rates);
         // Errors of loops decide which way they go on from where they could go both, unless there are hardly any.
-        let is_singular = self.group.tree.may_near_singular();
+        let is_singular = self.group.kept.may_near_singular();
         let is_soft = self.group.held.is_soft() || is_singular;
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);

@@ -36,6 +36,8 @@ impl HeldRows {
         self.jacobian.resize(rows.len(), [0.0; 6]);
         self.inverse_pivot.clear();
         self.inverse_pivot.resize(rows.len(), 0.0);
+        self.kept.clear();
+        self.kept.resize(rows.len(), 1.0);
         self.shares.clear();
         self.shares.resize(rows.len(), false);
         self.raise.clear();

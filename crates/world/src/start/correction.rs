@@ -101,12 +101,13 @@ pub(super) fn correct_velocities(
     Ok(Some((name_of(index, named, connectors), rate)))
 }
 
-/// The sum of the sizes of the terms that make up a rate [m/s].
+/// The speeds that a rate is the difference of [m/s]. What of them is across the row counts, too: where a row points is known to
+/// rounding only.
 fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
-    let sizes = ends.iter().zip(jacobian.chunks_exact(3)).map(|(body, part)| {
-        let Some((_, _, state)) = bodies.get(body.index()) else { return 0.0 };
-        let velocities = [state.velocity.x, state.velocity.y, state.angular_velocity];
-        part.iter().zip(velocities).map(|(entry, velocity)| (entry * velocity).abs()).sum()
+    let sizes = ends.iter().zip(jacobian.chunks_exact(3)).map(|(end, part)| {
+        let Some((body, _, state)) = bodies.get(end.index()) else { return 0.0 };
+        let arm = part[2].abs().max(body.shape.reach());
+        DVec2::new(part[0], part[1]).length() * state.velocity.length() + arm * state.angular_velocity.abs()
     });
     sizes.sum()
 }

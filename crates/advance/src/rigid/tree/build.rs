@@ -121,7 +121,6 @@ impl JointTree {
             on.lever_square += hung as f64 * (arm - on.own).length_squared();
         }
         self.rest.least_kept = f64::INFINITY;
-        self.rest.seen.clear();
         self.stances.clear();
         self.stances.resize(self.links.len(), Stance::default());
         self.bundles.clear();

@@ -7,13 +7,12 @@
 //! dense output.
 //!
 //! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest` holds what is held
-//! beside the pins, `stepping` makes the steps of a group, `singular` leads them over points where loops could go on otherwise. Angles are those of the bodies, not those between them, so a coordinate of the tree is a number of the
+//! beside the pins, `stepping` makes the steps of a group. Angles are those of the bodies, not those between them, so a coordinate of the tree is a number of the
 //! group's state.
 
 mod build;
 mod placing;
 mod rest;
-mod singular;
 mod stepping;
 mod sweeps;
 #[cfg(test)]
@@ -108,7 +107,6 @@ impl JointTree {
         self.links.clear();
         self.numbers.0.clear();
         self.rest.rows.clear();
-        self.rest.seen.clear();
     }
 
     /// True if the group is stepped as a tree.

@@ -3,7 +3,6 @@
 //! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and J the rows,
 //! the forces follow from G f = -(J v' + gamma), G = J C. There are few of them, so G is dense.
 
-use super::singular::Seen;
 use super::{Hinge, JointTree};
 use crate::rigid::dynamics::{Dynamics, Stage};
 use crate::rigid::group::Group;
@@ -38,7 +37,6 @@ pub(super) struct Rest {
     /// The least part of a row's square that was kept so far, and when the rows were factorised last.
     pub(super) least_kept: f64,
     pub(super) kept: f64,
-    pub(super) seen: Seen,
     /// The largest part of what a row keeps, softness included, that is softness.
     softness: f64,
     /// What forces leave of each row's equation, and the forces that this asks for.

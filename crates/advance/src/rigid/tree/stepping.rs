@@ -32,9 +32,9 @@ impl Ode for Hanging<'_, '_> {
         stage.accelerate(physics, (bodies, laws), start.seconds() + offset, works, powers);
         tree.accelerate(&mut stage.accelerations);
         self.0.hold_rest();
-        let rest = &mut self.0.group.tree.rest;
-        if !rest.rows.is_empty() {
-            rest.seen.note(offset, rest.kept);
+        let Group { tree, kept, .. } = &mut *self.0.group;
+        if !tree.rest.rows.is_empty() {
+            kept.note(offset, tree.rest.kept);
         }
         let Dynamics { group, stage, .. } = &mut *self.0;
         let (tree, accelerations) = (&group.tree, stage.accelerations.as_flattened());
@@ -73,9 +73,7 @@ impl Dynamics<'_> {
         end.clear();
         end.resize(state.len(), 0.0);
         let from = Point { offset: 0.0, state: &state, rates: &rates };
-        self.group.tree.rest.seen.open();
         let Ok(()) = stepper.step_open(&mut Hanging(self), from, step, &mut end);
-        self.group.tree.rest.seen.close();
         let mut whole = std::mem::take(&mut self.group.end_state);
         self.unfold(&end, &mut whole);
         self.group.end_state = whole;

@@ -1,13 +1,12 @@
-//! Steps over points where rows beside the pins of a tree depend on each other for a moment, as those of a parallelogram do
-//! when it lies flat.
+//! Steps over points where the rows of loops depend on each other for a moment, as those of a parallelogram do when it lies
+//! flat.
 //!
 //! There a loop could go on in two ways, and its motion says in which it does. Forces near such a point follow from the rows
-//! divided by what a row keeps, which falls with the square of the distance, so near it rates are all rounding, and errors of
-//! the loop decide which way it goes. Far from it nothing of that shows, so steps are made such that no stage comes near it: it is
+//! divided by what a row keeps once the others are held, which falls with the square of the distance, so near it rates are all
+//! rounding, and errors of the loop decide which way it goes. Far from it nothing of that shows, so steps are made such that no stage comes near it: it is
 //! passed in the widest interval between stages. Whether a loop does pass such a point, or only nearly, tells how it is held along the
 //! step.
 
-use super::JointTree;
 use crate::ode::Method;
 
 /// A stage is near such a point when the point is less than this part of the step away.
@@ -16,42 +15,46 @@ const CLOSE: f64 = 0.08;
 const LOW: f64 = 0.35;
 /// Such a point may be ahead where it has fallen to this part.
 const LOWER: f64 = 0.7;
+/// A step so many times as long as the way to such a point leaves it before its first stage.
+const EARLY: f64 = 40.0;
 /// Where a step cannot pass the point between its stages, it ends at this part of the way there.
 const SHORT_OF_IT: f64 = 0.5;
 
-/// A step astride of such a point may err by so many times what is acceptable, if shorter ones err by no less: that is rounding.
-const MOST_ROUNDING: f64 = 100.0;
+/// A step astride of such a point may err by so many times what is acceptable: to come nearer to the point costs more than that.
+const ASTRIDE_ERROR: f64 = 4.0;
+/// And by so many times, if shorter ones err by no less: that is rounding.
+const MOST_ROUNDING: f64 = 1e3;
 
-/// What the rows beside the pins kept at the stages of a step.
+/// What the rows of loops kept at the stages of a step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(crate) struct Kept {
     /// Offset [s] and the root of the least part that a row kept.
     stages: Vec<(f64, f64)>,
-    /// The largest such root since there is the tree.
+    /// The largest such root since there is the group.
     most: f64,
     /// The least of the last step.
     least: f64,
     /// The place in the list of the stage at which a row kept least, if that is little.
     lowest: Option<usize>,
-    /// Somebody looks.
+    /// A step is made.
     is_open: bool,
     /// Error norm of the last step astride of a point that erred by too much.
     missed: Option<f64>,
 }
 
-impl Seen {
-    /// Forgets another tree.
-    pub(super) fn clear(&mut self) {
+impl Kept {
+    /// Forgets another group.
+    pub(crate) fn clear(&mut self) {
         self.stages.clear();
         (self.most, self.least, self.lowest, self.missed) = (0.0, 0.0, None, None);
     }
 
-    pub(super) fn open(&mut self) {
+    pub(crate) fn open(&mut self) {
         self.stages.clear();
         self.is_open = true;
     }
 
-    pub(super) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.is_open = false;
         self.lowest = None;
         let roots = || self.stages.iter().map(|stage| stage.1);
@@ -65,8 +68,13 @@ impl Seen {
         }
     }
 
-    /// Notes the least part that a row kept at an offset [s].
-    pub(super) fn note(&mut self, offset: f64, kept: f64) {
+    /// Whether stages are noted now: those of a step are, and nothing else that asks for rates.
+    pub(crate) fn is_open(&self) -> bool {
+        self.is_open
+    }
+
+    /// Notes the least part that a row keeps at an offset [s].
+    pub(crate) fn note(&mut self, offset: f64, kept: f64) {
         if self.is_open {
             self.stages.push((offset, kept.sqrt()));
         }
@@ -96,60 +104,58 @@ impl Seen {
         let after = short(self.stages.get(place + 1));
         Some((if before > after { offset - away } else { offset + away }, away))
     }
-}
 
-impl JointTree {
     /// True if the last step came to a point where rows depend on each other, or nearly.
     pub(crate) fn nears_singular(&self) -> bool {
-        self.rest.seen.lowest.is_some()
+        self.lowest.is_some()
     }
 
     /// True if the next steps may come to such a point: what a loop is off by grows on the way there.
     pub(crate) fn may_near_singular(&self) -> bool {
-        let Seen { least, most, .. } = self.rest.seen;
-        least < LOWER * most
+        self.least < LOWER * self.most
     }
 
     /// A length [s] for the last step with which it will not come near such a point by one of its stages; `None` if it has not.
     pub(crate) fn better_length(&self, length: f64, method: Method) -> Option<f64> {
-        let (point, away) = self.rest.seen.point()?;
-        // Where the step begins at the point, its first stages are as far from it as they can be.
-        if away > CLOSE * length || point <= CLOSE * length {
-            return None;
-        }
-        let astride = point / method.widest_gap()?;
-        Some(if astride <= length { astride } else { SHORT_OF_IT * point })
+        let (point, away) = self.point()?;
+        let better = led(point, length, method)?;
+        (away <= CLOSE * length).then_some(better)
     }
 
-    /// True if a step that passed such a point between its stages, and whose error norm is too large, may pass all the same: a longer
-    /// one before it erred by no more, so no shorter one will err by less.
-    pub(crate) fn errs_by_rounding(&mut self, length: f64, error: f64) -> bool {
-        let seen = &mut self.rest.seen;
-        let is_astride = seen.point().is_some_and(|(point, away)| point < length && away > CLOSE * length);
+    /// True if a step that passed such a point between its stages, and whose error norm is too large, may pass all the same: it is
+    /// not by much, or a longer one before it erred by no more, so no shorter one will err by less.
+    pub(crate) fn passes_astride(&mut self, length: f64, error: f64) -> bool {
+        let is_astride = self.point().is_some_and(|(point, away)| point < length && away > CLOSE * length);
         if !is_astride {
             return false;
         }
-        let before = seen.missed.replace(error);
-        error <= MOST_ROUNDING && before.is_some_and(|before| error >= before)
+        let before = self.missed.replace(error);
+        let is_rounding = before.is_some_and(|before| error >= before);
+        error <= if is_rounding { MOST_ROUNDING } else { ASTRIDE_ERROR }
     }
 
     /// Notes that a step was accepted: beyond a point, or where none is ahead, what erred before it tells nothing any more.
     pub(crate) fn note_accepted(&mut self, length: f64) {
-        let seen = &mut self.rest.seen;
-        let rises = || seen.stages.last().map(|stage| stage.1) >= seen.stages.first().map(|stage| stage.1);
-        if seen.lowest.is_none() || rises() || seen.point().is_some_and(|(point, _)| point < length) {
-            seen.missed = None;
+        let rises = || self.stages.last().map(|stage| stage.1) >= self.stages.first().map(|stage| stage.1);
+        if self.lowest.is_none() || rises() || self.point().is_some_and(|(point, _)| point < length) {
+            self.missed = None;
         }
     }
 
     /// A length [s] for a step that erred by so much that it is to be made shorter, to a length given: it would come near such a
-    /// point if it ended there or a little later.
-    pub(crate) fn shorter_length(&self, shorter: f64) -> f64 {
-        match self.rest.seen.point() {
-            Some((point, _)) if point > 0.0 && shorter > SHORT_OF_IT * point => SHORT_OF_IT * point,
-            _ => shorter,
-        }
+    /// point by its stages, or by its end.
+    pub(crate) fn shorter_length(&self, shorter: f64, method: Method) -> f64 {
+        let better = self.point().and_then(|(point, _)| led(point, shorter, method));
+        better.map_or(shorter, |better| better.min(shorter))
     }
+}
+
+/// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends well before it; `None` if
+/// that is behind, or so near the start that no stage can be farther from it.
+fn led(point: f64, length: f64, method: Method) -> Option<f64> {
+    let astride = point / method.widest_gap()?;
+    let is_at_start = point <= 0.0 || EARLY * point <= length;
+    (!is_at_start).then_some(if astride <= length { astride } else { SHORT_OF_IT * point })
 }
 
 #[cfg(test)]
@@ -158,21 +164,21 @@ mod tests {
 
     const METHOD: Method = Method::Dop853;
 
-    /// A tree that has seen a row keep the square of the way to a point [s], at the stages of a step of so many seconds.
-    fn seen(length: f64, point: f64, floor: f64) -> JointTree {
-        let mut tree = JointTree::default();
-        tree.rest.seen.open();
+    /// What a row keeps that keeps the square of the way to a point [s], at the stages of a step of so many seconds.
+    fn seen(length: f64, point: f64, floor: f64) -> Kept {
+        let mut kept = Kept::default();
+        kept.open();
         for node in [0.25, 0.05, 0.08, 0.12, 0.28, 1.0 / 3.0, 0.31, 0.65, 0.6, 0.86, 1.0, 1.0] {
             let way = 7.0 * (node * length - point);
-            tree.rest.seen.note(node * length, floor + way * way);
+            kept.note(node * length, floor + way * way);
         }
-        tree.rest.seen.close();
-        tree
+        kept.close();
+        kept
     }
 
     #[test]
     fn a_step_is_led_astride_of_a_point_that_a_stage_comes_near() {
-        for (length, point) in [(1.0, 0.3), (1.0, 0.27), (0.01, 0.0025), (2.0, 0.31)] {
+        for (length, point) in [(1.0, 0.3), (1.0, 0.27), (0.01, 0.0025), (2.0, 0.31), (1.0, 0.06)] {
             let better = seen(length, point, 0.0).better_length(length, METHOD).expect("a stage is near");
             assert!(better < length);
             // The next one sees the point in the widest interval, and is left as it is.
@@ -190,6 +196,20 @@ mod tests {
     }
 
     #[test]
+    fn what_shorter_steps_do_not_mend_passes_astride() {
+        let mut kept = seen(1.0, 0.46, 0.0);
+        assert!(kept.passes_astride(1.0, 3.0));
+        kept.note_accepted(1.0);
+        for (error, passes) in [(20.0, false), (10.0, false), (15.0, true), (1e4, false)] {
+            assert_eq!(kept.passes_astride(1.0, error), passes, "{error}");
+        }
+        // What does not pass a point by its middle is rejected as ever.
+        for point in [0.3, 1.2] {
+            assert!(!seen(1.0, point, 0.0).passes_astride(1.0, 3.0), "{point}");
+        }
+    }
+
+    #[test]
     fn what_rows_keep_otherwise_leads_no_step() {
         // Far from a point, or beyond it, or where rows come near to depending on each other but do not.
         for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
@@ -200,10 +220,12 @@ mod tests {
 
     #[test]
     fn what_is_made_shorter_does_not_end_at_a_point() {
-        let tree = seen(1.0, 0.45, 0.0);
-        for (shorter, expected) in [(0.9, 0.225), (0.45, 0.225), (0.3, 0.225), (0.2, 0.2)] {
-            assert!((tree.shorter_length(shorter) - expected).abs() < 5e-3, "{shorter}");
+        let kept = seen(1.0, 0.45, 0.0);
+        for (shorter, expected) in [(0.9, 0.225), (0.45, 0.225), (0.3, 0.225), (0.2, 0.2), (0.99, 0.964)] {
+            assert!((kept.shorter_length(shorter, METHOD) - expected).abs() < 1e-2, "{shorter}");
         }
-        assert_eq!(seen(1.0, 1.6, 0.0).shorter_length(0.9), 0.9);
+        for (point, shorter) in [(1.6, 0.9), (-0.1, 0.9), (0.01, 0.9)] {
+            assert_eq!(seen(1.0, point, 0.0).shorter_length(shorter, METHOD), shorter, "{point}");
+        }
     }
 }
