@@ -204,19 +204,6 @@ impl HeldRows {
         dependent
     }
 
-    /// The least part of its square that a row kept in the last [`factorize`](Self::factorize) once earlier ones were held, so many
-    /// rows left aside that kept even less; 1 if there are no more. Rows of loops depend on each other for a moment where it comes
-    /// to nothing.
-    #[must_use]
-    pub fn kept_beyond(&mut self, aside: usize) -> f64 {
-        if aside >= self.len() {
-            return 1.0;
-        }
-        self.work.clear();
-        self.work.extend_from_slice(&self.kept);
-        *self.work.select_nth_unstable_by(aside, f64::total_cmp).1
-    }
-
     /// Notes which rows one depends on, whose rest has just been measured: those that make up more than rounding of it.
     fn note_shares(&mut self, place: usize, diagonal: f64) {
         self.shares[place] = true;
@@ -524,21 +511,6 @@ mod tests {
         let (_, rates) = accelerations(&inertia, &rows, &jacobians, &force);
         // Forces of 4e5 N on a body of a gram.
         assert!(rates.iter().zip(&offset).all(|(rate, offset)| (rate + offset).abs() < 1e-6), "{rates:?}");
-    }
-
-    #[test]
-    fn what_rows_keep_falls_with_the_square_of_the_way_to_where_they_depend() {
-        // Two rods hold a disc along directions that come together, and a third doubles the first.
-        let mut held = HeldRows::default();
-        held.set_structure(&[Inertia { inverse_mass: 2.0, inverse_moment: 1.0 }], &[[Some(0), None]; 3]);
-        let along = |angle: f64| [angle.cos(), angle.sin(), 0.0, 0.0, 0.0, 0.0];
-        for angle in [0.3, 1e-2, 1e-4] {
-            held.factorize(&[along(0.0), along(angle), along(0.0)]);
-            let sine = angle.sin();
-            assert!((held.kept_beyond(1) / (sine * sine) - 1.0).abs() < 1e-6, "{angle}");
-            assert!(held.kept_beyond(0) < 1e-12);
-            assert_eq!([held.kept_beyond(2), held.kept_beyond(3)], [1.0; 2]);
-        }
     }
 
     #[test]

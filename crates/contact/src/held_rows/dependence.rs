@@ -7,6 +7,19 @@
 use super::{HeldRows, NONE};
 
 impl HeldRows {
+    /// The least part of its square that a row kept in the last [`factorize`](Self::factorize) once earlier ones were held, so many
+    /// rows left aside that kept even less; 1 if there are no more. Rows of loops depend on each other for a moment where it comes
+    /// to nothing.
+    #[must_use]
+    pub fn kept_beyond(&mut self, aside: usize) -> f64 {
+        if aside >= self.len() {
+            return 1.0;
+        }
+        self.work.clear();
+        self.work.extend_from_slice(&self.kept);
+        *self.work.select_nth_unstable_by(aside, f64::total_cmp).1
+    }
+
     /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|², and what
     /// squares are raised by times x_k². That has the rounding of the difference, squared, where the difference of squares
     /// has that of the squares, times what earlier small pivots make of it.
@@ -63,6 +76,21 @@ mod tests {
     /// Two rows that pin a body, or two at one place, at arms of both.
     fn pin(arm: [f64; 2], other: [f64; 2]) -> [[f64; 6]; 2] {
         [[1.0, 0.0, -arm[1], -1.0, 0.0, other[1]], [0.0, 1.0, arm[0], 0.0, -1.0, -other[0]]]
+    }
+
+    #[test]
+    fn what_rows_keep_falls_with_the_square_of_the_way_to_where_they_depend() {
+        // Two rods hold a disc along directions that come together, and a third doubles the first.
+        let mut held = HeldRows::default();
+        held.set_structure(&[Inertia { inverse_mass: 2.0, inverse_moment: 1.0 }], &[[Some(0), None]; 3]);
+        let along = |angle: f64| [angle.cos(), angle.sin(), 0.0, 0.0, 0.0, 0.0];
+        for angle in [0.3, 1e-2, 1e-4] {
+            held.factorize(&[along(0.0), along(angle), along(0.0)]);
+            let sine = angle.sin();
+            assert!((held.kept_beyond(1) / (sine * sine) - 1.0).abs() < 1e-6, "{angle}");
+            assert!(held.kept_beyond(0) < 1e-12);
+            assert_eq!([held.kept_beyond(2), held.kept_beyond(3)], [1.0; 2]);
+        }
     }
 
     #[test]
