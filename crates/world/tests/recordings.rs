@@ -86,6 +86,29 @@ fn a_ring_is_drawn_as_four_true_half_circles() {
     assert!(picture.contains("fill-rule=\"evenodd\""));
 }
 
+#[test]
+fn connectors_are_drawn() {
+    let text = "format = \"halfgap-scene-1\"\ntitle = \"ties\"\n[run]\nduration = 1.0\n\
+        [[body]]\nname = \"a\"\nshape = { disc = { radius = 0.1 } }\nmass = 1.0\nposition = [1.0, 0.0]\n\
+        [[body]]\nname = \"b\"\nshape = { disc = { radius = 0.1 } }\nmass = 1.0\nposition = [2.0, 0.0]\n\
+        [[connector]]\nrod = { a = { body = \"world\", point = [0.0, 0.0] }, b = { body = \"a\", point = [0.0, 0.0] }, length = 1.0 }\n\
+        [[connector]]\nrope = { a = { body = \"a\", point = [0.0, 0.0] }, b = { body = \"b\", point = [0.0, 0.0] }, length = 1.5 }\n\
+        [[connector]]\nslot = { a = { body = \"world\", point = [2.0, 0.0] }, b = { body = \"b\", point = [0.0, 0.0] }, normal = [0.0, 1.0] }\n\
+        [[connector]]\nrail = { a = { body = \"b\", point = [0.0, 0.0] }, path = { points = [[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]] } }\n";
+    let scene = Scene::parse(text, SceneFormat::Toml).unwrap_or_else(|error| panic!("{error}"));
+    let world = world(&scene);
+    let mut recording = Recording::new("", &world);
+    recording.frames.push(recording.frame_of(&world));
+    let picture = scene_picture(&world, &recording, &recording.frames[0]);
+    assert_drawable(&picture);
+    let ties: Vec<&str> = picture.lines().filter(|line| line.contains("#4c5459")).collect();
+    // The rail, through many points, then the rod, the rope with its dashes, and the ring of the slot.
+    assert_eq!(ties.len(), 4, "{ties:?}");
+    assert!(ties[0].matches('L').count() > 200, "{}", ties[0]);
+    assert!(ties[1].contains("<path") && !ties[1].contains("dash"), "{}", ties[1]);
+    assert!(ties[2].contains("dash") && ties[3].contains("<circle"), "{ties:?}");
+}
+
 fn impact(time: f64, impulse: f64) -> Impact {
     let row = ImpactRow {
         primary: BodyId(1),

@@ -1,7 +1,7 @@
 //! Pictures of runs as SVG: the scene, energy over time, and the impacts on a time line.
 //!
 //! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `view` maps the world
-//! to the page; `scene` (with forces as `arrows`), `energy` and `events` are one picture each, the latter two on the
+//! to the page; `scene` (with forces as `arrows` and connectors as `ties`), `energy` and `events` are one picture each, the latter two on the
 //! `axes` they share.
 
 mod arrows;
@@ -12,6 +12,7 @@ mod outline;
 mod scene;
 mod svg;
 mod ticks;
+mod ties;
 mod view;
 
 pub use energy::energy_picture;

@@ -1,10 +1,11 @@
-//! The scene at one time: bodies with their true arcs, trails of centres of mass, forces, and a scale bar.
+//! The scene at one time: bodies with their true arcs, connectors, trails of centres of mass, forces, and a scale bar.
 
 use super::arrows::ForceScale;
 use super::color;
 use super::outline::path_data;
 use super::svg::{Svg, TextStyle, number};
 use super::ticks::{label, round_step};
+use super::ties::{draw_rails, draw_ties, fixed_boxes};
 use super::view::{FOOT, View};
 use crate::recording::{Frame, Recording};
 use crate::world::World;
@@ -32,10 +33,12 @@ pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> Str
         let data = path_data(world.shape(body), &pose(&world.state(body)), &view);
         svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
     }
+    draw_rails(&mut svg, world, &view);
     draw_trails(&mut svg, recording, &view);
     for (place, (&body, state)) in recording.movable.iter().zip(&frame.states).enumerate() {
         draw_movable(&mut svg, world, body, (place, state), &view);
     }
+    draw_ties(&mut svg, world, recording, frame, &view);
     svg.close_group();
     if let Some(forces) = ForceScale::of(recording) {
         forces.draw(&mut svg, recording, frame, &view);
@@ -56,7 +59,8 @@ fn shown_box(world: &World, recording: &Recording) -> Option<Aabb> {
     let posed = frames.flat_map(|frame| recording.movable.iter().zip(&frame.states));
     let moving = posed.map(|(&body, state)| world.shape(body).bounds_at(&pose(state))).reduce(Aabb::union);
     let fixed = world.bodies().filter(|&body| world.is_fixed(body));
-    let fixed = fixed.map(|body| world.shape(body).bounds_at(&pose(&world.state(body))));
+    let fixed =
+        fixed.map(|body| world.shape(body).bounds_at(&pose(&world.state(body)))).chain(fixed_boxes(world));
     let Some(moving) = moving else { return fixed.reduce(Aabb::union) };
     let size = moving.size().max_element();
     let (around, near) = (moving.grown(SURROUNDINGS * size), moving.grown(NEAR * size));
