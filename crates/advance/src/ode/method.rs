@@ -74,7 +74,7 @@ impl Method {
     /// The part of a step in the middle of the widest interval in which none of its rates is asked for, dense output included; `None`
     /// for methods without error estimate and implicit ones.
     #[must_use]
-    pub fn widest_gap(self) -> Option<f64> {
+    pub fn middle_between_stages(self) -> Option<f64> {
         let tableau = self.tableau().filter(|_| self.is_adaptive())?;
         let stages = tableau.stages.iter().chain(tableau.dense_stages);
         let nodes = || [0.0, 1.0].into_iter().chain(stages.clone().map(|stage| stage.node));

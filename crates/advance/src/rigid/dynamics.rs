@@ -7,11 +7,12 @@ use super::flyer::Flyer;
 use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 use super::rows::{HeldRow, Mechanism, RowMoment, RowSource, moving_of};
+use super::system::RigidSettings;
 use super::watch::Samples;
 use crate::ode::Ode;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, MotionBounds, Moving, Spin};
+use halfgap_collision::{BodyId, BodyState, Connector, MotionBounds, Moving, Spin};
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -35,6 +36,19 @@ pub(crate) struct Physics<'a> {
     pub(crate) mechanism: Mechanism<'a>,
     pub(crate) laws: &'a [Arc<dyn ForceLaw>],
     pub(crate) extra: Option<ExtraAcceleration>,
+}
+
+impl<'a> Physics<'a> {
+    /// That of a system.
+    pub(crate) fn of(
+        flyers: &'a [Flyer],
+        connectors: &'a [Connector],
+        laws: &'a [Arc<dyn ForceLaw>],
+        settings: &'a RigidSettings,
+    ) -> Self {
+        let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
+        Self { mechanism, laws, extra: settings.extra }
+    }
 }
 
 /// Buffers for one moment, for the whole system: kept by its owner.

@@ -46,7 +46,9 @@ impl Dynamics<'_> {
             let told = self.tell_stiffness(tools);
             let mut excess = told.map_or(0.0, |told| told.dense_error);
             if self.group.kept.nears_singular() {
+                let at_end = self.stage.gap_error;
                 self.make_dense(tools.stepper);
+                self.stage.gap_error = at_end;
                 let off = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
                 excess = excess.max(off).max(self.lost_energy(&tools.settings.steps, energy));
             }

@@ -9,7 +9,7 @@ use super::group::{Group, Work};
 use super::pairs::Prediction;
 use super::region::{Region, Touch};
 use super::repeats::is_same_time;
-use super::rows::{HeldRow, Mechanism, RowSource};
+use super::rows::{HeldRow, RowSource};
 use super::segment::StepFailure;
 use super::settling::Settling;
 use super::system::RigidSystem;
@@ -105,8 +105,7 @@ impl RigidSystem {
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
         let Self { flyers, connectors, laws, settings, stage, steppers, scales, .. } = self;
-        let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
-        let physics = Physics { mechanism, laws, extra: settings.extra };
+        let physics = Physics::of(flyers, connectors, laws, settings);
         let (start, stepper) = (group.start, steppers.of(group.stepping()));
         act(&mut Dynamics { physics, group, stage, start }, &mut Tools { stepper, scales, settings })
     }

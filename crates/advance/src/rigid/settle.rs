@@ -359,7 +359,7 @@ impl RigidSystem {
 
     /// What the motion of groups is computed from.
     pub(crate) fn physics(&self) -> Physics<'_> {
-        Physics { mechanism: self.mechanism(), laws: &self.laws, extra: self.settings.extra }
+        Physics::of(&self.flyers, &self.connectors, &self.laws, &self.settings)
     }
 }
 

@@ -3,9 +3,9 @@
 //!
 //! There a loop could go on in two ways, and its motion says in which it does. Forces near such a point follow from the rows
 //! divided by what a row keeps once the others are held, which falls with the square of the distance, so near it rates are all
-//! rounding, and errors of the loop decide which way it goes. Far from it nothing of that shows, so steps are made such that no stage comes near it: it is
-//! passed in the widest interval between stages. Whether a loop does pass such a point, or only nearly, tells how it is held along the
-//! step.
+//! rounding, and errors of the loop decide which way it goes. Far from it nothing of that shows, so steps are made such that no
+//! stage comes near it: it is passed in the widest interval between stages. Whether a loop does pass such a point, or only
+//! nearly, tells how it is held along the step, which `extending` looks at.
 
 use crate::ode::Method;
 
@@ -153,7 +153,7 @@ impl Kept {
 /// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends well before it; `None` if
 /// that is behind, or so near the start that no stage can be farther from it.
 fn led(point: f64, length: f64, method: Method) -> Option<f64> {
-    let astride = point / method.widest_gap()?;
+    let astride = point / method.middle_between_stages()?;
     let is_at_start = point <= 0.0 || EARLY * point <= length;
     (!is_at_start).then_some(if astride <= length { astride } else { SHORT_OF_IT * point })
 }
@@ -182,7 +182,10 @@ mod tests {
             let better = seen(length, point, 0.0).better_length(length, METHOD).expect("a stage is near");
             assert!(better < length);
             // The next one sees the point in the widest interval, and is left as it is.
-            assert!((point / better - METHOD.widest_gap().expect("it has stages")).abs() < 1e-2, "{better}");
+            assert!(
+                (point / better - METHOD.middle_between_stages().expect("it has stages")).abs() < 1e-2,
+                "{better}"
+            );
             assert_eq!(seen(better, point, 0.0).better_length(better, METHOD), None);
         }
     }

@@ -97,7 +97,7 @@ fn no_rates_are_asked_for_near_the_middle_of_the_widest_interval() {
         let Ok(()) = stepper.step(&mut asked, start, 1.0, &mut end);
         let end_point = Point { offset: 1.0, state: &end, rates: &[1.0] };
         let Ok(()) = stepper.dense(&mut asked, end_point, 0..1, &mut [Default::default()]);
-        let middle = method.widest_gap().expect("it has stages");
+        let middle = method.middle_between_stages().expect("it has stages");
         let nearest =
             |place: f64| asked.0.iter().fold(place, |near, offset| near.min((offset - place).abs()));
         assert!(nearest(middle) > 0.13, "{method:?}: {middle}");
@@ -107,7 +107,7 @@ fn no_rates_are_asked_for_near_the_middle_of_the_widest_interval() {
         assert!(farthest <= nearest(middle) + 1e-12, "{method:?}: {farthest}");
     }
     for method in [Method::Rk4, Method::Euler, Method::RadauIia5] {
-        assert_eq!(method.widest_gap(), None, "{method:?}");
+        assert_eq!(method.middle_between_stages(), None, "{method:?}");
     }
 }
 
