@@ -6,6 +6,9 @@ use halfgap_advance::rigid::{AdvanceError, Between};
 use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, SolveError};
 
+/// So many names are shown in a message; the error itself has all of them.
+const MOST_NAMES: usize = 12;
+
 /// How a run that stopped early is summed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -214,6 +217,27 @@ fn under(laws: &[String]) -> String {
     if laws.is_empty() { String::new() } else { format!(" under the forces of {}", quoted(laws)) }
 }
 
+/// Names in a message: all of a few, the first of many.
 fn quoted(names: &[String]) -> String {
-    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+    let (shown, rest) = names.split_at(names.len().min(MOST_NAMES));
+    let shown = shown.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+    if rest.is_empty() { shown } else { format!("{shown} and {} more", rest.len()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_NAMES, RunError};
+
+    /// The message of a step of so many bodies that has fallen to nothing.
+    fn message(bodies: usize) -> String {
+        let bodies = (0..bodies).map(|index| format!("disc {index}")).collect();
+        RunError::StepCollapsed { time: 1.5, step: 1e-15, bodies, laws: Vec::new() }.to_string()
+    }
+
+    #[test]
+    fn a_message_names_no_more_bodies_than_one_reads() {
+        assert_eq!(message(2), "at 1.5 s the step of \"disc 0\", \"disc 1\" fell to 1e-15 s");
+        assert!(message(MOST_NAMES).contains("\"disc 11\" fell"));
+        assert!(message(200).contains("\"disc 11\" and 188 more fell"));
+    }
 }

@@ -316,6 +316,7 @@ impl RigidSystem {
             self.flyers[body.index()].unwind();
         }
         self.note_rails(&work.region, self.now);
+        work.region.is_hasty = self.take_haste(&work.region);
         self.settle_and_still(work)?;
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);

@@ -37,6 +37,8 @@ pub(crate) struct Region {
     pub(crate) at_start: bool,
     /// What happens to it is one event too many in a short time.
     pub(crate) in_storm: bool,
+    /// It comes on so slowly that contacts which count as resting seem to take turns.
+    pub(crate) is_hasty: bool,
     /// The contact that fired: it takes part, however near it is to the ends of its features.
     pub(crate) fired: Option<Touch>,
     /// A contact that has just run off its features: its neighbours take over, if they touch.

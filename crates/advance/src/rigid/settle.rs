@@ -31,6 +31,9 @@ const ROPE_SHARE: f64 = 0.5;
 /// sinks so slowly that it may as well be touched again.
 const RELEASED_SHARE: f64 = 1e-3;
 
+/// Part of what counts as rest by which a contact may open, and be held, where such contacts take turns.
+const HASTY_SHARE: f64 = 1e-3;
+
 /// How the forces of the candidates were found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Solved {
@@ -61,8 +64,9 @@ impl RigidSystem {
             Region { in_storm: true, .. } => self.storm_rest(),
             _ => self.rest_speed(),
         };
+        let most = if region.is_hasty { HASTY_SHARE * rest } else { rest };
         let is_candidate = |record: &Collision| {
-            let is_slow = record.motion.normal_velocity.abs() <= rest;
+            let is_slow = (-rest..=most).contains(&record.motion.normal_velocity);
             record.parties.bilateral || (self.holds(record) && is_slow)
         };
         let records = || region.records.iter().enumerate();
@@ -404,7 +408,7 @@ mod tests {
     use super::super::events::EventWork;
     use super::super::flyer::FlightLaw;
     use super::super::system::RigidParts;
-    use super::super::test_scene::FINE;
+    use super::super::test_scene::{FINE, resting_discs};
     use super::*;
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
@@ -470,6 +474,23 @@ mod tests {
         let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
         let system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it falls");
         assert!(system.group_of(BodyId(2)).is_none(), "nothing holds it");
+    }
+
+    #[test]
+    fn what_opens_as_slowly_as_what_rests_is_let_go_where_contacts_take_turns() {
+        let mut system = resting_discs(&[0.0]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(1));
+        let EventWork { region, settling, .. } = &mut *work;
+        system.collect_region(region, &[BodyId(1)], system.now);
+        let mut stage = std::mem::take(&mut system.stage);
+        for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
+            region.is_hasty = is_hasty;
+            region.records[0].motion.normal_velocity = share * system.rest_speed();
+            settling.expect([None].into_iter());
+            system.settle(region, settling, &mut stage, system.now, false).expect("it rests");
+            assert_eq!(settling.held.len(), rows, "{share} of what counts as rest, hasty: {is_hasty}");
+        }
     }
 
     #[test]
