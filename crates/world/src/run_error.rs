@@ -131,8 +131,8 @@ pub enum RunError {
         /// What does not hold.
         finding: Finding,
     },
-    /// The time to advance to is not a number.
-    #[error("cannot advance to a time that is not a number")]
+    /// The time to advance to is infinite, or not a number.
+    #[error("cannot advance to a time that is not a finite number")]
     NotATime,
     /// A plan cannot be followed; nothing was run.
     #[error("the plan's {field} must be {rule}, got {value} s")]

@@ -321,12 +321,13 @@ impl World {
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
     ///
     /// # Errors
-    /// Something that cannot be simulated happens; the world stays at the time of that event. What must hold does not any more
-    /// at that time. The time is not a number.
+    /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever wants to go on beyond it
+    /// is told the same again. What must hold does not any more at that time. The time is not finite.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
-        if time.is_nan() {
+        if !time.is_finite() {
             return Err(RunError::NotATime);
         }
+        let has_failed = self.system.failure().is_some();
         let until = Time::from_seconds(time);
         self.system.expect(self.sentry.duration.max(time - self.time()));
         let (system, told) = (&mut self.system, &mut self.told);
@@ -344,6 +345,10 @@ impl World {
             changes.end.iter().for_each(|row| on_event(&Event::ContactEnds(told_of(row))));
             changes.begin.iter().for_each(|row| on_event(&Event::ContactBegins(told_of(row))));
         });
+        if let Some(impact) = self.system.untold_impact().filter(|_| !has_failed) {
+            write_impact(&mut self.told, impact);
+            on_event(&self.told);
+        }
         let reached = if outcome.is_ok() { until } else { self.system.now() };
         self.now = self.now.max(reached);
         let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));

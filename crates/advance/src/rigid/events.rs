@@ -301,6 +301,7 @@ impl RigidSystem {
         self.last_impact = report;
         let happened = outcome?;
         if happened {
+            self.has_hit = true;
             self.counts.impacts += 1;
             self.forget_paces(&work.region.bodies);
         }

@@ -178,6 +178,10 @@ pub struct RigidSystem {
     pub(crate) last_insistent: Option<Time>,
     /// When a group was ended as it was made, because a contact pulled.
     pub(crate) last_pull: Option<Time>,
+    /// Why an event could not be handled.
+    failure: Option<AdvanceError>,
+    /// There has been an impact in the present event.
+    pub(crate) has_hit: bool,
     pub(crate) links: Vec<Link>,
     pub(crate) neighbours: Vec<BodyId>,
     pub(crate) marks: Marks,
@@ -238,6 +242,8 @@ impl RigidSystem {
             deep: Vec::new(),
             last_insistent: None,
             last_pull: None,
+            failure: None,
+            has_hit: false,
             links: Vec::new(),
             neighbours: Vec::new(),
             marks: Marks::default(),
@@ -282,6 +288,18 @@ impl RigidSystem {
     #[must_use]
     pub fn last_impact(&self) -> &ImpactReport {
         &self.last_impact
+    }
+
+    /// The impact of the event that could not be handled, if there was one before that was found out: it is in the ledger.
+    #[must_use]
+    pub fn untold_impact(&self) -> Option<&ImpactReport> {
+        (self.failure.is_some() && self.has_hit).then_some(&self.last_impact)
+    }
+
+    /// Why the last event could not be handled: there is no going on from it.
+    #[must_use]
+    pub fn failure(&self) -> Option<&AdvanceError> {
+        self.failure.as_ref()
     }
 
     /// Time of the last event handled.
@@ -402,12 +420,18 @@ impl EventDriven for RigidSystem {
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
-        self.queue.first().map(|entry| entry.time)
+        if self.failure.is_some() { Some(self.now) } else { self.queue.first().map(|entry| entry.time) }
     }
 
+    /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no going on from it, and
+    /// it is told again whenever that is tried.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
         let Some(event) = self.queue.first() else { return Ok(None) };
         self.counts.events += 1;
+        self.has_hit = false;
         self.now = event.time;
         self.changes.clear(event.time);
         let outcome = self.handle(event.source);
@@ -416,6 +440,7 @@ impl EventDriven for RigidSystem {
             return Ok(None);
         }
         self.complete_dense();
+        self.failure = outcome.as_ref().err().cloned();
         outcome.map(|impact| Some(Handled { time: self.now, impact }))
     }
 

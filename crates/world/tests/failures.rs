@@ -1,0 +1,67 @@
+//! What cannot be simulated is told, with all that happened before, and told again to whoever wants to go on.
+
+use glam::DVec2;
+use halfgap::force::{ForceLaw, Snapshot, Wrenches};
+use halfgap::geometry::Shape;
+use halfgap::{BodyId, BodySpec, BodyState, Event, RunError, World, WorldBuilder, WorldSettings};
+use std::sync::Arc;
+
+/// Gravity [m/s^2] on a body that is no number once the body rises.
+#[derive(Debug)]
+struct OnlyDown([BodyId; 1]);
+
+const GRAVITY: f64 = 9.81;
+
+impl ForceLaw for OnlyDown {
+    fn name(&self) -> &str {
+        "only down"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.0
+    }
+
+    fn apply(&self, now: &Snapshot<'_>, out: &mut Wrenches<'_>) {
+        let rises = now.body(self.0[0]).velocity.y > 0.0;
+        let force = if rises { f64::NAN } else { -GRAVITY };
+        out.add_force(self.0[0], DVec2::new(0.0, force), DVec2::ZERO);
+    }
+}
+
+/// A ball of 1 kg that falls 2 m onto a floor, and cannot come up again.
+fn falling_ball() -> (World, BodyId) {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let floor = Shape::block(10.0, 1.0).expect("a fine size");
+    builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+    let state = BodyState { position: DVec2::new(0.0, 2.5), ..BodyState::default() };
+    let disc = Shape::disc(0.5).expect("a fine radius");
+    let ball = builder.add(BodySpec::movable("ball", disc, 1.0, state));
+    builder.add_force(Arc::new(OnlyDown([ball])));
+    (builder.build().expect("it falls"), ball)
+}
+
+#[test]
+fn an_impact_after_which_nothing_can_go_on_is_told_and_so_is_every_try() {
+    let (mut world, _) = falling_ball();
+    let mut events: Vec<Event> = Vec::new();
+    let failed = world.advance_to(2.0, &mut |event| events.push(event.clone()));
+    let Err(RunError::StepCollapsed { time, .. }) = &failed else { panic!("{failed:?}") };
+    assert!((time - (4.0 / GRAVITY).sqrt()).abs() < 1e-6, "{time} s");
+    let [Event::Impact(impact)] = &events[..] else { panic!("{events:?}") };
+    assert_eq!((impact.time, impact.rows.len()), (*time, 1));
+    assert_eq!(world.ledger().impacts, impact.energy_change);
+    for _ in 0..2 {
+        let again = world.advance_to(3.0, &mut |event| panic!("{event:?}"));
+        assert_eq!((&again, world.time()), (&failed, *time));
+    }
+    assert_eq!(world.advance_to(0.5, &mut |event| panic!("{event:?}")), Ok(()), "that is past");
+}
+
+#[test]
+fn a_time_that_never_comes_is_refused() {
+    let (mut world, _) = falling_ball();
+    for time in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+        assert_eq!(world.advance_to(time, &mut |_| ()), Err(RunError::NotATime));
+    }
+    assert_eq!(world.time(), 0.0);
+}
