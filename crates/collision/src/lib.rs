@@ -48,6 +48,7 @@ pub use first_contact::{
     search_step,
 };
 pub use flight::Flight;
+pub use halfgap_geometry as geometry;
 pub use kinematics::{Arms, GapKinematics, Spin};
 pub use merge::{is_same_collision, merge_collisions};
 pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};

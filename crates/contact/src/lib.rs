@@ -68,6 +68,7 @@ pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
+pub use halfgap_collision as collision;
 pub use held_rows::HeldRows;
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
@@ -81,4 +82,4 @@ pub use row::CollisionRow;
 pub use settings::{Contradiction, ForceSelection, Settings};
 pub use solution::Solution;
 pub use solver::{Method, Solver};
-pub use warm::WarmStart;
+pub use warm::{Earlier, WarmStart};

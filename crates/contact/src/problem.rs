@@ -322,6 +322,28 @@ impl Problem {
         !matches!(self.matrix, Matrix::General(_))
     }
 
+    /// Columns and coefficients of a row, in ascending order, without zeros: of J where the rows are given as such (columns 3 k to
+    /// 3 k + 2 are x, y and rotation of body k), of A otherwise. With [`inverse_mass`](Self::inverse_mass) that is all a solver
+    /// of one's own needs.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    pub fn row(&self, row: usize) -> (&[usize], &[f64]) {
+        match &self.matrix {
+            Matrix::Bodies(bodies) => bodies.rows.row(row),
+            Matrix::Symmetric(matrix) | Matrix::General(matrix) => matrix.row(row),
+        }
+    }
+
+    /// Inverse mass of each column of J [1/kg, 1/(kg m²)]; `None` where A itself is given.
+    pub fn inverse_mass(&self) -> Option<&[f64]> {
+        match &self.matrix {
+            Matrix::Bodies(bodies) => Some(&bodies.inverse_mass),
+            Matrix::Symmetric(_) | Matrix::General(_) => None,
+        }
+    }
+
     /// The matrix A, dense, by rows [1/kg]: for looking at it, and for checks; O(n²).
     pub fn dense(&self) -> Vec<Vec<f64>> {
         let n = self.len();

@@ -11,7 +11,6 @@ const SAME: f64 = 2.0 * f64::EPSILON;
 /// Rows are compared after scaling: with `s_i = sqrt(A_ii)` (1 where `A_ii = 0`) the scaled acceleration is `a_i / s_i`,
 /// the scaled force `s_i f_i`, and the *scale* of a problem is `max |b_i / s_i|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Settings {
     /// Largest natural residual, in units of the scale, of an accepted answer.
     pub natural_residual: f64,
@@ -91,7 +90,9 @@ pub enum ForceSelection {
     /// Whatever the pivoting ends at: few rows carry force, and those do not depend on each other. For those who go on with the
     /// rows that carry force, as an integrator does.
     Vertex,
-    /// The least sum of squares of the scaled forces `s_i f_i`: symmetric scenes show symmetric forces.
+    /// The least sum of squares of the scaled forces `s_i f_i` among those that hold the same rows at rest: symmetric scenes show
+    /// symmetric forces. Where masses are thousands of times apart, which rows are at rest is known to rounding only, and others
+    /// may hold them with less.
     LeastNorm,
 }
 

@@ -10,6 +10,81 @@ use crate::warm::WarmStart;
 /// Solves contact problems; implement it to bring a method of your own.
 ///
 /// A solver owns its buffers, so that solving again a problem of a size known already allocates nothing.
+///
+/// # Examples
+///
+/// Projected Gauss-Seidel, sweep by sweep over the rows; it keeps the motions v = M⁻¹ Jᵀ f and wants no A.
+///
+/// ```
+/// use halfgap_contact::{
+///     DualActiveSet, Inertia, Method, Problem, Residuals, Row, Settings, Solution, SolveError, Solver, WarmStart,
+/// };
+///
+/// struct GaussSeidel;
+///
+/// impl Solver for GaussSeidel {
+///     fn method(&self) -> Method {
+///         Method::Other
+///     }
+///
+///     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+///         self.solve_from(problem, &WarmStart::new(), solution)
+///     }
+///
+///     fn solve_from(
+///         &mut self,
+///         problem: &Problem,
+///         start: &WarmStart,
+///         solution: &mut Solution,
+///     ) -> Result<(), SolveError> {
+///         let method = self.method();
+///         let Some(weights) = problem.inverse_mass() else {
+///             return Err(SolveError::NotApplicable { method, reason: "rows of bodies" });
+///         };
+///         let mut motion = vec![0.0; weights.len()];
+///         let push = |row: usize, force: f64, motion: &mut [f64]| {
+///             let (columns, values) = problem.row(row);
+///             columns.iter().zip(values).for_each(|(&k, v)| motion[k] += weights[k] * v * force);
+///         };
+///         let rows = 0..problem.len();
+///         let mut force: Vec<_> =
+///             rows.clone().map(|row| start.of_row(problem, row).map_or(0.0, |earlier| earlier.force)).collect();
+///         rows.clone().for_each(|row| push(row, force[row], &mut motion));
+///         for _ in 0..200 {
+///             for row in rows.clone() {
+///                 let (columns, values) = problem.row(row);
+///                 let entries = || columns.iter().zip(values);
+///                 let square: f64 = entries().map(|(&k, v)| v * v * weights[k]).sum();
+///                 let a = problem.offset()[row] + entries().map(|(&k, v)| v * motion[k]).sum::<f64>();
+///                 let wanted = force[row] - a / square;
+///                 let wanted = if problem.bilateral()[row] { wanted } else { wanted.max(0.0) };
+///                 push(row, wanted - force[row], &mut motion);
+///                 force[row] = wanted;
+///             }
+///         }
+///         let residuals = Residuals::of(problem, &force);
+///         (solution.force, solution.residuals, solution.method) = (force, residuals, method);
+///         if residuals.accepted(&Settings { natural_residual: 1e-9, ..Settings::default() }, 0.0) {
+///             Ok(())
+///         } else {
+///             Err(SolveError::Unsolved { method, residuals, iterations: 200 })
+///         }
+///     }
+/// }
+///
+/// // Two blocks of 1 kg on each other: the lower contact carries both.
+/// let mut problem = Problem::new();
+/// let [lower, upper] = [(); 2].map(|()| {
+///     problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 0.0 }).expect("a fine inertia")
+/// });
+/// problem.add_row(&Row::new(lower, [0.0, 1.0, 0.0], -9.81))?;
+/// problem.add_row(&Row::new(upper, [0.0, 1.0, 0.0], 0.0).against(lower, [0.0, -1.0, 0.0]))?;
+/// let (mut own, mut ours) = (Solution::new(), Solution::new());
+/// GaussSeidel.solve(&problem, &mut own)?;
+/// DualActiveSet::default().solve(&problem, &mut ours)?;
+/// assert!((own.force[0] - 2.0 * 9.81).abs() < 1e-8 && (own.force[0] - ours.force[0]).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Solver {
     /// Which method this is.
     fn method(&self) -> Method;

@@ -27,9 +27,11 @@ struct Entry {
 
 /// What an earlier answer says about a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Earlier {
-    pub(crate) force: f64,
-    pub(crate) closed: bool,
+pub struct Earlier {
+    /// Its force \[N\]; zero where only a guess of what is closed was made.
+    pub force: f64,
+    /// Whether a = 0 was enforced.
+    pub closed: bool,
 }
 
 impl WarmStart {
@@ -39,6 +41,10 @@ impl WarmStart {
     }
 
     /// Remembers the answer `solution` of `problem`, replacing what was remembered.
+    ///
+    /// # Panics
+    ///
+    /// If the answer is that of a problem with more rows.
     pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
         (self.by_key, self.is_guess, self.has_forces) = (has_keys(problem), false, false);
         self.entries.clear();
@@ -74,6 +80,15 @@ impl WarmStart {
             let force = guess.unwrap_or(0.0);
             Entry { id: 0, force, closed: force > 0.0, known: guess.is_some() }
         }));
+    }
+
+    /// What is remembered of a row of `problem`; `None` if that is nothing. For solvers of one's own.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row, and rows are found by their keys.
+    pub fn of_row(&self, problem: &Problem, row: usize) -> Option<Earlier> {
+        self.lookup(problem).find(row)
     }
 
     /// True if these are forces from which to look for the answer.
