@@ -62,6 +62,14 @@ pub(crate) fn node(index: usize, span: f64) -> f64 {
     if index + 1 == NODES { span } else { span * (index as f64 / (NODES - 1) as f64) }
 }
 
+/// The straight line from node to node, at an offset [s].
+pub(crate) fn between_nodes(values: &[f64; NODES], span: f64, offset: f64) -> f64 {
+    let place = (offset / span).clamp(0.0, 1.0) * (NODES - 1) as f64;
+    let index = (place as usize).min(NODES - 2);
+    let part = place - index as f64;
+    values[index] + part * (values[index + 1] - values[index])
+}
+
 /// The first offset in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
 ///
 /// A function that starts below zero must rise first, but see [`fall_from_below`]. The answer lies behind the fall: there `f` is

@@ -439,7 +439,11 @@ impl RigidSystem {
     }
 
     pub(crate) fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {
-        let fastest = report.rows.iter().fold(0.0f64, |most, row| most.max(-row.rate_before));
+        // Connectors are stopped whichever way they move: a corner of a rail that turns to either side is an impact.
+        let closing = report.rows.iter().map(|row| {
+            if row.collision.parties.bilateral { row.rate_before.abs() } else { -row.rate_before }
+        });
+        let fastest = closing.fold(0.0, f64::max);
         let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
         *booked += report.energy_change;

@@ -110,7 +110,9 @@ impl Dynamics<'_> {
         let longest = longest.min(self.longest_stable_step(method));
         self.note_damping();
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
-        let mut step = self.group.next_step.unwrap_or_else(|| self.first_step(control)).min(limit);
+        // Without an error estimate a step is as long as it is said to be.
+        let said = control.largest_step.filter(|_| !method.is_adaptive());
+        let mut step = said.or(self.group.next_step).unwrap_or_else(|| self.first_step(control)).min(limit);
         let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
         let work_scale = self.work_scale(control);
         let (mut rejected, mut placements, mut is_led, proposed) = (false, 0, false, step);

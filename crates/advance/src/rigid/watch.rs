@@ -6,7 +6,7 @@
 
 use super::brief::Stepping;
 use super::crossing::{
-    EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
+    EARLY, NODES, between_nodes, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
 };
 use super::dynamics::Dynamics;
 use super::group::{Group, SegmentEnd, Stop};
@@ -461,15 +461,25 @@ impl Dynamics<'_> {
     }
 
     /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
-    /// then begins with a part of the segment so short that the point is off.
+    /// then begins with a part of the segment so short that the point is off. On a closed rail what has gone by a stop seems to have
+    /// come round: laps are told apart by what is read before.
     fn find_stop(&mut self, stop: Stop) -> Option<f64> {
+        let path = self.physics.mechanism.connectors[stop.id.index()].path();
+        let lap = path.filter(|path| path.is_closed()).map(|path| path.length());
         let mut reach = self.group.span;
         for _ in 0..MOST_SHORTER {
-            let mut values = std::array::from_fn(|index| self.stop_at(stop, node(index, reach)));
+            let mut values = [0.0; NODES];
+            for index in 0..NODES {
+                let before = values[index.saturating_sub(1)];
+                let value = self.stop_at(stop, node(index, reach));
+                values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
+            }
             let touches = values[0] <= 0.0;
             values[0] = values[0].max(0.0);
             if !touches || values[1] >= 0.0 {
-                return first_fall(&values, reach, |offset| self.stop_at(stop, offset));
+                return first_fall(&values, reach, |offset| {
+                    in_lap(self.stop_at(stop, offset), between_nodes(&values, reach, offset), lap)
+                });
             }
             reach *= SHORTER;
         }
@@ -503,6 +513,11 @@ impl Dynamics<'_> {
             if offset <= span * SIGN_AT { value.max(0.0) } else { value }
         })
     }
+}
+
+/// A distance along a closed path [m] that is known up to laps, nearest to another.
+fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
+    lap.map_or(value, |lap| value + lap * ((near - value) / lap).round())
 }
 
 /// A search for a stop begins with this part of the segment, and again, if that is too long.

@@ -16,6 +16,11 @@ const SMOOTH_TURN: f64 = 1e-6;
 /// Curvatures that differ by less than this part of the larger are the same.
 const SAME_CURVATURE: f64 = 1e-9;
 
+/// A point may lie off the path by this part of its length, and where it is looked for along it is not doubted.
+const ASTRAY: f64 = 1e-9;
+/// A place elsewhere on the path is the right one if the point is nearer to it by this factor.
+const NEARER: f64 = 0.5;
+
 /// The path. An open one has its two continuations as first and last piece.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EdgePath {
@@ -83,7 +88,7 @@ impl EdgePath {
                 let piece = self.hinted_piece(hint);
                 (piece, self.pieces[piece].along(point, hint.parameter))
             }
-            Some(hint) => self.walk(point, hint),
+            Some(hint) => self.follow(point, hint),
         };
         let mut foot = self.pieces[piece].foot(piece, point);
         foot.parameter = along;
@@ -95,7 +100,7 @@ impl EdgePath {
         let piece = match hint {
             None => self.nearest_piece(point),
             Some(hint) if hint.stays => self.hinted_piece(hint),
-            Some(hint) => self.walk(point, hint).0,
+            Some(hint) => self.follow(point, hint).0,
         };
         self.pieces[piece].foot(piece, point)
     }
@@ -136,6 +141,26 @@ impl EdgePath {
             }
         }
         best
+    }
+
+    /// Follows the path from the hint to where the point lies on it. What has gone round more than half of an arc since the hint
+    /// seems to have gone the other way: if that leads off the path, it is looked for on all of it.
+    fn follow(&self, point: DVec2, hint: &RailHint) -> (usize, f64) {
+        let (piece, along) = self.walk(point, hint);
+        let off = self.off(piece, point);
+        if off <= ASTRAY * self.length {
+            return (piece, along);
+        }
+        let nearest = self.nearest_piece(point);
+        if self.off(nearest, point) >= NEARER * off {
+            return (piece, along);
+        }
+        (nearest, self.pieces[nearest].along(point, self.near_middle(nearest)))
+    }
+
+    /// Distance [m] of a point from a piece, continued.
+    fn off(&self, piece: usize, point: DVec2) -> f64 {
+        self.pieces[piece].foot(piece, point).gap.abs()
     }
 
     /// Follows the path from the hint to the first piece on which the point has a foot, or to a corner between two.

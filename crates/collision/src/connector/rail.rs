@@ -12,7 +12,7 @@ use crate::motion::Moving;
 use glam::DVec2;
 
 /// On a closed rail a stop may be overrun by up to this part of a lap; whatever is farther beyond it has come round.
-const OVERRUN_SHARE: f64 = 0.125;
+const OVERRUN_SHARE: f64 = 1e-3;
 
 /// The row across the path.
 #[inline]
