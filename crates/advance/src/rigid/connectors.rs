@@ -68,7 +68,11 @@ impl RigidSystem {
             let tolerances = &self.settings.tolerances;
             for row in 0..connector.row_count() {
                 let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
-                if !connector.is_bilateral() && sample.gap > tolerances.accuracy {
+                let may_be_free = !connector.is_bilateral();
+                if may_be_free && sample.gap > tolerances.accuracy {
+                    continue;
+                }
+                if may_be_free && !is_stop(connector) && self.rope_grazes(id) {
                     continue;
                 }
                 let row = u32::try_from(row).unwrap_or(u32::MAX);
@@ -260,9 +264,12 @@ impl RigidSystem {
     /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
         let now = self.now;
-        let state = &mut self.connector_states[id.index()];
-        if state.taut.is_some() {
-            state.note_taut(now);
+        let is_taut = self.connector_states[id.index()].taut.is_some();
+        let slack = self.grazing_slack();
+        if is_taut && self.connector_states[id.index()].slack < slack && self.rope_grazes(id) {
+            self.connector_states[id.index()].slack = slack;
+        } else if is_taut {
+            self.connector_states[id.index()].note_taut(now);
             return true;
         }
         if let Some(rope) = rope_of(self.connector(id)) {

@@ -87,7 +87,7 @@ impl RigidSystem {
         features: [FeatureId; 2],
     ) -> Result<bool, AdvanceError> {
         let bodies = self.pairs.bodies(pair);
-        if self.sinks(pair, features) || self.passes_over(pair, features) {
+        if self.sinks(pair, features) || self.passes_over(pair, features) || self.grazes(pair, features) {
             return Ok(false);
         }
         self.note_pressed(Touch::new(bodies, features))?;

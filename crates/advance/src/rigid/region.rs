@@ -186,6 +186,7 @@ impl RigidSystem {
         fresh.retain(|record| {
             self.counts_as_touching(record, bodies, region.at_start, takes_over)
                 && !self.is_passed_over(record)
+                && !self.is_grazing(record)
         });
         // What has fired takes part, and what is put back at a tick, though it may have been moved out of its zone, or may have
         // turned by a little since: where a block lies flat, to put back one of its corners would sink the other.

@@ -58,6 +58,7 @@ impl RigidSystem {
     ) -> Result<(), AdvanceError> {
         settling.held.clear();
         settling.touches.clear();
+        settling.passing.clear();
         settling.candidates.clear();
         let rest = match region {
             Region { at_start: true, .. } => self.start_rest(),
@@ -109,13 +110,24 @@ impl RigidSystem {
             settling.solution.force.resize(settling.candidates.len(), 0.0);
             return Ok(Solved::Nothing);
         }
-        let is_sound = settling.solve_strictly().is_ok();
+        let mut is_sound = settling.solve_strictly().is_ok();
         if is_sound && !self.is_jammed(region, settling, stage) {
             return Ok(Solved::Soundly);
+        }
+        if is_sound && self.let_pass(region, settling) {
+            self.pose_problem(region, settling, stage);
+            is_sound = settling.solve_strictly().is_ok();
+            if is_sound && !self.is_jammed(region, settling, stage) {
+                return Ok(Solved::Soundly);
+            }
         }
         self.drop_distant(region, settling, stage);
         let mut found = settling.solve_strictly();
         while is_sound && found.is_ok() && self.take_back_pressed(region, settling, stage) {
+            self.pose_problem(region, settling, stage);
+            found = settling.solve_strictly();
+        }
+        if found.is_err() && self.drop_leaving(region, settling, stage) {
             self.pose_problem(region, settling, stage);
             found = settling.solve_strictly();
         }
@@ -156,7 +168,8 @@ impl RigidSystem {
 
     /// True if a record of a region, given with its place, may hop, and is not let go.
     fn could_hop(&self, region: &Region, settling: &Settling, (index, record): (usize, &Collision)) -> bool {
-        !settling.leaves(index) && self.holds(record) && self.may_hop(region, record)
+        let passes = || Touch::of(record).is_some_and(|touch| settling.passing.contains(&touch));
+        !settling.leaves(index) && self.holds(record) && self.may_hop(region, record) && !passes()
     }
 
     /// Finds the accelerations of a region's bodies under the forces of the candidates.

@@ -27,6 +27,8 @@ pub(crate) struct Settling {
     pub(super) candidates: Vec<usize>,
     /// Records left out of it because rows seemed to work against each other.
     pub(super) dropped: Vec<usize>,
+    /// Contacts left out of it because they hold by next to no lever: they may come as near as what grazes.
+    pub(super) passing: Vec<Touch>,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
     /// Records that opened in spite of all that presses on them when their low hops were stilled: they leave.
@@ -68,6 +70,7 @@ impl Default for Settling {
             lenient: solver(lenient),
             candidates: Vec::new(),
             dropped: Vec::new(),
+            passing: Vec::new(),
             likely: Vec::new(),
             leaving: Vec::new(),
             forces: Vec::new(),

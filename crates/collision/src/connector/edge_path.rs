@@ -148,7 +148,7 @@ impl EdgePath {
     fn follow(&self, point: DVec2, hint: &RailHint) -> (usize, f64) {
         let (piece, along) = self.walk(point, hint);
         let off = self.off(piece, point);
-        if off <= ASTRAY * self.length {
+        if piece == self.hinted_piece(hint) || off <= ASTRAY * self.length {
             return (piece, along);
         }
         let nearest = self.nearest_piece(point);

@@ -1,0 +1,133 @@
+//! Contacts that graze: features that come nearer than where bodies fire, and turn back before they touch.
+//!
+//! Near a dead point of what connectors hold, a part of a body comes towards another at a speed that vanishes with the gap: the
+//! corner beside the hinge of a lid that falls shut, a bob that just clears the floor, a slider at its dead centre. To stop such a
+//! part stops the whole mechanism, by a lever that is next to none; and where it lies flush in the end, it is the far corner that
+//! should do so. What fires at the target gap, but is turned back by its own motion before it lies deeper than contacts may anyway,
+//! is let pass.
+
+use super::pairs::PairId;
+use super::region::{Region, Touch};
+use super::settle::DEEPEST;
+use super::settling::Settling;
+use super::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{BodyId, Collision, ConnectorId};
+use halfgap_geometry::FeatureId;
+
+/// Depth, in target gaps, that what grazes does not come to: a little less than that from which contacts are lifted.
+const DEPTH: f64 = 0.9 * DEEPEST;
+/// A contact that does less than this part of its force to its bodies, with all that holds them, holds by next to no lever.
+const LEVER: f64 = 1e-3;
+
+impl RigidSystem {
+    /// True if two features that fire only graze: the search lets them come as deep from now on.
+    pub(crate) fn grazes(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
+        let touch = Touch { bodies: self.pairs.bodies(pair), features };
+        let rule = touch.lowered_to(self.grazing_gap());
+        if self.pairs.rules(pair).contains(&rule) || !self.turns_back(touch) {
+            return false;
+        }
+        self.pairs.change_rules(pair, |rules| {
+            // Of several rules for the same features the first counts.
+            rules.retain(|rule| rule.features != features);
+            rules.push(rule);
+        });
+        self.predict(pair);
+        true
+    }
+
+    /// True if a record is of features that close, and only graze.
+    pub(crate) fn is_grazing(&self, record: &Collision) -> bool {
+        record.motion.normal_velocity < -self.rest_speed()
+            && Touch::of(record).is_some_and(|touch| self.turns_back(touch))
+    }
+
+    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point forces of contacts and
+    /// connectors cancel each other but for a small part, while the rest of the body has not come to where it lies. True if there
+    /// are any.
+    pub(crate) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
+        let mut changes = std::mem::take(&mut settling.pushed);
+        changes.clear();
+        changes.resize(region.bodies.len(), [0.0; 3]);
+        settling.add_responses(region, &settling.candidates, |body| self.inertia(body), &mut changes);
+        let least = self.grazing_gap();
+        let Settling { candidates, solution, passing, .. } = settling;
+        let mut forces = solution.force.iter();
+        candidates.retain(|&index| {
+            let force = forces.next().copied().unwrap_or_default();
+            let record = &region.records[index];
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let places = bodies.into_iter().filter_map(|body| region.place(body));
+            // What all forces together do to a body [N].
+            let done = places.map(|place| self.flyer(region.bodies[place]).load(&changes[place]));
+            let passes = !record.parties.bilateral
+                && record.geometry.distance > least
+                && LEVER * force > done.fold(0.0, f64::max)
+                && bodies.iter().any(|&body| self.is_tied(body));
+            let touch = Touch::of(record).filter(|_| passes);
+            passing.extend(touch);
+            touch.is_none()
+        });
+        settling.pushed = changes;
+        !settling.passing.is_empty()
+    }
+
+    /// The gap [m] of what grazes is larger.
+    pub(crate) fn grazing_gap(&self) -> f64 {
+        -DEPTH * self.settings.tolerances.target_gap
+    }
+
+    /// True if features of which one is held by connectors, as they move now, part again before they are as deep as what grazes never
+    /// is.
+    fn turns_back(&self, touch: Touch) -> bool {
+        self.parts_again(touch.bodies, self.grazing_gap(), |time| self.gap_at(touch, time))
+    }
+
+    /// True if a rope one end of which is held by other connectors, too, as it moves now, is slack again before it is longer by as much
+    /// as what grazes may be deep.
+    pub(crate) fn rope_grazes(&self, id: ConnectorId) -> bool {
+        let connector = self.connector(id);
+        let bodies = connector.bodies();
+        self.parts_again(bodies, self.grazing_gap(), |time| {
+            let [a, b] = bodies.map(|body| self.moving_at(body, time));
+            let sample = connector.measure(0, &a, &b);
+            (sample.gap, sample.kinematics.rate)
+        })
+    }
+
+    /// How much longer [m] a rope is taken that grazes.
+    pub(crate) fn grazing_slack(&self) -> f64 {
+        -self.grazing_gap()
+    }
+
+    /// True if a gap that closes between bodies of which one is held by connectors, as they move now, opens again before it is less than
+    /// so much [m]. It is given, with its rate [m/s], at any time of the present motion.
+    fn parts_again(&self, bodies: [BodyId; 2], least: f64, gap_at: impl Fn(Time) -> (f64, f64)) -> bool {
+        let is_moved = |body: &BodyId| !body.is_world() && self.group_of(*body).is_some();
+        if !bodies.iter().any(|&body| self.is_tied(body)) || !bodies.iter().any(is_moved) {
+            return false;
+        }
+        let (gap, rate) = gap_at(self.now);
+        let room = gap - least;
+        if rate >= 0.0 || room <= 0.0 {
+            return false;
+        }
+        // With a constant acceleration, what turns back within the room does so within this time.
+        let ends = bodies.into_iter().filter_map(|body| self.segment_end(body));
+        let known = ends.map(|end| end.since(self.now)).fold(f64::INFINITY, f64::min);
+        let span = (-2.0 * room / rate).min(known);
+        if span <= 0.0 {
+            return false;
+        }
+        let acceleration = (gap_at(self.now.plus(span)).1 - rate) / span;
+        let turns = acceleration > 0.0 && rate * rate < 2.0 * acceleration * room;
+        let nearest = -rate / acceleration;
+        turns && (nearest > known || gap_at(self.now.plus(nearest)).0 > least)
+    }
+
+    /// True if a body is held by a connector, whichever way it is pushed.
+    fn is_tied(&self, body: BodyId) -> bool {
+        !body.is_world() && self.connectors_of.of(body).iter().any(|&id| self.connector(id).is_bilateral())
+    }
+}
