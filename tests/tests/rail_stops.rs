@@ -55,3 +55,85 @@ fn a_stop_beyond_the_joints_of_its_rail_turns_its_point_back() {
     assert!(hits.iter().all(|x| (x - place).abs() < 1e-7), "impacts at {hits:?} m, stop at {place} m");
     assert!(highest < place + 1e-7, "{highest} m, stop at {place} m");
 }
+
+/// A bead on an arc of radius 1 m about the origin that starts at (1, 0) and ends at an angle [rad], a whole circle if that is
+/// all of it; it starts at 1 rad with 1 m/s, and nothing pulls.
+fn bead_on_arc(end: f64, stops: &str) -> World {
+    let (sin, cos) = if end < std::f64::consts::TAU { end.sin_cos() } else { (0.0, 1.0) };
+    let path = format!(
+        "path = {{ start = [1.0, 0.0], edges = [{{ arc = {{ to = [{cos}, {sin}], center = [0.0, 0.0] }} }}] }}"
+    );
+    let bead = "a = { body = \"bead\", point = [0.0, 0.0] }";
+    let stops: String = stops
+        .split_terminator(';')
+        .map(|stop| {
+            format!("[[connector]]\nrail_stop = {{ {bead}, {path}, {stop}, elasticity = 1.0 }}\n\n")
+        })
+        .collect();
+    let (sin, cos) = 1.0f64.sin_cos();
+    world_of(&format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 20.0 }}\n\n\
+         [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+         position = [{cos}, {sin}]\nvelocity = [{}, {cos}]\n\n\
+         [[connector]]\nrail = {{ {bead}, {path} }}\n\n{stops}",
+        -sin
+    ))
+}
+
+/// Requires that the bead is where it would be between stops at two angles [rad], at every tenth of a second.
+fn require_between(world: &mut World, [low, high]: [f64; 2]) {
+    let bead = world.find("bead").expect("the bead");
+    let width = high - low;
+    for tenth in 1..=200 {
+        let time = 0.1 * f64::from(tenth);
+        world.advance_to(time, &mut |_| ()).expect("it goes on");
+        let unfolded = (1.0 + time - low).rem_euclid(2.0 * width);
+        let angle = low + unfolded.min(2.0 * width - unfolded);
+        let (sin, cos) = angle.sin_cos();
+        let place = world.state(bead).position;
+        assert!((place.x - cos).hypot(place.y - sin) < 1e-7, "{time} s: {place} m for {angle} rad");
+    }
+}
+
+#[test]
+fn a_stop_turns_a_bead_back_that_goes_more_than_half_round_in_a_step() {
+    for end in [3.5, 4.0, 4.7, 5.5, 6.2] {
+        let at = end - 0.01;
+        let mut world = bead_on_arc(end, &format!("at = {at}, upper = true;at = 0.01, upper = false"));
+        require_between(&mut world, [0.01, at]);
+    }
+}
+
+#[test]
+fn a_stop_of_a_ring_is_met_once_a_lap() {
+    for (low, high) in [(0.5, 6.0), (0.1, 3.0), (-1.0, 2.0)] {
+        let stops = format!(
+            "at = {high}, upper = true;at = {}, upper = false",
+            f64::rem_euclid(low, std::f64::consts::TAU)
+        );
+        let mut world = bead_on_arc(std::f64::consts::TAU, &stops);
+        require_between(&mut world, [low, high]);
+    }
+}
+
+#[test]
+fn a_corner_takes_what_is_across_it_whichever_way_it_turns() {
+    for turn in [0.1, 0.6, -0.1, -0.6, -1.2] {
+        let (sin, cos) = f64::sin_cos(turn);
+        let mut world = world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 2.0 }}\n\n\
+             [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+             position = [-1.0, 0.0]\nvelocity = [1.0, 0.0]\n\n\
+             [[connector]]\nrail = {{ a = {{ body = \"bead\", point = [0.0, 0.0] }}, path = {{ start = [-2.0, 0.0], edges = [\
+             {{ line = [0.0, 0.0] }}, {{ line = [{}, {}] }}] }} }}\n",
+            5.0 * cos,
+            5.0 * sin
+        ));
+        let bead = world.find("bead").expect("the bead");
+        world.advance_to(2.0, &mut |_| ()).expect("it goes on");
+        let (place, expected) = (world.state(bead).position, [cos * cos, cos * sin]);
+        assert!((place.x - expected[0]).hypot(place.y - expected[1]) < 1e-9, "{turn} rad: {place} m");
+        let ledger = world.ledger();
+        assert!((ledger.impacts + 0.5 * sin * sin).abs() < 1e-12 && ledger.captures == 0.0, "{ledger:?}");
+    }
+}

@@ -5,6 +5,7 @@
 mod cams;
 mod chains;
 mod changes;
+mod dead_points;
 mod events;
 mod extremes;
 mod grazing;
