@@ -17,14 +17,14 @@ use halfgap_geometry::FeatureId;
 
 /// Depth, in target gaps, that what grazes does not come to: a little less than that from which contacts are lifted.
 const DEPTH: f64 = 0.9 * DEEPEST;
-/// A contact that does less than this part of its force to its bodies, with all that holds them, holds by next to no lever.
+/// A lever that is less than this part of what it would be without the connectors is next to none.
 const LEVER: f64 = 1e-3;
 
 impl RigidSystem {
     /// True if two features that fire only graze: the search lets them come as deep from now on.
     pub(crate) fn grazes(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let touch = Touch { bodies: self.pairs.bodies(pair), features };
-        let rule = touch.lowered_to(self.grazing_gap());
+        let rule = touch.lowered_to(self.grazing_gap(touch.bodies));
         if self.pairs.rules(pair).contains(&rule) || !self.turns_back(touch) {
             return false;
         }
@@ -43,45 +43,34 @@ impl RigidSystem {
             && Touch::of(record).is_some_and(|touch| self.turns_back(touch))
     }
 
-    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point forces of contacts and
-    /// connectors cancel each other but for a small part, while the rest of the body has not come to where it lies. True if there
-    /// are any.
+    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point they would take forces
+    /// far larger than all loads, while the rest of the body has not come to where it lies. True if there are any.
     pub(crate) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
-        let mut changes = std::mem::take(&mut settling.pushed);
-        changes.clear();
-        changes.resize(region.bodies.len(), [0.0; 3]);
-        settling.add_responses(region, &settling.candidates, |body| self.inertia(body), &mut changes);
-        let least = self.grazing_gap();
-        let Settling { candidates, solution, passing, .. } = settling;
-        let mut forces = solution.force.iter();
+        let Settling { candidates, passing, levers, .. } = settling;
+        levers.load(region, |body| self.inertia(body));
         candidates.retain(|&index| {
-            let force = forces.next().copied().unwrap_or_default();
             let record = &region.records[index];
             let bodies = [record.parties.primary.body, record.parties.normal.body];
-            let places = bodies.into_iter().filter_map(|body| region.place(body));
-            // What all forces together do to a body [N].
-            let done = places.map(|place| self.flyer(region.bodies[place]).load(&changes[place]));
             let passes = !record.parties.bilateral
-                && record.geometry.distance > least
-                && LEVER * force > done.fold(0.0, f64::max)
-                && bodies.iter().any(|&body| self.is_tied(body));
+                && record.geometry.distance > self.grazing_gap(bodies)
+                && bodies.iter().any(|&body| self.is_tied(body))
+                && levers.left_of(region, record, |body| self.inertia(body)) < LEVER * LEVER;
             let touch = Touch::of(record).filter(|_| passes);
             passing.extend(touch);
             touch.is_none()
         });
-        settling.pushed = changes;
         !settling.passing.is_empty()
     }
 
-    /// The gap [m] of what grazes is larger.
-    pub(crate) fn grazing_gap(&self) -> f64 {
-        -DEPTH * self.settings.tolerances.target_gap
+    /// The gap [m] of what grazes is larger: bodies do not overlap by what one sees.
+    pub(crate) fn grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
+        if self.is_zone_seen(bodies) { 0.0 } else { -DEPTH * self.settings.tolerances.target_gap }
     }
 
     /// True if features of which one is held by connectors, as they move now, part again before they are as deep as what grazes never
     /// is.
     fn turns_back(&self, touch: Touch) -> bool {
-        self.parts_again(touch.bodies, self.grazing_gap(), |time| self.gap_at(touch, time))
+        self.parts_again(touch.bodies, self.grazing_gap(touch.bodies), |time| self.gap_at(touch, time))
     }
 
     /// True if a rope one end of which is held by other connectors, too, as it moves now, is slack again before it is longer by as much
@@ -89,7 +78,7 @@ impl RigidSystem {
     pub(crate) fn rope_grazes(&self, id: ConnectorId) -> bool {
         let connector = self.connector(id);
         let bodies = connector.bodies();
-        self.parts_again(bodies, self.grazing_gap(), |time| {
+        self.parts_again(bodies, -self.grazing_slack(), |time| {
             let [a, b] = bodies.map(|body| self.moving_at(body, time));
             let sample = connector.measure(0, &a, &b);
             (sample.gap, sample.kinematics.rate)
@@ -98,7 +87,7 @@ impl RigidSystem {
 
     /// How much longer [m] a rope is taken that grazes.
     pub(crate) fn grazing_slack(&self) -> f64 {
-        -self.grazing_gap()
+        DEPTH * self.settings.tolerances.target_gap
     }
 
     /// True if a gap that closes between bodies of which one is held by connectors, as they move now, opens again before it is less than

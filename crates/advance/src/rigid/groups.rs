@@ -195,6 +195,7 @@ impl RigidSystem {
             let mut connectors = self.connectors_of.of(region.bodies[place]).iter();
             self.groups.integrated[place] |= connectors.any(|&id| is_stop(self.connector(id)));
         }
+        self.couple_touching(region, settling);
         // What is integrated is a matter of the whole class.
         for place in 0..count {
             if self.groups.integrated[place] {
@@ -202,6 +203,31 @@ impl RigidSystem {
                 self.groups.integrated[root] = true;
             }
         }
+    }
+
+    /// Joins what is integrated, or turns, and touches without force, neither closing nor opening: a group watches such a contact from
+    /// step to step, where the search would look for it in steps as short as it takes to sink by next to nothing.
+    fn couple_touching(&mut self, region: &Region, settling: &Settling) {
+        if self.settings.impulse_step.is_some() {
+            return;
+        }
+        let rest = self.rest_speed();
+        for (&touch, &(_, rate)) in region.touches.iter().zip(&region.motions) {
+            if rate.abs() > rest || settling.holds_touch(touch) {
+                continue;
+            }
+            let mut places = touch.bodies.into_iter().filter_map(|body| region.place(body));
+            let are_integrated = places.all(|place| self.groups.integrated[place]);
+            if are_integrated || touch.bodies.iter().any(|&body| self.turns_about(body)) {
+                self.couple_bodies(region, touch.bodies.into_iter());
+            }
+        }
+    }
+
+    /// True for a body other than a disc that turns.
+    fn turns_about(&self, body: BodyId) -> bool {
+        let flyer = self.flyer(body);
+        !flyer.body().is_fixed() && flyer.disc().is_none() && flyer.moving_at(self.now).angular_velocity != 0.0
     }
 
     fn couple_bodies(&mut self, region: &Region, bodies: impl Iterator<Item = BodyId>) {

@@ -37,7 +37,8 @@ impl RigidSystem {
         let accuracy = record.tolerances.accuracy;
         let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * accuracy;
         let is_short = || {
-            let turn = HOP_TURN.max(SHORT_HOP_SHARE * accuracy / self.largest_reach(record));
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let turn = HOP_TURN.max(SHORT_HOP_SHARE * accuracy / self.largest_reach(bodies));
             2.0 * rate * self.turning(record) <= -acceleration * turn
         };
         acceleration < 0.0 && (is_within(HOP_SHARE) || (is_within(SHORT_HOP_SHARE) && is_short()))
@@ -58,9 +59,8 @@ impl RigidSystem {
         record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)
     }
 
-    /// Reach [m] of the larger of the movable bodies of a contact.
-    pub(crate) fn largest_reach(&self, record: &Collision) -> f64 {
-        let bodies = [record.parties.primary.body, record.parties.normal.body];
+    /// Reach [m] of the larger of the movable ones of two bodies.
+    pub(crate) fn largest_reach(&self, bodies: [BodyId; 2]) -> f64 {
         let movable = bodies.into_iter().filter(|&body| self.is_movable(body));
         movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))
     }

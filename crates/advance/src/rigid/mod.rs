@@ -38,6 +38,7 @@ mod lane;
 mod law;
 mod leaving;
 mod ledger;
+mod levers;
 mod marks;
 mod overdue;
 mod pace;

@@ -46,7 +46,7 @@ impl RigidSystem {
             let rule: FeatureRule = if is_held || self.is_watched(*touch) {
                 touch.skipped()
             } else if settling.passing.contains(touch) {
-                touch.lowered_to(self.grazing_gap())
+                touch.lowered_to(self.grazing_gap(touch.bodies))
             } else {
                 // What fired although it does not close would do so again at once. It may sink no farther than its zone.
                 let fired_open = *fired_open && region.fired == Some(*touch) && gap > least;

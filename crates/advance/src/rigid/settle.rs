@@ -356,7 +356,12 @@ impl RigidSystem {
 
     /// True if the zone of a record is so wide, beside its bodies, that one sees where in it they are.
     fn is_seen(&self, record: &Collision) -> bool {
-        record.tolerances.accuracy > SEEN * self.largest_reach(record)
+        self.is_zone_seen([record.parties.primary.body, record.parties.normal.body])
+    }
+
+    /// The same of two bodies.
+    pub(crate) fn is_zone_seen(&self, bodies: [BodyId; 2]) -> bool {
+        self.settings.tolerances.accuracy > SEEN * self.largest_reach(bodies)
     }
 
     fn settle_error(

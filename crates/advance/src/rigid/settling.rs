@@ -2,6 +2,7 @@
 //!
 //! Which rows are candidates, and which of them are held, is decided in `settle`.
 
+use super::levers::Levers;
 use super::region::{Region, Touch};
 use super::report::RowForce;
 use super::rows::HeldRow;
@@ -29,6 +30,7 @@ pub(crate) struct Settling {
     pub(super) dropped: Vec<usize>,
     /// Contacts left out of it because they hold by next to no lever: they may come as near as what grazes.
     pub(super) passing: Vec<Touch>,
+    pub(super) levers: Levers,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
     /// Records that opened in spite of all that presses on them when their low hops were stilled: they leave.
@@ -71,6 +73,7 @@ impl Default for Settling {
             candidates: Vec::new(),
             dropped: Vec::new(),
             passing: Vec::new(),
+            levers: Levers::default(),
             likely: Vec::new(),
             leaving: Vec::new(),
             forces: Vec::new(),
