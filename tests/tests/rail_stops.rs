@@ -66,9 +66,7 @@ fn bead_on_arc(end: f64, stops: &str) -> World {
     let bead = "a = { body = \"bead\", point = [0.0, 0.0] }";
     let stops: String = stops
         .split_terminator(';')
-        .map(|stop| {
-            format!("[[connector]]\nrail_stop = {{ {bead}, {path}, {stop}, elasticity = 1.0 }}\n\n")
-        })
+        .map(|stop| format!("[[connector]]\nrail_stop = {{ {bead}, {path}, {stop}, elasticity = 1.0 }}\n\n"))
         .collect();
     let (sin, cos) = 1.0f64.sin_cos();
     world_of(&format!(

@@ -16,8 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     // Five contacts, two of which suffice: ask for the least forces rather than for any.
-    let mut settings = Settings::default();
-    settings.selection = ForceSelection::LeastNorm;
+    let settings = Settings { selection: ForceSelection::LeastNorm, ..Settings::default() };
     let mut solver = Auto::new(settings)?;
     let mut solution = Solution::new();
     solver.solve(&problem, &mut solution)?;

@@ -30,6 +30,8 @@ pub(crate) struct ConnectorState {
     slack: f64,
     /// The rope is taut and held.
     held: bool,
+    /// It is taut without force, and its group watches it.
+    watched: bool,
     /// When the rope went taut last, and how often before that without time going by.
     last_taut: Option<Time>,
     repeats: u32,
@@ -159,8 +161,10 @@ impl RigidSystem {
                 let sample = self.connector(id).measure(0, &a, &b);
                 let at_rest = sample.kinematics.rate <= self.rest_speed();
                 let touches = sample.gap <= self.settings.tolerances.accuracy;
+                let is_watched = self.is_rope_watched(id);
                 let state = &mut self.connector_states[id.index()];
                 state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                state.watched = is_watched;
                 state.slack = if at_rest && touches { sink + (-sample.gap).max(0.0) } else { 0.0 };
                 state.slack += f64::from(state.repeats_at(self.now)) * sink;
                 state.clear = self.now;
@@ -185,7 +189,8 @@ impl RigidSystem {
     fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
         let source = self.connector_source(id);
         self.connector_states[id.index()].taut = None;
-        if self.connector_states[id.index()].held {
+        let state = &self.connector_states[id.index()];
+        if state.held || (state.watched && self.is_rope_watched(id)) {
             self.queue.clear(source);
             return;
         }
@@ -292,6 +297,11 @@ fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
     let by_speed = if speed > 0.0 { rope.length / speed } else { LONGEST_SPAN };
     let by_acceleration = if acceleration > 0.0 { (rope.length / acceleration).sqrt() } else { LONGEST_SPAN };
     by_speed.min(by_acceleration).min(LONGEST_SPAN)
+}
+
+/// True for a rope.
+pub(crate) fn is_rope(connector: &Connector) -> bool {
+    matches!(connector.kind, ConnectorKind::Rope { .. })
 }
 
 /// The rope of a connector, if it is one.

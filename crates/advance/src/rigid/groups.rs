@@ -1,7 +1,7 @@
 //! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
 
 use super::brief::Past;
-use super::connectors::is_stop;
+use super::connectors::{is_rope, is_stop};
 use super::dynamics::{Dynamics, Physics, body_state, set_body_state};
 use super::error::AdvanceError;
 use super::extending::Tools;
@@ -227,7 +227,9 @@ impl RigidSystem {
     /// True for a body other than a disc that turns.
     fn turns_about(&self, body: BodyId) -> bool {
         let flyer = self.flyer(body);
-        !flyer.body().is_fixed() && flyer.disc().is_none() && flyer.moving_at(self.now).angular_velocity != 0.0
+        !flyer.body().is_fixed()
+            && flyer.disc().is_none()
+            && flyer.moving_at(self.now).angular_velocity != 0.0
     }
 
     fn couple_bodies(&mut self, region: &Region, bodies: impl Iterator<Item = BodyId>) {
@@ -300,8 +302,8 @@ impl RigidSystem {
         leaning.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
-    /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their features, back to the
-    /// search.
+    /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their features, and the ropes that
+    /// have slackened as much, back to the search.
     pub(crate) fn let_go(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
@@ -321,6 +323,12 @@ impl RigidSystem {
             }
             stays
         });
+        let slack = self.settings.tolerances.accuracy;
+        group.stops.retain(|stop| {
+            let connector = self.connector(stop.id);
+            let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
+            !is_rope(connector) || connector.measure(0, &a, &b).gap <= slack
+        });
         self.groups.put(group);
         for &pair in &touched {
             self.note_prediction(pair, (Prediction::Quiet, self.now));
@@ -333,11 +341,34 @@ impl RigidSystem {
             for &id in self.connectors_of.of(group.bodies[index]) {
                 let source = RowSource::Connector(id, 0);
                 let is_held = group.rows.iter().any(|row| row.source == source);
-                if is_stop(self.connector(id)) && !is_held {
+                let is_known = || group.stops.iter().any(|stop| stop.id == id);
+                if (is_stop(self.connector(id)) || self.is_idly_taut(group, id)) && !is_held && !is_known() {
                     group.stops.push(self.stop(id));
                 }
             }
         }
+    }
+
+    /// True for a rope within a group that is taut and neither slackens nor tightens: without a force it is watched like a stop, where
+    /// the search would look for it in steps as short as it takes to lengthen by next to nothing.
+    fn is_idly_taut(&self, group: &Group, id: ConnectorId) -> bool {
+        let connector = self.connector(id);
+        let bodies = connector.bodies();
+        let belongs = |body: BodyId| !self.is_movable(body) || group.bodies.binary_search(&body).is_ok();
+        if !is_rope(connector) || !bodies.iter().all(|&body| belongs(body)) {
+            return false;
+        }
+        let [a, b] = bodies.map(|body| self.moving_at(body, self.now));
+        let sample = connector.measure(0, &a, &b);
+        sample.gap <= self.settings.tolerances.accuracy && sample.kinematics.rate.abs() <= self.rest_speed()
+    }
+
+    /// True if a group watches a rope.
+    pub(crate) fn is_rope_watched(&self, id: ConnectorId) -> bool {
+        let groups = self.connector(id).bodies().into_iter().filter(|body| !body.is_world());
+        groups
+            .filter_map(|body| self.group_of(body))
+            .any(|group| group.stops.iter().any(|stop| stop.id == id))
     }
 
     fn list_works(&self, group: &mut Group) {

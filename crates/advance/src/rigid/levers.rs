@@ -43,7 +43,8 @@ impl Levers {
         row.clear();
         row.resize(3 * region.bodies.len(), 0.0);
         let j = &record.motion.kinematics.jacobian;
-        for (side, body) in [record.parties.primary.body, record.parties.normal.body].into_iter().enumerate() {
+        for (side, body) in [record.parties.primary.body, record.parties.normal.body].into_iter().enumerate()
+        {
             let Some(place) = region.place(body) else { continue };
             let Inertia { inverse_mass, inverse_moment } = inertia(body);
             for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {

@@ -80,8 +80,11 @@ impl RigidSystem {
 
     /// True if some body of a region has led a hasty group; it is then forgotten.
     pub(crate) fn take_haste(&mut self, region: &Region) -> bool {
-        let paces = &mut self.paces;
-        region.bodies.iter().fold(false, |any, body| std::mem::take(&mut paces[body.index()].is_hasty) || any)
+        let mut any = false;
+        for body in &region.bodies {
+            any |= std::mem::take(&mut self.paces[body.index()].is_hasty);
+        }
+        any
     }
 }
 

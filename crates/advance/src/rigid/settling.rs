@@ -56,15 +56,16 @@ pub(crate) struct Settling {
 
 impl Default for Settling {
     fn default() -> Self {
-        // Nearly redundant contacts that contradict each other get modest forces.
-        let mut settings = Settings::default();
-        settings.contradiction = halfgap_contact::Contradiction::LeastSquares;
-        // The rows that carry force are held, and had better not depend on each other.
-        settings.selection = halfgap_contact::ForceSelection::Vertex;
+        let settings = Settings {
+            // Nearly redundant contacts that contradict each other get modest forces.
+            contradiction: halfgap_contact::Contradiction::LeastSquares,
+            // The rows that carry force are held, and had better not depend on each other.
+            selection: halfgap_contact::ForceSelection::Vertex,
+            ..Settings::default()
+        };
         let solver = |settings| Auto::new(settings).expect("the settings are valid");
-        let mut lenient = settings;
-        lenient.inconsistency = SMALL_CONTRADICTION;
-        lenient.natural_residual = LENIENT_RESIDUAL;
+        let lenient =
+            Settings { inconsistency: SMALL_CONTRADICTION, natural_residual: LENIENT_RESIDUAL, ..settings };
         Self {
             problem: Problem::new(),
             solution: Solution::new(),

@@ -6,6 +6,7 @@ mod cutting;
 mod determinism;
 mod energy;
 mod hops;
+mod idle;
 mod limits;
 mod no_overlap;
 mod pace;

@@ -109,8 +109,7 @@ fn contacts_that_contradict_each_other_are_solved_as_given_or_by_least_squares()
         DualActiveSet::default().solve(&case.problem, &mut solution).unwrap();
         let judged = judge(&case.problem, &solution.force);
         assert!(judged.good() && judged.growth < 1e6, "{name}: {judged:?}");
-        let mut settings = Settings::default();
-        settings.contradiction = Contradiction::LeastSquares;
+        let settings = Settings { contradiction: Contradiction::LeastSquares, ..Settings::default() };
         DualActiveSet::new(settings).unwrap().solve(&case.problem, &mut solution).unwrap();
         let judged = judge(&case.problem, &solution.force);
         assert!(

@@ -158,10 +158,6 @@ fn a_block_squeezed_by_walls_that_both_close_is_infeasible() {
 
 #[test]
 fn settings_that_are_not_positive_are_refused() {
-    let settings = {
-        let mut settings = Settings::default();
-        settings.dependence = 0.0;
-        settings
-    };
+    let settings = Settings { dependence: 0.0, ..Settings::default() };
     assert_eq!(DualActiveSet::new(settings).unwrap_err().field, "dependence");
 }

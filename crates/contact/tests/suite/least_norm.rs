@@ -5,9 +5,7 @@ use halfgap_contact::{Auto, ForceSelection, Inertia, Problem, Row, Settings, Sol
 use crate::data::{Case, judge};
 
 fn least_norm() -> Auto {
-    let mut settings = Settings::default();
-    settings.selection = ForceSelection::LeastNorm;
-    Auto::new(settings).unwrap()
+    Auto::new(Settings { selection: ForceSelection::LeastNorm, ..Settings::default() }).unwrap()
 }
 
 #[test]

@@ -126,8 +126,7 @@ fn least_changes(bodies: &[StartParts], corrections: &[Correction]) -> Option<Ve
         let row = Row::new(primary, [j[0], j[1], j[2]], *offset).against(normal, [j[3], j[4], j[5]]);
         problem.add_row(&if *bilateral { row.bilateral() } else { row }).ok()?;
     }
-    let mut settings = Settings::default();
-    settings.inconsistency = INCONSISTENCY;
+    let settings = Settings { inconsistency: INCONSISTENCY, ..Settings::default() };
     let mut solution = Solution::new();
     DualActiveSet::new(settings).ok()?.solve(&problem, &mut solution).ok()?;
     let mut changes = vec![[0.0; 3]; bodies.len()];
