@@ -1,6 +1,7 @@
 //! Stops of rails, whatever lies between them and their point.
 
-use halfgap::{Event, World};
+use halfgap::scene::{Scene, SceneError, SceneFormat};
+use halfgap::{Event, RunError, World};
 use halfgap_tests::world_of;
 
 /// A slope, a hollow of radius 1 m and a slope back up, and a bead that starts on the first; the stop is on the last.
@@ -59,6 +60,16 @@ fn a_stop_beyond_the_joints_of_its_rail_turns_its_point_back() {
 /// A bead on an arc of radius 1 m about the origin that starts at (1, 0) and ends at an angle [rad], a whole circle if that is
 /// all of it; it starts at 1 rad with 1 m/s, and nothing pulls.
 fn bead_on_arc(end: f64, stops: &str) -> World {
+    world_of(&scene_of_arc(end, stops))
+}
+
+/// The same on a whole circle, if it can be built.
+fn bead_on_ring(stops: &str) -> Result<World, SceneError> {
+    let scene = Scene::parse(&scene_of_arc(std::f64::consts::TAU, stops), SceneFormat::Toml)?;
+    World::from_scene(&scene)
+}
+
+fn scene_of_arc(end: f64, stops: &str) -> String {
     let (sin, cos) = if end < std::f64::consts::TAU { end.sin_cos() } else { (0.0, 1.0) };
     let path = format!(
         "path = {{ start = [1.0, 0.0], edges = [{{ arc = {{ to = [{cos}, {sin}], center = [0.0, 0.0] }} }}] }}"
@@ -69,13 +80,13 @@ fn bead_on_arc(end: f64, stops: &str) -> World {
         .map(|stop| format!("[[connector]]\nrail_stop = {{ {bead}, {path}, {stop}, elasticity = 1.0 }}\n\n"))
         .collect();
     let (sin, cos) = 1.0f64.sin_cos();
-    world_of(&format!(
+    format!(
         "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 20.0 }}\n\n\
          [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
          position = [{cos}, {sin}]\nvelocity = [{}, {cos}]\n\n\
          [[connector]]\nrail = {{ {bead}, {path} }}\n\n{stops}",
         -sin
-    ))
+    )
 }
 
 /// Requires that the bead is where it would be between stops at two angles [rad], at every tenth of a second.
@@ -134,4 +145,44 @@ fn a_corner_takes_what_is_across_it_whichever_way_it_turns() {
         let ledger = world.ledger();
         assert!((ledger.impacts + 0.5 * sin * sin).abs() < 1e-12 && ledger.captures == 0.0, "{ledger:?}");
     }
+}
+
+#[test]
+fn a_bead_that_comes_to_rest_in_a_corner_of_its_rail_is_told() {
+    for half in [0.35f64, 0.5, 0.785_398_163_397_448_3] {
+        let (sin, cos) = half.sin_cos();
+        let mut world = world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 1000.0 }}\n\
+             force = [{{ gravity = {{ acceleration = [0.0, -10.0] }} }}]\n\n\
+             [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\nposition = [{}, {sin}]\n\n\
+             [[connector]]\nrail = {{ a = {{ body = \"bead\", point = [0.0, 0.0] }}, path = {{ start = [{}, {}], edges = [\
+             {{ line = [0.0, 0.0] }}, {{ line = [{}, {}] }}] }} }}\n",
+            -cos,
+            -2.0 * cos,
+            2.0 * sin,
+            2.0 * cos,
+            2.0 * sin
+        ));
+        let outcome = world.advance_to(1000.0, &mut |_| ());
+        let Err(RunError::InCorner { time, connector: 0, body }) = &outcome else {
+            panic!("{half}: {outcome:?}")
+        };
+        // It slides down 1 m, and each time it passes it keeps the cosine of the turn of its speed, up and down again.
+        let (rate, kept) = (10.0 * sin, (2.0 * half).cos());
+        let first = (2.0 / rate).sqrt();
+        let expected = first * (1.0 + 2.0 * kept / (1.0 - kept));
+        assert!((time - expected).abs() < 0.1 && body == "bead", "{half}: {time} s for {expected} s");
+    }
+}
+
+#[test]
+fn stops_back_to_back_on_a_ring_are_refused() {
+    let scene = |stops: &str| bead_on_ring(stops).map_err(|error| error.to_string());
+    let wall = "at = 0.0, upper = false;at = 6.283185307179586, upper = true";
+    let Err(refused) = scene(wall) else { panic!("they lie at one place") };
+    assert!(
+        refused.contains("connector 1 (rail_stop") && refused.contains("connector 2 (rail_stop"),
+        "{refused}"
+    );
+    scene("at = 0.1, upper = false;at = 6.1, upper = true").expect("there is room between them");
 }

@@ -87,6 +87,12 @@ pub enum WorldError {
         /// The largest [m].
         value: f64,
     },
+    /// Two stops lie at one place of a closed rail, one for each way: a point on it is beyond one of them.
+    #[error("{} and {} lie back to back on a closed path: on one that is open there, its ends can be stopped", stops[0], stops[1])]
+    StopsBackToBack {
+        /// The stops.
+        stops: [ConnectorName; 2],
+    },
     /// Connectors cannot all be put together at the start.
     #[error("{connector} cannot be put together at the start: {} m remain", Rounded(*error))]
     CannotConnect {

@@ -1,5 +1,6 @@
 //! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
 
+use super::error::AdvanceError;
 use super::group::Stop;
 use super::path::Path;
 use super::predictions::LONGEST_SPAN;
@@ -16,6 +17,8 @@ use halfgap_collision::{
 
 /// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
 const LOOKS: u32 = 8;
+/// A point may pass a corner so often in succession, and all but rest there, before it does.
+const MOST_RESTS: u32 = 100;
 
 /// What is known of a connector beside its parts.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +29,8 @@ pub(crate) struct ConnectorState {
     clear: Time,
     /// When it goes taut; `None` if it does not while the motions are known, or the search goes on then.
     taut: Option<Time>,
+    /// How often, one time after another, the point of a rail has passed a corner more slowly than `velocity_tol`.
+    rests_in_corner: u32,
     /// By how much longer [m] a rope is taken that has just gone slack.
     slack: f64,
     /// The rope is taut and held.
@@ -148,6 +153,21 @@ impl RigidSystem {
         let hint = path.hint_past(knot, forward).staying();
         self.connector_states[id.index()].hint = Some(hint);
         is_corner
+    }
+
+    /// Notes that the point of a rail has passed a corner; fails if it all but rests there, again and again.
+    pub(crate) fn note_corner(&mut self, id: ConnectorId) -> Result<(), AdvanceError> {
+        let anchor = *self.connector(id).anchors().0;
+        let moving = self.moving_at(anchor.body, self.now);
+        let speed = moving.velocity_at(moving.pose.vector_to_world(anchor.point)).length();
+        let rests = speed <= self.settings.tolerances.velocity_tol;
+        let state = &mut self.connector_states[id.index()];
+        state.rests_in_corner = if rests { state.rests_in_corner + 1 } else { 0 };
+        if state.rests_in_corner > MOST_RESTS {
+            let (time, body) = (self.now.seconds(), anchor.body);
+            return Err(AdvanceError::InCorner { time, connector: id, body });
+        }
+        Ok(())
     }
 
     /// Predicts when the ropes of a region go taut.

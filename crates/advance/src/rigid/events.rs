@@ -175,7 +175,11 @@ impl RigidSystem {
     /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
     fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
         let is_corner = self.pass_knot(id, self.now);
-        self.handle_impact(work).map(|happened| happened && is_corner)
+        let happened = self.handle_impact(work)?;
+        if is_corner {
+            self.note_corner(id)?;
+        }
+        Ok(happened && is_corner)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {

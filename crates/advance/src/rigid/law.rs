@@ -78,10 +78,12 @@ pub trait ForceLaw: Debug + Send + Sync {
     /// What the law is called in messages and in the energy ledger.
     fn name(&self) -> &str;
 
-    /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps.
+    /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps; what is added to a
+    /// body that is not named is ignored.
     fn bodies(&self) -> &[BodyId];
 
-    /// Adds the forces and torques of this moment.
+    /// Adds the forces and torques of this moment: a function of the snapshot alone, which is asked for as often as it takes, and not
+    /// in the order of time.
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
 
     /// Potential energy [J] of which the forces are the gradient; `None` if there is none: its work is then integrated.

@@ -131,7 +131,8 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         }
         // Laws are named after their fields.
         WorldError::BadForce { law, .. } => law.parse().ok(),
-        WorldError::ConnectorError { connector, .. }
+        WorldError::StopsBackToBack { stops: [_, connector] }
+        | WorldError::ConnectorError { connector, .. }
         | WorldError::CannotConnect { connector, .. }
         | WorldError::FarConnector { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {

@@ -6,13 +6,20 @@ use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
-use halfgap_collision::{BodyId, Connector, Tolerances};
+use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, Tolerances};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to fourth powers of
 /// sums of them, which must be numbers.
 const LARGEST: f64 = 1e60;
+
+/// Part of a lap by which stops of a closed rail are apart at least.
+const BACK_TO_BACK: f64 = 2e-3;
+
+/// Point, path, place [m] and side of a rail's stop.
+type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
 impl WorldBuilder {
     /// Checks names, numbers and what names bodies, in the order in which they were added.
@@ -34,6 +41,7 @@ impl WorldBuilder {
             self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
             self.require_near(index, &spec.connector, LARGEST)?;
         }
+        self.check_stops()?;
         for law in &self.forces {
             self.check_bodies(law.bodies(), || format!("force \"{}\"", law.name()))?;
         }
@@ -102,9 +110,36 @@ impl WorldBuilder {
         if value <= largest {
             return Ok(());
         }
+        Err(WorldError::FarConnector { connector: self.connector_name(index), largest, value })
+    }
+
+    /// Refuses stops that lie back to back on a closed rail: a point between them would be beyond one of them.
+    fn check_stops(&self) -> Result<(), WorldError> {
+        let stops = || {
+            self.connectors.iter().enumerate().filter_map(|(index, spec)| match &spec.connector.kind {
+                ConnectorKind::RailStop { a, path, at, upper } => Some((index, (a, path, *at, *upper))),
+                _ => None,
+            })
+        };
+        for (first, (a, path, at, upper)) in stops() {
+            let is_back_to_back =
+                |&(second, (other_a, other_path, other_at, other_upper)): &(usize, Stop<'_>)| {
+                    let laps = (at - other_at) / path.length();
+                    let apart = (laps - laps.round()).abs();
+                    let same = second > first && other_a == a && other_path == path && path.is_closed();
+                    same && upper != other_upper && apart < BACK_TO_BACK
+                };
+            if let Some((second, _)) = stops().find(is_back_to_back) {
+                let stops = [first, second].map(|index| self.connector_name(index));
+                return Err(WorldError::StopsBackToBack { stops });
+            }
+        }
+        Ok(())
+    }
+
+    fn connector_name(&self, index: usize) -> ConnectorName {
         let name = |body: BodyId| self.bodies.get(body.index()).map(|body| body.name.as_str());
-        let connector = ConnectorName::new(index, connector, name);
-        Err(WorldError::FarConnector { connector, largest, value })
+        ConnectorName::new(index, &self.connectors[index].connector, name)
     }
 
     fn check_bodies(&self, bodies: &[BodyId], what: impl Fn() -> String) -> Result<(), WorldError> {

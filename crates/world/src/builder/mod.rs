@@ -42,16 +42,16 @@ pub struct BodySpec {
     pub shape: Shape,
     /// Centre of mass in shape coordinates [m]; the shape's centroid if `None`.
     pub center_of_mass: Option<DVec2>,
-    /// Mass and moment of inertia; `None` for a fixed body.
+    /// Mass and moment of inertia about the centre of mass, which does not follow if that is moved; `None` for a fixed body.
     pub inertia: Option<Inertia>,
-    /// State at the start; the position is that of the centre of mass.
+    /// State at the start; the position is that of the centre of mass. A fixed body keeps neither velocity.
     pub state: BodyState,
     /// Share of the closing speed with which it leaves an impact; a pair uses the lesser.
     pub elasticity: f64,
 }
 
 impl BodySpec {
-    /// A fixed body of full elasticity.
+    /// A fixed body of full elasticity, its centroid at a position [m].
     #[must_use]
     pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
         let state = BodyState { position, ..BodyState::default() };
