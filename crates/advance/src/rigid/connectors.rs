@@ -79,7 +79,9 @@ impl RigidSystem {
                 if may_be_free && sample.gap > tolerances.accuracy {
                     continue;
                 }
-                if may_be_free && !is_stop(connector) && self.rope_grazes(id) {
+                // What neither closes nor opens is held, or may be.
+                let closes = sample.kinematics.rate < -self.rest_speed();
+                if may_be_free && !is_stop(connector) && closes && self.rope_grazes(id) {
                     continue;
                 }
                 let row = u32::try_from(row).unwrap_or(u32::MAX);

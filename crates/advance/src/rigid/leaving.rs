@@ -13,6 +13,9 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Pose, Rotation};
 
+/// What leaves does so within so many resolution times: what slides more slowly stays.
+const SOON: f64 = 1e3;
+
 impl RigidSystem {
     /// Leaves out the candidates that run off their features while they move by what a contact may be off; true if there are any. The
     /// bodies are in the stage.
@@ -26,8 +29,11 @@ impl RigidSystem {
         let Some(RowSource::Contact(features)) = self.source_of(record) else { return false };
         let bodies = [record.parties.primary.body, record.parties.normal.body];
         let wait = self.settings.tolerances.accuracy / record.motion.lateral_velocity.abs();
+        if wait.is_nan() || wait > SOON * self.settings.resolution_time {
+            return false;
+        }
         let moved = bodies.map(|body: BodyId| after(&stage.movings[body.index()], wait));
-        wait.is_finite() && self.mechanism().has_left(bodies, features, [&moved[0], &moved[1]])
+        self.mechanism().has_left(bodies, features, [&moved[0], &moved[1]])
     }
 }
 
