@@ -117,6 +117,14 @@ pub enum WorldError {
         /// Name of the body.
         body: String,
     },
+    /// A force law acts at the start on a body that it does not name: that would be ignored.
+    #[error("force \"{law}\" acts on body \"{body}\", which is not among the bodies that it names")]
+    UnnamedBody {
+        /// What the law is called.
+        law: String,
+        /// Name of the body.
+        body: String,
+    },
     /// Two bodies overlap at the start by more than is allowed.
     #[error(
         "bodies \"{first}\" and \"{second}\" overlap by {} m at the start; at most {} m are allowed",

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use halfgap::force::{ForceLaw, Snapshot, Wrenches};
 use halfgap::geometry::Shape;
-use halfgap::{BodyId, BodySpec, BodyState, Event, RunError, World, WorldBuilder, WorldSettings};
+use halfgap::{BodyId, BodySpec, BodyState, Event, RunError, World, WorldBuilder, WorldError, WorldSettings};
 use std::sync::Arc;
 
 /// Gravity [m/s^2] on a body that is no number once the body rises.
@@ -55,6 +55,39 @@ fn an_impact_after_which_nothing_can_go_on_is_told_and_so_is_every_try() {
         assert_eq!((&again, world.time()), (&failed, *time));
     }
     assert_eq!(world.advance_to(0.5, &mut |event| panic!("{event:?}")), Ok(()), "that is past");
+}
+
+/// A push on the body that is named second.
+#[derive(Debug)]
+struct Push([BodyId; 2], usize);
+
+impl ForceLaw for Push {
+    fn name(&self) -> &str {
+        "push"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.0[..self.1]
+    }
+
+    fn apply(&self, _: &Snapshot<'_>, out: &mut Wrenches<'_>) {
+        out.add_force(self.0[1], DVec2::X, DVec2::ZERO);
+    }
+}
+
+#[test]
+fn a_law_that_acts_on_a_body_it_does_not_name_is_refused() {
+    for (named, is_fine) in [(2, true), (1, false)] {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let bodies = [("first", 0.0), ("second", 5.0)].map(|(name, x)| {
+            let state = BodyState { position: DVec2::new(x, 0.0), ..BodyState::default() };
+            let disc = Shape::disc(0.5).expect("a fine radius");
+            builder.add(BodySpec::movable(name, disc, 1.0, state))
+        });
+        builder.add_force(Arc::new(Push(bodies, named)));
+        let refused = WorldError::UnnamedBody { law: "push".to_owned(), body: "second".to_owned() };
+        assert_eq!(builder.build().err(), (!is_fine).then_some(refused));
+    }
 }
 
 #[test]

@@ -79,7 +79,7 @@ pub trait ForceLaw: Debug + Send + Sync {
     fn name(&self) -> &str;
 
     /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps; what is added to a
-    /// body that is not named is ignored.
+    /// body that is not named is ignored, and refused where a world is built.
     fn bodies(&self) -> &[BodyId];
 
     /// Adds the forces and torques of this moment: a function of the snapshot alone, which is asked for as often as it takes, and not

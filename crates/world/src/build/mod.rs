@@ -130,7 +130,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
             body(second, &|_| "position")
         }
         // Laws are named after their fields.
-        WorldError::BadForce { law, .. } => law.parse().ok(),
+        WorldError::BadForce { law, .. } | WorldError::UnnamedBody { law, .. } => law.parse().ok(),
         WorldError::StopsBackToBack { stops: [_, connector] }
         | WorldError::ConnectorError { connector, .. }
         | WorldError::CannotConnect { connector, .. }

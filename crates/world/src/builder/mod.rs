@@ -289,6 +289,12 @@ impl WorldBuilder {
                 let body = self.bodies[bad].name.clone();
                 return Err(WorldError::BadForce { law: law.name().to_owned(), body });
             }
+            let is_unnamed = |index: usize| !law.bodies().iter().any(|body| body.index() == index);
+            let mut pushed = own.iter().enumerate().filter(|(_, sum)| **sum != Wrench::default());
+            if let Some((unnamed, _)) = pushed.find(|&(index, _)| is_unnamed(index)) {
+                let body = self.bodies[unnamed].name.clone();
+                return Err(WorldError::UnnamedBody { law: law.name().to_owned(), body });
+            }
         }
         Ok(wrenches_of(&self.forces, &now, count))
     }
