@@ -149,7 +149,7 @@ fn a_corner_takes_what_is_across_it_whichever_way_it_turns() {
 
 #[test]
 fn a_bead_that_comes_to_rest_in_a_corner_of_its_rail_is_told() {
-    for half in [0.35f64, 0.5, 0.785_398_163_397_448_3] {
+    for half in [0.35, 0.5, std::f64::consts::FRAC_PI_4] {
         let (sin, cos) = half.sin_cos();
         let mut world = world_of(&format!(
             "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 1000.0 }}\n\

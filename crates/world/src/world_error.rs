@@ -91,7 +91,7 @@ pub enum WorldError {
     #[error("{} and {} lie back to back on a closed path: on one that is open there, its ends can be stopped", stops[0], stops[1])]
     StopsBackToBack {
         /// The stops.
-        stops: [ConnectorName; 2],
+        stops: Box<[ConnectorName; 2]>,
     },
     /// Connectors cannot all be put together at the start.
     #[error("{connector} cannot be put together at the start: {} m remain", Rounded(*error))]

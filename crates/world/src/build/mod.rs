@@ -7,7 +7,7 @@ pub(crate) mod settings;
 use crate::builder::{BodySpec, WorldBuilder};
 use crate::scene::{BodyData, EdgeData, FieldPath, PathData, Scene, SceneError, ShapeData, WORLD};
 use crate::world::{Inertia, World};
-use crate::world_error::WorldError;
+use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
 
@@ -131,8 +131,11 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         }
         // Laws are named after their fields.
         WorldError::BadForce { law, .. } | WorldError::UnnamedBody { law, .. } => law.parse().ok(),
-        WorldError::StopsBackToBack { stops: [_, connector] }
-        | WorldError::ConnectorError { connector, .. }
+        WorldError::StopsBackToBack { stops } => {
+            let ConnectorName { index, kind, .. } = &stops[1];
+            Some(top.field("connector").element(*index).field(*kind))
+        }
+        WorldError::ConnectorError { connector, .. }
         | WorldError::CannotConnect { connector, .. }
         | WorldError::FarConnector { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {

@@ -130,7 +130,7 @@ impl WorldBuilder {
                     same && upper != other_upper && apart < BACK_TO_BACK
                 };
             if let Some((second, _)) = stops().find(is_back_to_back) {
-                let stops = [first, second].map(|index| self.connector_name(index));
+                let stops = Box::new([first, second].map(|index| self.connector_name(index)));
                 return Err(WorldError::StopsBackToBack { stops });
             }
         }
