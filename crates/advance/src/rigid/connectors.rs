@@ -35,8 +35,6 @@ pub(crate) struct ConnectorState {
     slack: f64,
     /// The rope is taut and held.
     held: bool,
-    /// It is taut without force, and its group watches it.
-    watched: bool,
     /// When the rope went taut last, and how often before that without time going by.
     last_taut: Option<Time>,
     repeats: u32,
@@ -75,13 +73,12 @@ impl RigidSystem {
             let tolerances = &self.settings.tolerances;
             for row in 0..connector.row_count() {
                 let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
-                let may_be_free = !connector.is_bilateral();
-                if may_be_free && sample.gap > tolerances.accuracy {
+                if !connector.is_bilateral() && sample.gap > tolerances.accuracy {
                     continue;
                 }
                 // What neither closes nor opens is held, or may be.
                 let closes = sample.kinematics.rate < -self.rest_speed();
-                if may_be_free && !is_stop(connector) && closes && self.rope_grazes(id) {
+                if is_rope(connector) && closes && self.rope_grazes(id) {
                     continue;
                 }
                 let row = u32::try_from(row).unwrap_or(u32::MAX);
@@ -183,10 +180,8 @@ impl RigidSystem {
                 let sample = self.connector(id).measure(0, &a, &b);
                 let at_rest = sample.kinematics.rate <= self.rest_speed();
                 let touches = sample.gap <= self.settings.tolerances.accuracy;
-                let is_watched = self.is_rope_watched(id);
                 let state = &mut self.connector_states[id.index()];
                 state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
-                state.watched = is_watched;
                 state.slack = if at_rest && touches { sink + (-sample.gap).max(0.0) } else { 0.0 };
                 state.slack += f64::from(state.repeats_at(self.now)) * sink;
                 state.clear = self.now;
@@ -211,8 +206,7 @@ impl RigidSystem {
     fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
         let source = self.connector_source(id);
         self.connector_states[id.index()].taut = None;
-        let state = &self.connector_states[id.index()];
-        if state.held || (state.watched && self.is_rope_watched(id)) {
+        if self.connector_states[id.index()].held || self.is_rope_watched(id) {
             self.queue.clear(source);
             return;
         }
@@ -323,7 +317,7 @@ fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
 
 /// True for a rope.
 pub(crate) fn is_rope(connector: &Connector) -> bool {
-    matches!(connector.kind, ConnectorKind::Rope { .. })
+    rope_of(connector).is_some()
 }
 
 /// The rope of a connector, if it is one.

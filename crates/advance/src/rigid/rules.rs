@@ -45,7 +45,7 @@ impl RigidSystem {
             let is_held = settling.holds_touch(*touch);
             let rule: FeatureRule = if is_held || self.is_watched(*touch) {
                 touch.skipped()
-            } else if settling.passing.contains(touch) {
+            } else if settling.lets_pass(*touch) {
                 touch.lowered_to(self.grazing_gap(touch.bodies))
             } else {
                 // What fired although it does not close would do so again at once. It may sink no farther than its zone.

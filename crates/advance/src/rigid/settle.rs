@@ -168,7 +168,7 @@ impl RigidSystem {
 
     /// True if a record of a region, given with its place, may hop, and is not let go.
     fn could_hop(&self, region: &Region, settling: &Settling, (index, record): (usize, &Collision)) -> bool {
-        let passes = || Touch::of(record).is_some_and(|touch| settling.passing.contains(&touch));
+        let passes = || Touch::of(record).is_some_and(|touch| settling.lets_pass(touch));
         !settling.leaves(index) && self.holds(record) && self.may_hop(region, record) && !passes()
     }
 

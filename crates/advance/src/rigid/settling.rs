@@ -168,6 +168,11 @@ impl Settling {
         self.lenient.solve(&self.problem, &mut self.solution)
     }
 
+    /// True if a contact was left out because it holds by next to no lever.
+    pub(crate) fn lets_pass(&self, touch: Touch) -> bool {
+        self.passing.contains(&touch)
+    }
+
     /// True if a contact is held from now on.
     pub(crate) fn holds_touch(&self, touch: Touch) -> bool {
         self.touches.binary_search(&touch).is_ok()
