@@ -4,7 +4,7 @@
 //! not even know bodies, and has no dependencies but an error macro.
 //!
 //! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in an
-//! [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`]. Outputs are read from segments and change
+//! [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as its caller wants. Outputs are read from segments and change
 //! nothing.
 //!
 //! # Code map
@@ -26,5 +26,5 @@ mod system;
 mod time;
 
 pub use queue::{EventQueue, Scheduled, SourceId};
-pub use system::{EventDriven, advance_until};
+pub use system::{EventDriven, advance_until, advance_while};
 pub use time::Time;

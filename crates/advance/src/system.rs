@@ -1,6 +1,7 @@
 //! What a system must be able to do to be advanced event by event, and the loop that does it.
 
 use crate::time::Time;
+use std::ops::ControlFlow;
 
 /// A system that predicts its events and handles them one by one.
 pub trait EventDriven {
@@ -32,12 +33,31 @@ pub fn advance_until<S: EventDriven>(
     until: Time,
     mut on_report: impl FnMut(&S, &S::Report),
 ) -> Result<(), S::Error> {
+    let outcome = advance_while(system, until, |system, report| {
+        on_report(system, report);
+        ControlFlow::Continue(())
+    });
+    outcome.map(|_| ())
+}
+
+/// The same, but no further than the first event of which `on_report` says [`ControlFlow::Break`]. Those that come after it, be it
+/// at the same time, are handled by the next advance, just as if it had not stopped.
+///
+/// # Errors
+/// As [`advance_until`].
+pub fn advance_while<S: EventDriven>(
+    system: &mut S,
+    until: Time,
+    mut on_report: impl FnMut(&S, &S::Report) -> ControlFlow<()>,
+) -> Result<ControlFlow<()>, S::Error> {
     let is_number = !until.seconds().is_nan();
     while is_number && system.next_event().is_some_and(|time| time <= until) {
-        if let Some(report) = system.handle_next()? {
-            on_report(system, &report);
+        if let Some(report) = system.handle_next()?
+            && on_report(system, &report).is_break()
+        {
+            return Ok(ControlFlow::Break(()));
         }
     }
     system.arrive();
-    Ok(())
+    Ok(ControlFlow::Continue(()))
 }

@@ -77,6 +77,7 @@ fn push_ledger(text: &mut String, ledger: &Ledger) {
         ("impacts", ledger.impacts),
         ("captures", ledger.captures),
         ("projections", ledger.projections),
+        ("interventions", ledger.interventions),
         ("damping", ledger.damping),
     ];
     let laws = ledger.laws.iter().map(|law| (law.law.as_str(), law.work));

@@ -20,6 +20,8 @@ pub struct Ledger {
     pub captures: f64,
     /// Projections onto contacts and connectors [J].
     pub projections: f64,
+    /// [Interventions](crate::World::intervene) [J]: what they change before anything responds to them.
+    pub interventions: f64,
     /// Work of linear and angular damping [J].
     pub damping: f64,
     /// Work of each force law that has no potential, in the order of the laws [J].
@@ -41,7 +43,7 @@ impl Ledger {
     #[must_use]
     pub fn booked(&self) -> f64 {
         let laws: f64 = self.laws.iter().map(|law| law.work).sum();
-        self.impacts + self.captures + self.projections + self.damping + laws
+        self.impacts + self.captures + self.projections + self.interventions + self.damping + laws
     }
 
     /// What remains: the error of the integration [J].
@@ -113,10 +115,11 @@ mod tests {
             impacts: -2.0,
             captures: -0.5,
             projections: 0.25,
+            interventions: 10.0,
             damping: -1.0,
             laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],
         };
-        assert_eq!(ledger.booked(), -2.75);
-        assert_eq!(ledger.integration_error(), -0.25);
+        assert_eq!(ledger.booked(), 7.25);
+        assert_eq!(ledger.integration_error(), -10.25);
     }
 }

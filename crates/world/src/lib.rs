@@ -3,7 +3,7 @@
 //! A [`World`] is bodies in motion: built in code by a [`WorldBuilder`], or (feature `scene`, on by default) from a scene
 //! file. It advances from event to event: what is read in between changes nothing. Bodies fly, collide, rest and slide on
 //! each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move them; [`Event`]s tell of impacts and of contacts
-//! that begin and end, [`World::contact_forces`] of what holds, [`World::ledger`] of where the energy went. Friction is not
+//! that begin and end, [`World::intervene`] strikes bodies, [`World::contact_forces`] of what holds, [`World::ledger`] of where the energy went. Friction is not
 //! simulated yet.
 //!
 //! *Invariant*: this crate prints nothing, and leaves geometry, collisions, contacts and events to the layers below.
@@ -39,6 +39,7 @@ mod estimate;
 mod event;
 mod finding;
 pub mod force;
+mod intervention;
 mod ledger;
 mod near;
 mod overlap;
@@ -77,6 +78,7 @@ pub use halfgap_collision::{
 pub use finding::Finding;
 pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
+pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
 pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording};

@@ -193,7 +193,8 @@ impl Serialize for StatisticsResult {
 /// All sums in J; what was booked, and the error that remains.
 impl Serialize for Ledger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut ledger = serializer.serialize_struct("Ledger", 10)?;
+        let mut ledger =
+            serializer.serialize_struct("Ledger", 10 + usize::from(self.interventions != 0.0))?;
         ledger.serialize_field("start", &self.start)?;
         ledger.serialize_field("start_correction", &self.start_correction)?;
         ledger.serialize_field("kinetic", &self.now.kinetic)?;
@@ -201,6 +202,11 @@ impl Serialize for Ledger {
         ledger.serialize_field("impacts", &self.impacts)?;
         ledger.serialize_field("captures", &self.captures)?;
         ledger.serialize_field("projections", &self.projections)?;
+        if self.interventions == 0.0 {
+            ledger.skip_field("interventions")?;
+        } else {
+            ledger.serialize_field("interventions", &self.interventions)?;
+        }
         ledger.serialize_field("damping", &self.damping)?;
         ledger.serialize_field("laws", &self.laws)?;
         ledger.serialize_field("integration_error", &self.integration_error())?;

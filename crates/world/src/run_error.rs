@@ -147,6 +147,24 @@ pub enum RunError {
     /// The time to advance to is infinite, or not a number.
     #[error("cannot advance to a time that is not a finite number")]
     NotATime,
+    /// There is no such body to do something to.
+    #[error("there is no body {} in this world", body.0)]
+    NoSuchBody {
+        /// The body.
+        body: BodyId,
+    },
+    /// Nothing can be done to a fixed body.
+    #[error("body \"{body}\" is fixed: nothing moves it")]
+    Immovable {
+        /// Name of the body.
+        body: String,
+    },
+    /// What is to be done to a body is not finite; nothing was done.
+    #[error("what is done to body \"{body}\" must be finite")]
+    BadIntervention {
+        /// Name of the body.
+        body: String,
+    },
     /// A plan cannot be followed; nothing was run.
     #[error("the plan's {field} must be {rule}, got {value} s")]
     BadPlan {
@@ -188,7 +206,12 @@ impl RunError {
             | Self::Pressed { time, .. }
             | Self::InCorner { time, .. }
             | Self::Stuck { time, .. } => Some(*time),
-            Self::NotATime | Self::BadPlan { .. } | Self::Advance(_) => None,
+            Self::NotATime
+            | Self::NoSuchBody { .. }
+            | Self::Immovable { .. }
+            | Self::BadIntervention { .. }
+            | Self::BadPlan { .. }
+            | Self::Advance(_) => None,
         }
     }
 

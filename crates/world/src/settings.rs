@@ -18,6 +18,9 @@ pub struct WorldSettings {
     pub duration: Option<f64>,
     /// Relative accuracy asked for.
     pub tolerance: f64,
+    /// A speed [m/s] that is usual in the world, where its start does not tell: thresholds and errors of velocity are relative to it, or
+    /// to what the start tells if that is more.
+    pub usual_speed: Option<f64>,
     /// Thresholds given in place of derived ones.
     pub overrides: ToleranceOverrides,
     /// How deep bodies may overlap at the start [m]; 1e-6 of the smallest movable body's radius if `None`.
@@ -114,6 +117,7 @@ impl Default for WorldSettings {
             start_time: 0.0,
             duration: None,
             tolerance: DEFAULT_TOLERANCE,
+            usual_speed: None,
             overrides: ToleranceOverrides::default(),
             start_overlap: None,
             impact_law: ImpactLaw::default(),

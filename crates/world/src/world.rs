@@ -6,10 +6,13 @@ use crate::ledger::{Books, LawWork, Ledger};
 use crate::run_error::RunError;
 use crate::sentry::Sentry;
 use glam::DVec2;
-use halfgap_advance::rigid::{ImpactReport, Ledger as Booked, RigidSettings, RigidSystem, RowForce};
-use halfgap_advance::{Time, advance_until};
+use halfgap_advance::rigid::{
+    AdvanceError, Handled, ImpactReport, Ledger as Booked, RigidSettings, RigidSystem, RowForce,
+};
+use halfgap_advance::{Time, advance_while};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// What messages and recordings call the background.
@@ -81,15 +84,15 @@ pub struct Inertia {
 /// Bodies in motion. Made by a [`WorldBuilder`](crate::WorldBuilder) or from a scene.
 #[derive(Clone, Debug)]
 pub struct World {
-    system: RigidSystem,
+    pub(crate) system: RigidSystem,
     bodies: Vec<Named>,
     forces: Vec<Arc<dyn ForceLaw>>,
     pub(crate) connectors: Vec<Connector>,
-    now: Time,
+    pub(crate) now: Time,
     warnings: Vec<String>,
     pub(crate) start: Start,
     /// The last impact told, always of that kind: its buffers are used again and again.
-    told: Event,
+    pub(crate) told: Event,
     pub(crate) sentry: Sentry,
 }
 
@@ -206,6 +209,7 @@ impl World {
             booked: booked.impacts
                 + booked.captures
                 + booked.projections
+                + booked.interventions
                 + booked.damping
                 + works(|work| work),
             captures: booked.captures,
@@ -226,6 +230,7 @@ impl World {
             impacts: books.impacts,
             captures: books.captures,
             projections: books.projections,
+            interventions: books.interventions,
             damping: books.damping,
             laws: laws.map(|(_, (law, &work))| LawWork { law: law.name().to_owned(), work }).collect(),
         }
@@ -324,6 +329,23 @@ impl World {
     /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever wants to go on beyond it
     /// is told the same again. What must hold does not any more at that time. The time is not finite.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
+        let outcome = self.advance_while(time, &mut |event| {
+            on_event(event);
+            ControlFlow::Continue(())
+        });
+        outcome.map(|_| ())
+    }
+
+    /// The same, but no further than the first event of which `on_event` says [`ControlFlow::Break`]: the world is then at its time, and
+    /// the answer is that. What happens at once is told to the end; advancing on goes on as if there had been no stop.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_while(
+        &mut self,
+        time: f64,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RunError> {
         if !time.is_finite() {
             return Err(RunError::NotATime);
         }
@@ -331,29 +353,55 @@ impl World {
         let until = Time::from_seconds(time);
         self.system.expect(self.sentry.duration.max(time - self.time()));
         let (system, told) = (&mut self.system, &mut self.told);
-        let outcome = advance_until(system, until, |system, handled| {
-            if handled.impact {
-                write_impact(told, system.last_impact());
-                on_event(told);
-            }
-            let changes = system.contact_changes();
-            let told_of = |row: &RowForce| ContactEvent {
-                time: changes.time.seconds(),
-                contact: contact_force(row),
-                bouncing: row.bouncing,
-            };
-            changes.end.iter().for_each(|row| on_event(&Event::ContactEnds(told_of(row))));
-            changes.begin.iter().for_each(|row| on_event(&Event::ContactBegins(told_of(row))));
-        });
+        let outcome = advance_while(system, until, |system, handled| tell(told, system, *handled, on_event));
+        let reached =
+            if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.system.now() };
+        self.conclude(outcome, reached, has_failed, on_event)
+    }
+
+    /// Takes note of how far the system has come, with its last words if it cannot go on.
+    pub(crate) fn conclude(
+        &mut self,
+        outcome: Result<ControlFlow<()>, AdvanceError>,
+        reached: Time,
+        has_failed: bool,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RunError> {
         if let Some(impact) = self.system.untold_impact().filter(|_| !has_failed) {
             write_impact(&mut self.told, impact);
-            on_event(&self.told);
+            // There is no going on.
+            let _ = on_event(&self.told);
         }
-        let reached = if outcome.is_ok() { until } else { self.system.now() };
         self.now = self.now.max(reached);
         let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));
         self.stand_guard(outcome)
     }
+}
+
+/// Tells of an event that was handled, the impact in a buffer that is used again and again; whether somebody wants to stop there.
+pub(crate) fn tell(
+    told: &mut Event,
+    system: &RigidSystem,
+    handled: Handled,
+    on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let mut stops = false;
+    if handled.impact {
+        write_impact(told, system.last_impact());
+        stops |= on_event(told).is_break();
+    }
+    let changes = system.contact_changes();
+    let told_of = |row: &RowForce| ContactEvent {
+        time: changes.time.seconds(),
+        contact: contact_force(row),
+        bouncing: row.bouncing,
+    };
+    let ends = changes.end.iter().map(|row| Event::ContactEnds(told_of(row)));
+    let begins = changes.begin.iter().map(|row| Event::ContactBegins(told_of(row)));
+    for event in ends.chain(begins) {
+        stops |= on_event(&event).is_break();
+    }
+    if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 fn contact_force(row: &RowForce) -> ContactForce {

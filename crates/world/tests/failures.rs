@@ -3,7 +3,10 @@
 use glam::DVec2;
 use halfgap::force::{ForceLaw, Snapshot, Wrenches};
 use halfgap::geometry::Shape;
-use halfgap::{BodyId, BodySpec, BodyState, Event, RunError, World, WorldBuilder, WorldError, WorldSettings};
+use halfgap::{
+    BodyId, BodySpec, BodyState, Event, Intervention, RunError, World, WorldBuilder, WorldError,
+    WorldSettings,
+};
 use std::sync::Arc;
 
 /// Gravity [m/s^2] on a body that is no number once the body rises.
@@ -42,7 +45,7 @@ fn falling_ball() -> (World, BodyId) {
 
 #[test]
 fn an_impact_after_which_nothing_can_go_on_is_told_and_so_is_every_try() {
-    let (mut world, _) = falling_ball();
+    let (mut world, ball) = falling_ball();
     let mut events: Vec<Event> = Vec::new();
     let failed = world.advance_to(2.0, &mut |event| events.push(event.clone()));
     let Err(RunError::StepCollapsed { time, .. }) = &failed else { panic!("{failed:?}") };
@@ -55,6 +58,8 @@ fn an_impact_after_which_nothing_can_go_on_is_told_and_so_is_every_try() {
         assert_eq!((&again, world.time()), (&failed, *time));
     }
     assert_eq!(world.advance_to(0.5, &mut |event| panic!("{event:?}")), Ok(()), "that is past");
+    let down = Intervention::Velocity { body: ball, velocity: DVec2::NEG_Y, angular_velocity: 0.0 };
+    assert_eq!(world.intervene(&[down], &mut |event| panic!("{event:?}")), failed, "nothing helps any more");
 }
 
 /// A push on the body that is named second.

@@ -291,7 +291,7 @@ impl RigidSystem {
     }
 
     /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
-    fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+    pub(crate) fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
         work.region.in_storm = self.note_events(&work.region);
         let is_storm = work.region.in_storm || work.repeats > 0;

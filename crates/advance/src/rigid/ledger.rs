@@ -9,6 +9,8 @@ pub struct Ledger {
     pub captures: f64,
     /// Projections onto held rows.
     pub projections: f64,
+    /// What somebody outside did by changing velocities.
+    pub interventions: f64,
     /// Work of damping.
     pub damping: f64,
     /// Work of each force law that has no potential, in their order; 0 for the others.

@@ -9,8 +9,8 @@
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
 //! contact (`marks` tells who is near), `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
 //! collects the bodies that touch, `cutting` takes them to the event's time, `groups` merges and splits groups, `impacts` applies impulses, `settle` finds what is held,
-//! `rules` tells the search what to leave alone, `bounces` and `hops` tell those that are too low to count, `repeats` what fires again at one time, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `ledger`
-//! keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
+//! `rules` tells the search what to leave alone, `bounces` and `hops` tell those that are too low to count, `repeats` what fires again at one time, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `intervention` is what somebody outside does to
+//! bodies; `ledger` keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod bounces;
 mod boxes;
@@ -32,6 +32,7 @@ mod group;
 mod groups;
 mod hops;
 mod impacts;
+mod intervention;
 mod jams;
 mod kinks;
 mod lane;
@@ -72,6 +73,7 @@ pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
 pub use impacts::{ImpactReport, RowReport};
+pub use intervention::VelocityChange;
 pub use law::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use ledger::Ledger;
 pub use report::{ContactChanges, RowForce};

@@ -159,10 +159,10 @@ impl RigidSystem {
 
     /// Writes what [`Self::ledger_at`] tells, in place of what is there.
     pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
-        let Ledger { impacts, captures, projections, damping, ref laws } = self.ledger;
+        let Ledger { impacts, captures, projections, interventions, damping, ref laws } = self.ledger;
         let mut room = std::mem::take(&mut ledger.laws);
         room.clone_from(laws);
-        *ledger = Ledger { impacts, captures, projections, damping, laws: room };
+        *ledger = Ledger { impacts, captures, projections, interventions, damping, laws: room };
         for group in self.groups.by_leader.iter().flatten() {
             let offset = time.since(group.start);
             for (&work, path) in group.works.iter().zip(group.work_paths()) {

@@ -391,6 +391,29 @@ impl RigidSystem {
         SourceId(self.first_pair_source().saturating_add(pair.0))
     }
 
+    /// Something happens at a time, which says whether it was an impact; `None` if nobody outside needs to know.
+    pub(crate) fn happen(
+        &mut self,
+        time: Time,
+        act: impl FnOnce(&mut Self) -> Result<bool, AdvanceError>,
+    ) -> Result<Option<Handled>, AdvanceError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
+        self.counts.events += 1;
+        self.has_hit = false;
+        self.now = time;
+        self.changes.clear(time);
+        let outcome = act(self);
+        self.changes.time = self.now;
+        if outcome.as_ref().is_ok_and(|impact| !impact && self.changes.is_empty()) {
+            return Ok(None);
+        }
+        self.complete_dense();
+        self.failure = outcome.as_ref().err().cloned();
+        outcome.map(|impact| Some(Handled { time: self.now, impact }))
+    }
+
     fn handle(&mut self, source: SourceId) -> Result<bool, AdvanceError> {
         if let Some(pair) = source.0.checked_sub(self.first_pair_source()).map(PairId) {
             if let Prediction::Contact(features) = self.pairs.get(pair).prediction {
@@ -426,22 +449,8 @@ impl EventDriven for RigidSystem {
     /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no going on from it, and
     /// it is told again whenever that is tried.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
-        if let Some(failure) = &self.failure {
-            return Err(failure.clone());
-        }
         let Some(event) = self.queue.first() else { return Ok(None) };
-        self.counts.events += 1;
-        self.has_hit = false;
-        self.now = event.time;
-        self.changes.clear(event.time);
-        let outcome = self.handle(event.source);
-        self.changes.time = self.now;
-        if outcome.as_ref().is_ok_and(|impact| !impact && self.changes.is_empty()) {
-            return Ok(None);
-        }
-        self.complete_dense();
-        self.failure = outcome.as_ref().err().cloned();
-        outcome.map(|impact| Some(Handled { time: self.now, impact }))
+        self.happen(event.time, |system| system.handle(event.source))
     }
 
     fn arrive(&mut self) {

@@ -11,6 +11,7 @@ pub(crate) fn of_run(run: &RunData) -> WorldSettings {
         start_time: run.start_time,
         duration: Some(run.duration),
         tolerance: run.tolerance,
+        usual_speed: None,
         overrides: ToleranceOverrides {
             target_gap: run.target_gap,
             accuracy: run.accuracy,

@@ -59,6 +59,7 @@ impl WorldBuilder {
             ("accuracy", self.settings.overrides.accuracy),
             ("velocity_tol", self.settings.overrides.velocity_tol),
             ("time_step", self.settings.time_step),
+            ("usual_speed", self.settings.usual_speed),
         ];
         for (setting, value) in positive {
             if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {

@@ -300,7 +300,7 @@ impl WorldBuilder {
     }
 
     fn scales(&self, wrenches: &[Wrench]) -> Scales {
-        let mut scales = Scales::default();
+        let mut scales = Scales { speed: self.settings.usual_speed.unwrap_or_default(), ..Scales::default() };
         let of_connectors = self.connectors.iter().filter_map(|spec| world_bounds(&spec.connector));
         let mut bounds = of_connectors.reduce(Aabb::union);
         for ((body, law), wrench) in self.bodies.iter().zip(&self.laws).zip(wrenches) {

@@ -1,0 +1,105 @@
+//! What somebody outside does to bodies: their velocities change at once, and what touches or ties them responds as to an
+//! impact. Forces that last are laws.
+
+use super::error::AdvanceError;
+use super::events::EventWork;
+use super::storms::Recent;
+use super::system::{Handled, RigidSystem};
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState};
+
+/// A change of the velocities of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityChange {
+    /// The body; a fixed one, or the background, stays as it is.
+    pub body: BodyId,
+    /// Change of the velocity of the centre of mass [m/s].
+    pub velocity: DVec2,
+    /// Change of the angular velocity [rad/s].
+    pub angular_velocity: f64,
+}
+
+impl RigidSystem {
+    /// Changes velocities of bodies at a time, all at once: connectors and contacts against which they move then respond by
+    /// the impact law. The times of events that come first must have been reached; a time before that of the last event counts
+    /// as that. What the changes do to the energy is in the ledger's `interventions`.
+    ///
+    /// # Errors
+    /// As of an event: the impact, or the forces after it, cannot be found. There is no going on from that.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn intervene(
+        &mut self,
+        time: Time,
+        changes: &[VelocityChange],
+    ) -> Result<Option<Handled>, AdvanceError> {
+        let outcome = self.happen(time.max(self.now), |system| {
+            let mut work = system.work.take().unwrap_or_default();
+            let outcome = system.change_velocities(&mut work, changes);
+            system.work = Some(work);
+            outcome
+        });
+        self.complete_dense();
+        outcome
+    }
+
+    fn change_velocities(
+        &mut self,
+        work: &mut EventWork,
+        changes: &[VelocityChange],
+    ) -> Result<bool, AdvanceError> {
+        work.seeds.clear();
+        work.seeds.extend(changes.iter().map(|change| change.body).filter(|&body| self.is_movable(body)));
+        if work.seeds.is_empty() {
+            return Ok(false);
+        }
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        self.cut_groups(&mut work.region);
+        for change in changes {
+            if self.is_movable(change.body) {
+                self.change_velocity(change);
+            }
+        }
+        self.forget_past(work);
+        // What touches is told by the velocities: they are others now.
+        work.seeds.clear();
+        work.seeds.extend(&work.region.bodies);
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        self.collide(work)
+    }
+
+    /// Changes the velocities of a body in flight.
+    fn change_velocity(&mut self, change: &VelocityChange) {
+        let &VelocityChange { body, velocity, angular_velocity } = change;
+        self.restart_flight(body, self.now);
+        let before = self.flyer(body).unwound_at(self.now);
+        self.ledger.interventions += self.work_of(body, &before, change);
+        let now = self.now;
+        self.flyer_mut(body).cut(now, velocity, angular_velocity);
+    }
+
+    /// Change of the kinetic energy [J] of a body in a state.
+    fn work_of(&self, body: BodyId, before: &BodyState, change: &VelocityChange) -> f64 {
+        let inertia = self.inertia(body);
+        let linear = change.velocity.dot(before.velocity + 0.5 * change.velocity) / inertia.inverse_mass;
+        let spin = before.angular_velocity + 0.5 * change.angular_velocity;
+        linear + change.angular_velocity * spin / inertia.inverse_moment
+    }
+
+    /// What comes now is no echo of what was: no storm, and no bounce that has become low.
+    fn forget_past(&mut self, work: &EventWork) {
+        for &body in &work.region.bodies {
+            self.recent[body.index()] = Recent::default();
+            let mut links = std::mem::take(&mut self.links);
+            links.clear();
+            links.extend_from_slice(self.pairs.of_body(body));
+            for link in &links {
+                self.pairs.seen_mut(link.pair).clear();
+            }
+            self.links = links;
+        }
+        self.forget_paces(&work.region.bodies);
+    }
+}

@@ -1,0 +1,157 @@
+//! What a user does to a world while it runs: velocities and impulses. What is built in is in `builder`.
+
+use crate::event::Event;
+use crate::run_error::RunError;
+use crate::world::{World, tell};
+use glam::DVec2;
+use halfgap_advance::rigid::VelocityChange;
+use halfgap_collision::{BodyId, BodyState};
+use std::ops::ControlFlow;
+
+/// Something that is done to a body at one moment; where it is does not change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Intervention {
+    /// It moves with this velocity from now on.
+    Velocity {
+        /// The body.
+        body: BodyId,
+        /// Velocity of its centre of mass [m/s].
+        velocity: DVec2,
+        /// Angular velocity, counter-clockwise [rad/s].
+        angular_velocity: f64,
+    },
+    /// An impulse acts on it.
+    Impulse {
+        /// The body.
+        body: BodyId,
+        /// The impulse [N s].
+        impulse: DVec2,
+        /// The point at which it acts [m], in world coordinates.
+        point: DVec2,
+    },
+    /// It is turned by an impulse that does not push it.
+    AngularImpulse {
+        /// The body.
+        body: BodyId,
+        /// The angular impulse, counter-clockwise [N m s].
+        impulse: f64,
+    },
+}
+
+impl Intervention {
+    fn body(&self) -> BodyId {
+        match *self {
+            Self::Velocity { body, .. } | Self::Impulse { body, .. } | Self::AngularImpulse { body, .. } => {
+                body
+            }
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        match *self {
+            Self::Velocity { velocity, angular_velocity, .. } => {
+                velocity.is_finite() && angular_velocity.is_finite()
+            }
+            Self::Impulse { impulse, point, .. } => impulse.is_finite() && point.is_finite(),
+            Self::AngularImpulse { impulse, .. } => impulse.is_finite(),
+        }
+    }
+}
+
+impl World {
+    /// Does something to bodies at the present time, all at once and in the order given. Connectors and contacts against which
+    /// they then move respond by the world's impact law, as an [`Impact`](crate::Impact) that is told of: an impulse on the
+    /// lowest of a stack is felt by all of it, and a velocity that connectors do not allow does not come about. Velocities that
+    /// belong together, as those of a linkage, are given in one call.
+    ///
+    /// Thresholds and steps follow the scales of the world as it was built: say so there if what comes is much faster
+    /// ([`WorldSettings::usual_speed`](crate::WorldSettings::usual_speed)).
+    ///
+    /// ```
+    /// use halfgap::geometry::{DVec2, Shape};
+    /// use halfgap::{BodySpec, BodyState, Intervention, WorldBuilder, WorldSettings};
+    ///
+    /// let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(2.0), ..WorldSettings::default() });
+    /// let puck = builder.add(BodySpec::movable("puck", Shape::disc(0.1)?, 0.5, BodyState::default()));
+    /// let mut world = builder.build()?;
+    /// let (impulse, point) = (DVec2::new(1.0, 0.0), DVec2::new(0.0, 0.05));
+    /// world.intervene(&[Intervention::Impulse { body: puck, impulse, point }], &mut |_| ())?;
+    /// world.advance_to(3.0, &mut |_| ())?;
+    /// assert_eq!(world.state(puck).position, DVec2::new(6.0, 0.0));
+    /// assert!(world.state(puck).angular_velocity < 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A body that is fixed, or not there, or a number that is not finite: then nothing is done. The impact, or the forces after it, cannot
+    /// be found: then there is no going on, as after such an error of [`advance_to`](Self::advance_to).
+    pub fn intervene(
+        &mut self,
+        interventions: &[Intervention],
+        on_event: &mut dyn FnMut(&Event),
+    ) -> Result<(), RunError> {
+        interventions.iter().try_for_each(|intervention| self.check_intervention(intervention))?;
+        let changes = self.changes_by(interventions);
+        let has_failed = self.system.failure().is_some();
+        let outcome = self.system.intervene(self.now, &changes);
+        let mut go_on = |event: &Event| {
+            on_event(event);
+            ControlFlow::Continue(())
+        };
+        let outcome = outcome.map(|handled| match handled {
+            Some(handled) => tell(&mut self.told, &self.system, handled, &mut go_on),
+            None => ControlFlow::Continue(()),
+        });
+        let reached = self.system.now();
+        self.conclude(outcome, reached, has_failed, &mut go_on).map(|_| ())
+    }
+
+    fn check_intervention(&self, intervention: &Intervention) -> Result<(), RunError> {
+        let body = intervention.body();
+        if body.is_world() || body.index() >= self.body_count() {
+            return Err(RunError::NoSuchBody { body });
+        }
+        let name = || self.name(body).to_owned();
+        if self.is_fixed(body) {
+            return Err(RunError::Immovable { body: name() });
+        }
+        if !intervention.is_finite() {
+            return Err(RunError::BadIntervention { body: name() });
+        }
+        Ok(())
+    }
+
+    /// What interventions, each after those before it, change of the velocities.
+    fn changes_by(&self, interventions: &[Intervention]) -> Vec<VelocityChange> {
+        let mut changes: Vec<VelocityChange> = Vec::with_capacity(interventions.len());
+        for intervention in interventions {
+            let body = intervention.body();
+            let state = self.state(body);
+            let before = changes.iter().filter(|change| change.body == body);
+            let (velocity, spin) = before.fold((state.velocity, state.angular_velocity), |sum, change| {
+                (sum.0 + change.velocity, sum.1 + change.angular_velocity)
+            });
+            let now = BodyState { velocity, angular_velocity: spin, ..state };
+            let (velocity, angular_velocity) = self.change_by(intervention, &now);
+            changes.push(VelocityChange { body, velocity, angular_velocity });
+        }
+        changes
+    }
+
+    /// Change of the velocity [m/s] and angular velocity [rad/s] of a body in a state.
+    fn change_by(&self, intervention: &Intervention, now: &BodyState) -> (DVec2, f64) {
+        let of_impulse = |impulse: DVec2, angular: f64| match self.inertia(intervention.body()) {
+            Some(inertia) => (impulse / inertia.mass, angular / inertia.moment),
+            None => (DVec2::ZERO, 0.0),
+        };
+        match *intervention {
+            Intervention::Velocity { velocity, angular_velocity, .. } => {
+                (velocity - now.velocity, angular_velocity - now.angular_velocity)
+            }
+            Intervention::Impulse { impulse, point, .. } => {
+                of_impulse(impulse, (point - now.position).perp_dot(impulse))
+            }
+            Intervention::AngularImpulse { impulse, .. } => of_impulse(DVec2::ZERO, impulse),
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! What a user does to a world while it runs, and stops at events of his choice.
+
+use glam::DVec2;
+use halfgap::geometry::Shape;
+use halfgap::{
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Intervention, World,
+    WorldBuilder, WorldSettings,
+};
+use std::ops::ControlFlow;
+
+const GRAVITY: f64 = 10.0;
+
+/// Discs of 1 kg and 0.5 m that rest on each other on a floor at y = 0, and bounce by an elasticity.
+fn tower(count: usize, elasticity: f64) -> (World, Vec<BodyId>) {
+    let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(5.0), ..WorldSettings::default() });
+    let floor = Shape::block(10.0, 1.0).expect("a fine size");
+    builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+    let discs = (0..count).map(|index| {
+        let position = DVec2::new(0.0, 0.5 + index as f64);
+        let state = BodyState { position, ..BodyState::default() };
+        let shape = Shape::disc(0.5).expect("a fine radius");
+        let spec = BodySpec { elasticity, ..BodySpec::movable(&format!("disc {index}"), shape, 1.0, state) };
+        let disc = builder.add(spec);
+        builder.add_gravity(disc, DVec2::new(0.0, -GRAVITY));
+        disc
+    });
+    let discs = discs.collect();
+    (builder.build().expect("it stands"), discs)
+}
+
+/// Two rods of 1 m and 1 kg, the first hung at the origin, the second at its end, both pointing down.
+fn double_pendulum() -> (World, [BodyId; 2]) {
+    let mut builder = WorldBuilder::new(WorldSettings { tolerance: 1e-11, ..WorldSettings::default() });
+    let [upper, lower] = [0, 1].map(|index: usize| {
+        let position = DVec2::new(0.0, -0.5 - index as f64);
+        let state = BodyState { position, ..BodyState::default() };
+        let shape = Shape::block(0.1, 1.0).expect("a fine size");
+        let rod = builder.add(BodySpec::movable(["upper", "lower"][index], shape, 1.0, state));
+        builder.add_gravity(rod, DVec2::new(0.0, -GRAVITY));
+        rod
+    });
+    let top = DVec2::new(0.0, 0.5);
+    let end = |body: BodyId, point: DVec2| Anchor { body, point };
+    let pins = [[end(BodyId::WORLD, DVec2::ZERO), end(upper, top)], [end(upper, -top), end(lower, top)]];
+    for [a, b] in pins {
+        let pin = Connector::new(ConnectorKind::Pin { a, b }, 0.0).expect("a fine pin");
+        builder.add_connector(ConnectorSpec::new(pin));
+    }
+    (builder.build().expect("it hangs"), [upper, lower])
+}
+
+fn upwards(body: BodyId, speed: f64) -> Intervention {
+    Intervention::Velocity { body, velocity: DVec2::new(0.0, speed), angular_velocity: 0.0 }
+}
+
+#[test]
+fn what_rests_is_thrown() {
+    let (mut world, discs) = tower(1, 0.5);
+    world.advance_to(1.0, &mut |_| ()).expect("it rests");
+    let mut ended = 0;
+    let mut count = |event: &Event| ended += u32::from(matches!(event, Event::ContactEnds(_)));
+    world.intervene(&[upwards(discs[0], 4.0)], &mut count).expect("it can be thrown");
+    assert_eq!(ended, 1);
+    world.advance_to(1.5, &mut |_| ()).expect("it flies");
+    let height = world.state(discs[0]).position.y - 0.5;
+    assert!((height - (4.0 * 0.5 - 0.5 * GRAVITY * 0.25)).abs() < 1e-8, "{height}");
+    let ledger = world.ledger();
+    assert!((ledger.interventions - 8.0).abs() < 1e-12);
+    assert!(ledger.integration_error().abs() < 1e-12, "{ledger:?}");
+}
+
+#[test]
+fn what_is_pushed_into_what_it_rests_on_bounces_by_the_impact_law() {
+    let (mut world, discs) = tower(1, 0.5);
+    world.advance_to(1.0, &mut |_| ()).expect("it rests");
+    let mut impulses = Vec::new();
+    let mut note = |event: &Event| impulses.extend(event.impact().map(|impact| impact.rows[0].impulse));
+    world.intervene(&[upwards(discs[0], -2.0)], &mut note).expect("it bounces");
+    assert!((world.state(discs[0]).velocity.y - 1.0).abs() < 1e-12);
+    assert!((impulses[0] - 3.0).abs() < 1e-12, "{impulses:?}");
+    assert!((world.ledger().impacts + 1.5).abs() < 1e-12);
+}
+
+#[test]
+fn an_impulse_goes_through_all_that_touches() {
+    let (mut world, discs) = tower(4, 0.0);
+    world.advance_to(1.0, &mut |_| ()).expect("it stands");
+    let (impulse, point) = (DVec2::new(0.0, 4.0), DVec2::new(0.0, 0.2));
+    world
+        .intervene(&[Intervention::Impulse { body: discs[0], impulse, point }], &mut |_| ())
+        .expect("it rises");
+    for &disc in &discs {
+        // They go up together.
+        assert!((world.state(disc).velocity.y - 1.0).abs() < 1e-9, "{:?}", world.state(disc));
+    }
+}
+
+#[test]
+fn a_blow_on_a_pendulum_turns_all_of_it() {
+    let (mut world, [upper, lower]) = double_pendulum();
+    world.advance_to(0.5, &mut |_| ()).expect("it hangs still");
+    // At its end: the equations of impulses of two pinned rods.
+    let blow =
+        Intervention::Impulse { body: lower, impulse: DVec2::new(7.0, 0.0), point: DVec2::new(0.0, -2.0) };
+    world.intervene(&[blow], &mut |_| ()).expect("it swings");
+    let spins = [upper, lower].map(|rod| world.state(rod).angular_velocity);
+    // (m + 1) w1 + w2/2 = P and w1/2 + m w2 = P, where m is the moment of a rod about its end.
+    let moment = 0.25 + (1.0 + 0.1 * 0.1) / 12.0;
+    let determinant = (moment + 1.0) * moment - 0.25;
+    let expected = [7.0 * (moment - 0.5) / determinant, 7.0 * (moment + 0.5) / determinant];
+    assert!((spins[0] - expected[0]).abs() < 1e-9 && (spins[1] - expected[1]).abs() < 1e-9, "{spins:?}");
+    world.advance_to(3.0, &mut |_| ()).expect("it swings");
+    assert!(world.ledger().integration_error().abs() < 1e-8, "{:?}", world.ledger());
+}
+
+#[test]
+fn a_motion_that_is_turned_round_goes_back() {
+    let (mut world, [upper, lower]) = double_pendulum();
+    let blow = Intervention::AngularImpulse { body: upper, impulse: 3.0 };
+    world.intervene(&[blow], &mut |_| ()).expect("it swings");
+    let start = [upper, lower].map(|rod| world.state(rod));
+    world.advance_to(1.0, &mut |_| ()).expect("it swings");
+    let back = [upper, lower].map(|body| {
+        let state = world.state(body);
+        Intervention::Velocity { body, velocity: -state.velocity, angular_velocity: -state.angular_velocity }
+    });
+    world.intervene(&back, &mut |_| ()).expect("all at once they fit together");
+    world.advance_to(2.0, &mut |_| ()).expect("it swings back");
+    for (body, start) in [upper, lower].into_iter().zip(start) {
+        let end = world.state(body);
+        assert!(end.position.distance(start.position) < 1e-9, "{end:?} {start:?}");
+        assert!((end.angular_velocity + start.angular_velocity).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn many_interventions_at_one_time_are_no_storm() {
+    let (mut world, discs) = tower(1, 1.0);
+    for _ in 0..10_000 {
+        world.intervene(&[upwards(discs[0], -2.0)], &mut |_| ()).expect("it bounces");
+    }
+    assert!((world.state(discs[0]).velocity.y - 2.0).abs() < 1e-12, "it is as elastic as the first time");
+}
+
+#[test]
+fn interventions_in_one_call_follow_each_other() {
+    let (mut world, discs) = tower(1, 1.0);
+    let (body, point) = (discs[0], DVec2::new(0.0, 0.5));
+    let again = Intervention::Impulse { body, impulse: DVec2::new(0.0, 1.0), point };
+    world.intervene(&[again, upwards(body, 2.0), again], &mut |_| ()).expect("it flies");
+    assert!((world.state(body).velocity.y - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_and_nothing_is_done() {
+    let (mut world, discs) = tower(1, 1.0);
+    let before = format!("{:?}", world.state(discs[0]));
+    let floor = world.find("floor").expect("it is there");
+    let mut refused = |bad: Intervention| {
+        let both = [upwards(discs[0], 1.0), bad];
+        world.intervene(&both, &mut |_| ()).expect_err("it is bad").to_string()
+    };
+    assert_eq!(refused(upwards(floor, 1.0)), "body \"floor\" is fixed: nothing moves it");
+    assert_eq!(refused(upwards(BodyId(7), 1.0)), "there is no body 7 in this world");
+    assert_eq!(refused(upwards(discs[0], f64::NAN)), "what is done to body \"disc 0\" must be finite");
+    assert_eq!(format!("{:?}", world.state(discs[0])), before);
+}
+
+#[test]
+fn nothing_else_is_touched() {
+    let (mut alone, discs) = tower(3, 0.3);
+    let flying = |world: &mut World| {
+        world.intervene(&[upwards(discs[2], 3.0)], &mut |_| ()).expect("it flies");
+        world.advance_to(0.1, &mut |_| ()).expect("it flies");
+    };
+    flying(&mut alone);
+    let mut struck = alone.clone();
+    struck.intervene(&[upwards(discs[2], 1.0)], &mut |_| ()).expect("it flies");
+    for world in [&mut alone, &mut struck] {
+        world.advance_to(0.2, &mut |_| ()).expect("it flies");
+    }
+    for &disc in &discs[..2] {
+        assert_eq!(alone.state(disc), struck.state(disc));
+    }
+    assert_ne!(alone.state(discs[2]), struck.state(discs[2]));
+}
+
+/// A disc that bounces, and when it does.
+fn bouncing() -> (World, BodyId) {
+    let (mut world, discs) = tower(1, 0.8);
+    world.intervene(&[upwards(discs[0], 4.0)], &mut |_| ()).expect("it flies");
+    (world, discs[0])
+}
+
+#[test]
+fn an_advance_stops_where_it_is_told_to_and_goes_on_as_if_it_had_not() {
+    let (mut through, disc) = bouncing();
+    let mut stopping = through.clone();
+    let (mut impacts, mut stops) = (0, Vec::new());
+    through
+        .advance_to(2.0, &mut |event| impacts += usize::from(event.impact().is_some()))
+        .expect("it bounces");
+    let stop_at_impact = &mut |event: &Event| match event.impact() {
+        Some(_) => ControlFlow::Break(()),
+        None => ControlFlow::Continue(()),
+    };
+    while stopping.advance_while(2.0, stop_at_impact).expect("it bounces").is_break() {
+        stops.push(stopping.time());
+        assert!((stopping.state(disc).position.y - 0.5).abs() < 1e-7, "it is on the floor");
+    }
+    assert_eq!(stops.len(), impacts);
+    assert!((stops[0] - 0.8).abs() < 1e-7 && (stops[1] - 0.8 * 1.8).abs() < 1e-7, "{stops:?}");
+    assert_eq!((stopping.time(), stopping.state(disc)), (2.0, through.state(disc)));
+}
+
+#[test]
+fn who_stops_at_an_event_can_act_there() {
+    let (mut world, disc) = bouncing();
+    let stop = &mut |_: &Event| ControlFlow::Break(());
+    assert!(world.advance_while(2.0, stop).expect("it bounces").is_break());
+    world.intervene(&[upwards(disc, 4.0)], &mut |_| ()).expect("it is hit back");
+    assert!(world.advance_while(2.0, stop).expect("it bounces").is_break());
+    assert!((world.time() - 1.6).abs() < 1e-7);
+}
