@@ -6,7 +6,7 @@
 use crate::closed::{of_centers, quadratic};
 use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
-use crate::motion::{Center, Motion, Polynomial};
+use crate::motion::{BodyState, Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 
@@ -26,6 +26,15 @@ pub struct MovingShape<'a, M> {
     pub motion: &'a M,
     /// Offset [s] in the motion at which the search's time is 0.
     pub offset: f64,
+}
+
+impl<M: Motion> MovingShape<'_, M> {
+    /// True if place and velocities are numbers at a time [s] of the search.
+    fn is_finite(&self, time: f64) -> bool {
+        let BodyState { position, angle, velocity, angular_velocity } =
+            self.motion.state_at(self.offset + time);
+        position.is_finite() && angle.is_finite() && velocity.is_finite() && angular_velocity.is_finite()
+    }
 }
 
 /// Limits of a search; all but the last two do not change what it finds.
@@ -82,7 +91,7 @@ pub enum Search {
 /// Finds the first time in [0, `span`), `span` finite [s], at which a feature pair of the two shapes is at or below its target gap and closes.
 ///
 /// Pairs that start at their target and open do not count until they close again. Total: ends with a contact or with
-/// `NoneBefore(span)`.
+/// `NoneBefore(span)`; of thresholds, or motions at either end, that are not finite nothing is proven: `NoneBefore(0.0)`.
 #[must_use]
 pub fn first_contact<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
@@ -92,6 +101,11 @@ pub fn first_contact<A: Motion, B: Motion>(
     settings: &SearchSettings,
 ) -> Search {
     let mut from = 0.0;
+    let are_known =
+        tolerances.are_finite() && [0.0, span].iter().all(|&at| a.is_finite(at) && b.is_finite(at));
+    if !are_known {
+        return Search::NoneBefore(from);
+    }
     loop {
         match search_step(a, b, from, span, tolerances, settings) {
             Search::NoneBefore(time) if time < span => from = time,

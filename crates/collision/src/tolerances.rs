@@ -35,6 +35,10 @@ impl Tolerances {
         2.0 * self.target_gap
     }
 
+    pub(crate) fn are_finite(&self) -> bool {
+        self.target_gap.is_finite() && self.accuracy.is_finite() && self.velocity_tol.is_finite()
+    }
+
     /// The thresholds of a tight fit with the given clearance [m]: a convex arc in a barely larger hollow.
     ///
     /// Unchanged where the clearance is at least four target gaps.

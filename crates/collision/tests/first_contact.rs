@@ -299,6 +299,26 @@ fn no_contact_is_missed_and_none_invented() {
 }
 
 #[test]
+fn nothing_is_proven_of_what_is_no_number() {
+    let disc = Shape::disc(0.5).expect("a fine radius");
+    let sound = Tolerances { target_gap: 1e-6, accuracy: 0.6e-6, velocity_tol: 1e-9 };
+    let rest = Flight::fixed(DVec2::ZERO, 0.0);
+    let search = |position: DVec2, spin: f64, tolerances: &Tolerances| {
+        let velocity = DVec2::new(-1.0, 0.0);
+        let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
+        let flight = Flight::new(state, DVec2::ZERO, 0.0, 0.0);
+        let sides = [&rest, &flight].map(|motion| MovingShape { shape: &disc, motion, offset: 0.0 });
+        first_contact(&sides[0], &sides[1], 5.0, tolerances, &SearchSettings::default())
+    };
+    let place = DVec2::new(3.0, 0.0);
+    assert!(matches!(search(place, 0.0, &sound), Search::Contact(_)));
+    let nothing = Search::NoneBefore(0.0);
+    assert_eq!(search(DVec2::new(f64::NAN, 0.0), 0.0, &sound), nothing);
+    assert_eq!(search(place, f64::INFINITY, &sound), nothing);
+    assert_eq!(search(place, 0.0, &Tolerances { target_gap: f64::NAN, ..sound }), nothing);
+}
+
+#[test]
 fn a_rule_with_a_wider_gap_than_all_others_fires() {
     // A block 5 mm over a cradle hops by 1 mm/s: it turns back after 0.1 ms, above the gap at which other features fire.
     let (floor, block) = (cradle(), Shape::block(0.2, 0.2).expect("a fine block"));

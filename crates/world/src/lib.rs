@@ -54,7 +54,6 @@ mod rounded;
 #[cfg(feature = "scene")]
 mod run;
 mod run_error;
-mod scales;
 #[cfg(feature = "scene")]
 pub mod scene;
 mod sentry;
@@ -87,7 +86,6 @@ pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
 pub use run::{Record, RunPlan, RunReport, run};
 pub use run_error::{RunError, Status};
-pub use scales::ToleranceOverrides;
-pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, WorldSettings};
+pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
 pub use world_error::{ConnectorName, WorldError};

@@ -65,6 +65,9 @@ impl RunPlan {
                 return bad(field, "finite", value);
             }
         }
+        if self.end_time < self.start_time {
+            return bad("end_time", "no earlier than start_time", self.end_time);
+        }
         if self.output_step.is_nan() || self.output_step <= 0.0 {
             return bad("output_step", "positive", self.output_step);
         }

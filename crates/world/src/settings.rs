@@ -1,12 +1,22 @@
 //! How a world is to be simulated.
 
-use crate::scales::ToleranceOverrides;
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
 /// Relative accuracy asked for unless said otherwise.
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;
 /// The step [s] where it is fixed, unless said otherwise.
 const DEFAULT_FIXED_STEP: f64 = 0.025;
+
+/// Thresholds that the user gives in place of the derived ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToleranceOverrides {
+    /// Gap [m] at which an approaching pair fires.
+    pub target_gap: Option<f64>,
+    /// Half-width [m] of the target zone.
+    pub accuracy: Option<f64>,
+    /// Normal speed [m/s] below which a collision is a contact.
+    pub velocity_tol: Option<f64>,
+}
 
 /// How a world is to be simulated.
 #[derive(Clone, Debug, PartialEq)]

@@ -59,6 +59,15 @@ fn stops_are_hit_exactly_at_both_ends_and_between() {
 }
 
 #[test]
+fn a_plan_that_ends_before_it_starts_is_refused() {
+    let scene = scene(1.0, "", "[0, 0]");
+    let plan = RunPlan { end_time: -1.0, ..RunPlan::of_scene(&scene, Record::Ends) };
+    let report = run(&mut world(&scene), &plan, &mut |_| {});
+    let message = report.error.map(|error| error.to_string());
+    assert_eq!(message.as_deref(), Some("the plan's end_time must be no earlier than start_time, got -1 s"));
+}
+
+#[test]
 fn names_are_escaped_wherever_they_are_written() {
     let scene = scene(1.0, "", "[0, 0]");
     let world = world(&scene);

@@ -156,6 +156,20 @@ fn velocities_that_pull_a_rod_apart_are_changed_and_told_of() {
 }
 
 #[test]
+fn the_velocity_of_a_fixed_body_is_told_to_count_for_nothing() {
+    let shape = Shape::disc(0.5).expect("a fine radius");
+    let mut fixed = BodySpec::fixed("stone", shape, DVec2::ZERO);
+    let warnings = |spec: &BodySpec| {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        builder.add(spec.clone());
+        build(builder).warnings().to_vec()
+    };
+    assert_eq!(warnings(&fixed), Vec::<String>::new());
+    fixed.state.angular_velocity = 1.0;
+    assert_eq!(warnings(&fixed), ["body \"stone\" is fixed: its velocity is left out of account"]);
+}
+
+#[test]
 fn a_linkage_with_more_bars_than_it_needs_is_put_together() {
     // Three parallel cranks carry one plate: any two would do, and all three are off by a little.
     let mut builder = WorldBuilder::new(WorldSettings::default());

@@ -1,5 +1,6 @@
 //! Why the advance of rigid bodies had to stop.
 
+use super::parts::PartsError;
 use halfgap_collision::{BodyId, ConnectorId};
 use halfgap_contact::{ImpactError, SolveError};
 
@@ -16,6 +17,9 @@ pub struct Between {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdvanceError {
+    /// A system cannot be made of what it was to be made of.
+    #[error(transparent)]
+    Parts(#[from] PartsError),
     /// An impact cannot be resolved.
     #[error("at {time} s, between bodies {bodies:?}: {source}")]
     Impact {

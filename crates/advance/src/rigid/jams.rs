@@ -102,9 +102,10 @@ impl Region {
 
 #[cfg(test)]
 mod tests {
+    use super::super::RigidParts;
     use super::super::flyer::FlightLaw;
     use super::super::impacts::ImpactReport;
-    use super::super::system::{RigidParts, RigidSettings};
+    use super::super::system::RigidSettings;
     use super::super::test_scene::FINE;
     use super::*;
     use crate::time::Time;

@@ -1,7 +1,7 @@
 //! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by pair,
 //! events located at their time.
 //!
-//! What moves: `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
+//! What moves: `parts` is what a system is made of, `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
 //! motion, `tree` the same where they hang together by pins, `segment` one step of them, `energy` what it may not lose, `brief` and `stiff` which method makes it, `kinks` of
 //! splines end it, `extending` adds it to the group, `deferred` puts it off until somebody looks, `watch` (with `crossing`) finds what ends it early.
@@ -10,7 +10,7 @@
 //! contact (`marks` tells who is near), `connectors` when a rope goes taut and where on its rail a point is; `events` handles what comes true: `region`
 //! collects the bodies that touch, `cutting` takes them to the event's time, `groups` merges and splits groups, `impacts` applies impulses, `settle` finds what is held,
 //! `rules` tells the search what to leave alone, `bounces` and `hops` tell those that are too low to count, `repeats` what fires again at one time, `storms` ends what does not end by itself, `ticks` stands in for forces where contacts carry impulses only. `intervention` is what somebody outside does to
-//! bodies; `ledger` keeps the energy's books, `report` is what the outside may ask for, and `system` ties all to the event loop.
+//! bodies; `ledger` keeps the energy's books, `scales` says what a tolerance means in a scene, `report` is what the outside may ask for, and `system` ties all to the event loop.
 
 mod bounces;
 mod boxes;
@@ -44,6 +44,7 @@ mod marks;
 mod overdue;
 mod pace;
 mod pairs;
+mod parts;
 mod path;
 mod placing;
 mod predictions;
@@ -52,6 +53,7 @@ mod repeats;
 mod report;
 mod rows;
 mod rules;
+mod scales;
 mod segment;
 mod settle;
 mod settling;
@@ -76,6 +78,8 @@ pub use impacts::{ImpactReport, RowReport};
 pub use intervention::VelocityChange;
 pub use law::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use ledger::Ledger;
+pub use parts::{PartsError, RigidParts};
 pub use report::{ContactChanges, RowForce};
+pub use scales::Scales;
 pub use segment::StepControl;
-pub use system::{Counts, Handled, RigidParts, RigidSettings, RigidSystem};
+pub use system::{Counts, Handled, RigidSettings, RigidSystem};

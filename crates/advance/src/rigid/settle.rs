@@ -423,9 +423,9 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 
 #[cfg(test)]
 mod tests {
+    use super::super::RigidParts;
     use super::super::events::EventWork;
     use super::super::flyer::FlightLaw;
-    use super::super::system::RigidParts;
     use super::super::test_scene::{FINE, resting_discs};
     use super::*;
     use halfgap_collision::{Body, BodyState};

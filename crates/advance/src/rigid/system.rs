@@ -11,7 +11,7 @@ use super::deferred::loners;
 use super::dynamics::{ExtraAcceleration, Stage};
 use super::error::AdvanceError;
 use super::events::EventWork;
-use super::flyer::{FlightLaw, Flyer};
+use super::flyer::Flyer;
 use super::groups::Groups;
 use super::impacts::ImpactReport;
 use super::lane::Lane;
@@ -20,6 +20,7 @@ use super::ledger::Ledger;
 use super::marks::Marks;
 use super::pace::Pace;
 use super::pairs::{Link, PairId, Pairs, Prediction};
+use super::parts::RigidParts;
 use super::report::ContactChanges;
 use super::rows::Mechanism;
 use super::segment::StepControl;
@@ -30,7 +31,7 @@ use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
 use halfgap_collision::{
-    Body, BodyId, BodyState, BroadPhase, Connector, ConnectorId, Moving, RailHint, SearchSettings, Tolerances,
+    BodyId, BroadPhase, Connector, ConnectorId, Moving, RailHint, SearchSettings, Tolerances,
 };
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::FeatureId;
@@ -112,19 +113,6 @@ pub struct Handled {
     pub impact: bool,
 }
 
-/// What a system is made of.
-#[derive(Clone, Debug, Default)]
-pub struct RigidParts {
-    /// Bodies with what acts on them in free flight, and their states at the start.
-    pub bodies: Vec<(Body, FlightLaw, BodyState)>,
-    /// What ties them.
-    pub connectors: Vec<Connector>,
-    /// Forces that free flight does not know.
-    pub laws: Vec<Arc<dyn ForceLaw>>,
-    /// Pairs that pass through each other.
-    pub excluded: Vec<(BodyId, BodyId)>,
-}
-
 /// Rigid bodies that fly, collide, rest on each other, and hang together.
 #[derive(Clone, Debug)]
 pub struct RigidSystem {
@@ -191,8 +179,9 @@ impl RigidSystem {
     /// The system of the given parts at a time.
     ///
     /// # Errors
-    /// The forces at the start cannot be found.
+    /// Parts or settings out of range. The forces at the start cannot be found.
     pub fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Result<Self, AdvanceError> {
+        parts.check(&settings, start)?;
         let RigidParts { bodies, connectors, laws, excluded } = parts;
         let flyers: Vec<Flyer> =
             bodies.into_iter().map(|(body, law, state)| Flyer::new(body, law, state, start)).collect();

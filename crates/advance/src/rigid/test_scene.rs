@@ -2,8 +2,9 @@
 
 use super::flyer::FlightLaw;
 use super::group::Group;
+use super::parts::RigidParts;
 use super::segment::StepControl;
-use super::system::{RigidParts, RigidSettings, RigidSystem};
+use super::system::{RigidSettings, RigidSystem};
 use crate::ode::Method;
 use crate::time::Time;
 use glam::DVec2;

@@ -1,8 +1,7 @@
 //! The settings of a world from the table `[run]` of a scene.
 
-use crate::scales::ToleranceOverrides;
 use crate::scene::{self, RunData};
-use crate::settings::{Integrator, Stabilization, WorldSettings};
+use crate::settings::{Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
 /// The settings that a scene asks for.

@@ -1,11 +1,10 @@
 //! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
 
 use super::{BodySpec, WorldBuilder, centered};
-use crate::scales::{Scales, farthest_in};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
-use halfgap_advance::rigid::FlightLaw;
+use halfgap_advance::rigid::{FlightLaw, Scales};
 use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, Tolerances};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
@@ -231,4 +230,9 @@ fn too_large(body: &BodySpec, quantity: &'static str, largest: f64, value: f64) 
 /// True for a coordinate or velocity that can be computed with.
 fn is_sound(value: f64) -> bool {
     value.abs() <= LARGEST
+}
+
+/// The largest coordinate in size [m] within some bounds.
+fn farthest_in(bounds: &Aabb) -> f64 {
+    bounds.min.abs().max(bounds.max.abs()).max_element()
 }

@@ -4,10 +4,9 @@ mod checks;
 
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
-use crate::rigid_settings::{method, rigid_settings};
+use crate::rigid_settings::{method, rigid_settings, tolerances};
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
-use crate::scales::{Scales, ToleranceOverrides};
 use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
@@ -16,7 +15,7 @@ use crate::world_error::WorldError;
 use checks::world_bounds;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem};
+use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
 use halfgap_geometry::{Aabb, Pose, Shape, ShapePool};
 use std::slice::from_ref;
@@ -171,9 +170,9 @@ impl WorldBuilder {
         let wrenches = self.wrenches()?;
         let scales = self.scales(&wrenches);
         self.check_resolution(&scales)?;
-        let tolerances = scales.tolerances(self.settings.tolerance, &self.settings.overrides);
+        let tolerances = tolerances(&self.settings, &scales);
         self.check_accuracy(&tolerances)?;
-        let warnings = [self.gap_warning(&scales), self.step_warning()];
+        let warnings = [self.gap_warning(&scales), self.step_warning(), self.fixed_warning()];
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
@@ -182,7 +181,7 @@ impl WorldBuilder {
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
         // Connectors that contradict each other are together as nearly as the tolerance asks, however wide the zones of contacts.
-        let derived = scales.tolerances(self.settings.tolerance, &ToleranceOverrides::default());
+        let derived = scales.tolerances(self.settings.tolerance);
         let rules = StartRules {
             tolerances: &tolerances,
             excluded: &self.excluded,
@@ -263,6 +262,13 @@ impl WorldBuilder {
         })
     }
 
+    /// What to say of a fixed body that is given a velocity.
+    fn fixed_warning(&self) -> Option<String> {
+        let moves = |state: &BodyState| state.velocity != DVec2::ZERO || state.angular_velocity != 0.0;
+        let body = self.bodies.iter().find(|body| body.inertia.is_none() && moves(&body.state))?;
+        Some(format!("body \"{}\" is fixed: its velocity is left out of account", body.name))
+    }
+
     /// Moves the bodies that connectors are to align, in the connectors' order.
     fn align(&mut self) {
         for spec in self.connectors.iter().filter(|spec| spec.align) {
@@ -316,7 +322,7 @@ impl WorldBuilder {
                 + wrench.torque.abs() / inertia.moment * reach;
             scales.acceleration = scales.acceleration.max(acceleration);
         }
-        scales.spread(bounds);
+        bounds.into_iter().for_each(|bounds| scales.spread(bounds));
         scales
     }
 }

@@ -1,0 +1,221 @@
+//! What a system is made of, and what it cannot be made of: bodies that are not there, numbers that are none.
+
+use super::flyer::FlightLaw;
+use super::law::ForceLaw;
+use super::system::RigidSettings;
+use crate::time::Time;
+use halfgap_collision::{Body, BodyId, BodyState, Connector};
+use std::sync::Arc;
+
+/// What a system is made of.
+#[derive(Clone, Debug, Default)]
+pub struct RigidParts {
+    /// Bodies with what acts on them in free flight, and their states at the start.
+    pub bodies: Vec<(Body, FlightLaw, BodyState)>,
+    /// What ties them.
+    pub connectors: Vec<Connector>,
+    /// Forces that free flight does not know.
+    pub laws: Vec<Arc<dyn ForceLaw>>,
+    /// Pairs that pass through each other.
+    pub excluded: Vec<(BodyId, BodyId)>,
+}
+
+/// Why no system can be made of some parts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PartsError {
+    /// A connector, a law or a pair names a body that is not there.
+    #[error("{part} {index} names body {}, but there are {count} bodies", body.0)]
+    NoSuchBody {
+        /// What names it.
+        part: &'static str,
+        /// Which of them.
+        index: usize,
+        /// The body.
+        body: BodyId,
+        /// How many bodies there are.
+        count: usize,
+    },
+    /// A number of a body is out of range.
+    #[error("the {quantity} of body {} must be {rule}, got {value}", body.0)]
+    BadBody {
+        /// The body.
+        body: BodyId,
+        /// Which number.
+        quantity: &'static str,
+        /// What it must be.
+        rule: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// A setting is out of range.
+    #[error("{setting} must be {rule}, got {value}")]
+    BadSetting {
+        /// Which.
+        setting: &'static str,
+        /// What it must be.
+        rule: &'static str,
+        /// What it is.
+        value: f64,
+    },
+}
+
+/// Quantities that must keep to a rule.
+type Rule<'a> = (&'static str, fn(f64) -> bool, &'a [(&'static str, f64)]);
+
+const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
+const NOT_NEGATIVE: (&str, fn(f64) -> bool) =
+    ("finite, and not negative", |value| value >= 0.0 && value.is_finite());
+const POSITIVE: (&str, fn(f64) -> bool) = ("positive and finite", |value| value > 0.0 && value.is_finite());
+
+impl RigidParts {
+    /// Says why there can be no system of these parts at a time, if so.
+    pub(crate) fn check(&self, settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
+        check_settings(settings, start)?;
+        for (index, part) in self.bodies.iter().enumerate() {
+            let body = BodyId(u32::try_from(index).unwrap_or(u32::MAX));
+            let bad = |(quantity, rule, value)| PartsError::BadBody { body, quantity, rule, value };
+            check_body(part).map_err(bad)?;
+        }
+        self.check_names()
+    }
+
+    /// Refuses what names bodies that are not there.
+    fn check_names(&self) -> Result<(), PartsError> {
+        let count = self.bodies.len();
+        let check = |part, index, body: BodyId| match body.is_world() || body.index() < count {
+            true => Ok(()),
+            false => Err(PartsError::NoSuchBody { part, index, body, count }),
+        };
+        for (index, connector) in self.connectors.iter().enumerate() {
+            connector.bodies().into_iter().try_for_each(|body| check("connector", index, body))?;
+        }
+        for (index, law) in self.laws.iter().enumerate() {
+            law.bodies().iter().try_for_each(|&body| check("force law", index, body))?;
+        }
+        for (index, &(a, b)) in self.excluded.iter().enumerate() {
+            [a, b].into_iter().try_for_each(|body| check("excluded pair", index, body))?;
+        }
+        Ok(())
+    }
+}
+
+fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
+    let RigidSettings { tolerances, steps, .. } = settings;
+    // What there is of nothing may be zero.
+    let sizes = [
+        ("target_gap", tolerances.target_gap),
+        ("accuracy", tolerances.accuracy),
+        ("velocity_tol", tolerances.velocity_tol),
+        ("rest_speed", settings.rest_speed),
+        ("resolution_time", settings.resolution_time),
+        ("steps.length", steps.length),
+        ("steps.speed", steps.speed),
+    ];
+    let largest_step = steps.largest_step.unwrap_or(1.0);
+    let steps = [
+        ("steps.local_error", steps.local_error),
+        ("steps.largest_step", largest_step),
+        ("impulse_step", settings.impulse_step.unwrap_or(1.0)),
+    ];
+    let rules: [Rule<'_>; 3] = [
+        (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
+        (POSITIVE.0, POSITIVE.1, &steps),
+        (FINITE.0, FINITE.1, &[("start", start.seconds())]),
+    ];
+    let bad = |(setting, rule, value)| PartsError::BadSetting { setting, rule, value };
+    keep_to(&rules).map_err(bad)
+}
+
+fn check_body((body, law, state): &(Body, FlightLaw, BodyState)) -> Result<(), Broken> {
+    let sizes = [
+        ("inverse mass", body.inverse_mass),
+        ("inverse moment", body.inverse_moment),
+        ("linear rate", law.linear_rate),
+        ("angular rate", law.angular_rate),
+    ];
+    let numbers = [
+        ("x", state.position.x),
+        ("y", state.position.y),
+        ("angle", state.angle),
+        ("velocity.x", state.velocity.x),
+        ("velocity.y", state.velocity.y),
+        ("angular velocity", state.angular_velocity),
+        ("acceleration.x", law.acceleration.x),
+        ("acceleration.y", law.acceleration.y),
+    ];
+    keep_to(&[
+        (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
+        (FINITE.0, FINITE.1, &numbers),
+        ("between 0 and 1", |value| (0.0..=1.0).contains(&value), &[("elasticity", body.elasticity)]),
+    ])
+}
+
+/// A quantity, the rule that it breaks, and its value.
+type Broken = (&'static str, &'static str, f64);
+
+/// The first quantity that breaks its rule, if any.
+fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
+    for &(rule, keeps, quantities) in rules {
+        if let Some(&(quantity, value)) = quantities.iter().find(|(_, value)| !keeps(*value)) {
+            return Err((quantity, rule, value));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::system::RigidSystem;
+    use super::super::test_scene::FINE;
+    use super::super::{AdvanceError, StepControl};
+    use super::*;
+    use glam::DVec2;
+    use halfgap_collision::{Anchor, ConnectorKind};
+    use halfgap_geometry::Shape;
+
+    fn disc() -> (Body, FlightLaw, BodyState) {
+        let shape = Shape::disc(0.5).expect("a fine radius");
+        let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
+        (body, FlightLaw::default(), BodyState::default())
+    }
+
+    /// The message about a disc and the settings that were changed somehow.
+    fn refused(change: impl FnOnce(&mut RigidParts, &mut RigidSettings)) -> String {
+        let (mut parts, mut settings) = (RigidParts { bodies: vec![disc()], ..RigidParts::default() }, FINE);
+        change(&mut parts, &mut settings);
+        match RigidSystem::new(parts, settings, Time::ZERO) {
+            Err(AdvanceError::Parts(error)) => error.to_string(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_is_not_there_cannot_be_named() {
+        let none = BodyId(1);
+        let of_pair = refused(|parts, _| parts.excluded.push((BodyId(0), none)));
+        assert_eq!(of_pair, "excluded pair 0 names body 1, but there are 1 bodies");
+        let [a, b] = [BodyId::WORLD, none].map(|body| Anchor { body, point: DVec2::ZERO });
+        let rod = Connector::new(ConnectorKind::Rod { a, b, length: 1.0 }, 0.0).expect("a fine rod");
+        let of_rod = refused(|parts, _| parts.connectors.push(rod));
+        assert_eq!(of_rod, "connector 0 names body 1, but there are 1 bodies");
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        let of_body = |change: fn(&mut (Body, FlightLaw, BodyState))| {
+            refused(|parts, _| parts.bodies.iter_mut().for_each(change))
+        };
+        let spin = of_body(|disc| disc.2.angular_velocity = f64::NAN);
+        assert_eq!(spin, "the angular velocity of body 0 must be finite, got NaN");
+        let mass = of_body(|disc| disc.0.inverse_mass = -1.0);
+        assert_eq!(mass, "the inverse mass of body 0 must be finite, and not negative, got -1");
+        let lively = of_body(|disc| disc.0.elasticity = 1.5);
+        assert_eq!(lively, "the elasticity of body 0 must be between 0 and 1, got 1.5");
+        let gap = refused(|_, settings| settings.tolerances.target_gap = f64::INFINITY);
+        assert_eq!(gap, "target_gap must be finite, and not negative, got inf");
+        let steps = StepControl { largest_step: Some(0.0), ..FINE.steps };
+        let step = refused(|_, settings| settings.steps = steps);
+        assert_eq!(step, "steps.largest_step must be positive and finite, got 0");
+    }
+}
