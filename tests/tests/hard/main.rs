@@ -6,6 +6,7 @@ mod cams;
 mod chains;
 mod changes;
 mod dead_points;
+mod dips;
 mod events;
 mod extremes;
 mod grazing;

@@ -1,19 +1,27 @@
 //! When does a function that is sampled along a segment first fall below zero?
 //!
 //! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them shows
-//! whether the function may dip below zero in between, and a sample there tells. The bracket is closed by inverse parabolas
+//! where the function may dip below zero in between, however briefly, and samples there tell. The bracket is closed by inverse parabolas
 //! where they are sure to serve, else by bisection: some functions have a kink where they fall (T. Chandrupatla, "A new hybrid
 //! quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives", Advances in
 //! Engineering Software 28, 1997).
 
 /// Samples along a segment: both ends and three places between, equally far apart.
 pub(crate) const NODES: usize = 5;
-/// Places between two nodes at which the quartic is looked at.
-const LOOKS: usize = 4;
+/// Parts of the way between two nodes in each of which the quartic has one minimum at most.
+const PARTS: usize = 4;
+/// Cap on the steps to a minimum of the quartic.
+const MOST_DESCENTS: usize = 60;
+/// A minimum of the quartic no higher than this part of the largest sample may be a dip below zero.
+const NEARLY_ZERO: f64 = 1e-3;
+/// Widths, in nodes, of the parabolas that go on from the quartic's minimum to the function's own.
+const WIDTHS: [f64; 2] = [0.1, 0.01];
 /// Cap on the steps that close a bracket.
 const MOST_STEPS: usize = 200;
 /// A bracket is closed when it is this part of the segment.
 const CLOSED: f64 = 1e-14;
+
+const MIDDLE_NODE: f64 = (NODES - 1) as f64 / 2.0;
 
 /// Samples between the start of a segment and its first node, each this part of the next from the start: what starts at
 /// nearly zero dips at once or, mostly, not at all.
@@ -88,6 +96,7 @@ pub(crate) fn first_fall_before(
     if values.iter().any(|value| value.is_infinite()) {
         return None;
     }
+    let quartic = Quartic::through(values);
     for index in 0..NODES - 1 {
         let (from, mut to, mut end) = (node(index, span), node(index + 1, span), values[index + 1]);
         match limit {
@@ -101,17 +110,36 @@ pub(crate) fn first_fall_before(
         if end < 0.0 {
             return Some(close((from, values[index]), (to, end), span, f));
         }
-        let Some(dip) = dip_between(values, index) else { continue };
-        let place = span * (dip / (NODES - 1) as f64);
-        if place >= to {
-            continue;
-        }
-        let value = f(place);
-        if value < 0.0 {
-            return Some(close((from, values[index]), (place, value), span, f));
+        let dip = quartic.dip_between(index).and_then(|dip| find_dip(dip, [from, to], span, &mut f));
+        if let Some(below) = dip {
+            return Some(close((from, values[index]), below, span, f));
         }
     }
     None
+}
+
+/// A place strictly between two offsets [s] at which `f` is negative, near one at which the quartic has a minimum, in nodes.
+fn find_dip(dip: f64, [from, to]: [f64; 2], span: f64, mut f: impl FnMut(f64) -> f64) -> Option<Sample> {
+    let scale = span / (NODES - 1) as f64;
+    let is_inside = |place: f64| from < place && place < to;
+    let mut place = scale * dip;
+    if !is_inside(place) {
+        return None;
+    }
+    let mut value = f(place);
+    for width in WIDTHS.map(|width| width * scale) {
+        if value < 0.0 {
+            return Some((place, value));
+        }
+        let [before, after] = [place - width, place + width].map(&mut f);
+        let bend = before - 2.0 * value + after;
+        let moved = place + (0.5 * width * (before - after) / bend).clamp(-width, width);
+        if !is_inside(moved) {
+            return None;
+        }
+        (place, value) = (moved, f(moved));
+    }
+    (value < 0.0).then_some((place, value))
 }
 
 /// The first offset at which `f`, which is below zero at the start, has fallen lower than is allowed. The values are those at the
@@ -132,26 +160,77 @@ pub(crate) fn fall_from_below(
     early_fall(values[0], &early, span, &mut raised).or_else(|| first_fall(&values, span, raised))
 }
 
-/// Where between two nodes the quartic through the samples lies below zero, lowest of a few places; in nodes.
-fn dip_between(values: &[f64; NODES], index: usize) -> Option<f64> {
-    let lowest = (1..LOOKS)
-        .map(|look| index as f64 + look as f64 / LOOKS as f64)
-        .map(|place| (place, quartic(values, place)))
-        .min_by(|p, q| p.1.total_cmp(&q.1))?;
-    (lowest.1 < 0.0).then_some(lowest.0)
+/// The quartic through the samples, about the middle node: the coefficients of the powers of the nodes from there.
+struct Quartic {
+    coefficients: [f64; NODES],
+    /// The largest sample in size.
+    size: f64,
 }
 
-/// The quartic through the samples at nodes 0 to 4, by Neville's scheme.
-fn quartic(values: &[f64; NODES], place: f64) -> f64 {
-    let mut column = *values;
-    for level in 1..NODES {
-        for index in 0..NODES - level {
-            let (left, right) = (index as f64, (index + level) as f64);
-            column[index] =
-                ((place - left) * column[index + 1] + (right - place) * column[index]) / (right - left);
-        }
+impl Quartic {
+    fn through(values: &[f64; NODES]) -> Self {
+        let [a, b, c, d, e] = *values;
+        let coefficients = [
+            c,
+            ((a - e) - 8.0 * (b - d)) / 12.0,
+            (16.0 * (b + d) - (a + e) - 30.0 * c) / 24.0,
+            (2.0 * (b - d) - (a - e)) / 12.0,
+            ((a + e) - 4.0 * (b + d) + 6.0 * c) / 24.0,
+        ];
+        Self { coefficients, size: values.iter().fold(0.0, |most, value| most.max(value.abs())) }
     }
-    column[0]
+
+    fn value(&self, from_middle: f64) -> f64 {
+        self.coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * from_middle + coefficient)
+    }
+
+    fn slope(&self, from_middle: f64) -> f64 {
+        let [_, first, second, third, fourth] = self.coefficients;
+        first + from_middle * (2.0 * second + from_middle * (3.0 * third + from_middle * 4.0 * fourth))
+    }
+
+    /// Where between two nodes it has its lowest minimum, in nodes, if that is below zero or nearly so.
+    fn dip_between(&self, index: usize) -> Option<f64> {
+        let first = index as f64 - MIDDLE_NODE;
+        let edge = |part: usize| first + part as f64 / PARTS as f64;
+        let mut lowest: Option<Sample> = None;
+        let mut before = self.slope(edge(0));
+        for part in 0..PARTS {
+            let after = self.slope(edge(part + 1));
+            if before < 0.0 && after >= 0.0 {
+                let place = self.minimum_between(edge(part), edge(part + 1));
+                let value = self.value(place);
+                if lowest.is_none_or(|(_, least)| value < least) {
+                    lowest = Some((place, value));
+                }
+            }
+            before = after;
+        }
+        let (place, value) = lowest?;
+        (value < NEARLY_ZERO * self.size).then_some(place + MIDDLE_NODE)
+    }
+
+    /// Where the slope, negative at `low` and not so at `high`, vanishes.
+    fn minimum_between(&self, mut low: f64, mut high: f64) -> f64 {
+        let mut place = 0.5 * (low + high);
+        for _ in 0..MOST_DESCENTS {
+            let slope = self.slope(place);
+            if slope < 0.0 {
+                low = place
+            } else {
+                high = place
+            }
+            let [_, _, second, third, fourth] = self.coefficients;
+            let bend = 2.0 * second + place * (6.0 * third + place * 12.0 * fourth);
+            let newton = place - slope / bend;
+            let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+            if next == place || next == low || next == high {
+                break;
+            }
+            place = next;
+        }
+        place
+    }
 }
 
 /// A place and the value there.
@@ -242,6 +321,26 @@ mod tests {
         let fall = sampled(1.0, |t| (t - 0.6) * (t - 0.6) - 1e-3).expect("it dips");
         assert!((fall - (0.6 - 1e-3f64.sqrt())).abs() < 1e-12);
         assert_eq!(sampled(1.0, |t| (t - 0.6) * (t - 0.6) + 1e-3), None);
+    }
+
+    #[test]
+    fn a_dip_is_found_however_shallow() {
+        for depth in [1e-3, 1e-6, 1e-9, 1e-12] {
+            for lowest in [0.04, 0.137, 0.26, 0.61, 0.9871] {
+                let parabola = |t: f64| 3.0 * (t - lowest) * (t - lowest) - depth;
+                let wave = |t: f64| 1.0 - depth - (1.7 * (t - lowest)).cos();
+                let fall = [sampled(1.0, parabola), sampled(1.0, wave)];
+                let expected = [(depth / 3.0).sqrt(), (1.0 - depth).acos() / 1.7].map(|way| lowest - way);
+                for (fall, expected) in fall.into_iter().zip(expected) {
+                    let fall = fall.unwrap_or_else(|| panic!("it dips at {lowest} by {depth}"));
+                    // To the rounding of the function, by its slope.
+                    let sharp = 1e-15 / depth.sqrt() + 1e-12;
+                    assert!((fall - expected).abs() < sharp, "{fall} {expected}");
+                }
+                let touches = |t: f64| parabola(t) + 2.0 * depth;
+                assert_eq!(sampled(1.0, touches), None);
+            }
+        }
     }
 
     #[test]

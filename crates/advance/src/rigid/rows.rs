@@ -186,9 +186,37 @@ impl Mechanism<'_> {
                 let sample = self.sample(row.bodies, features, [a, b]);
                 let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };
                 let outside = sample.overrun.max(lean);
-                Some(self.change_margin() - outside)
+                let inside = || self.inside(&sample, row, features, [a, b]);
+                Some(self.change_margin() + if outside > 0.0 { -outside } else { inside() })
             }
         }
+    }
+
+    /// How far [m] a contact that lies within its features is from their ends, by their angles straight across.
+    fn inside(
+        &self,
+        sample: &GapSample,
+        row: &HeldRow,
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let shapes = row.bodies.map(|body| self.shape(body));
+        let levers = contact_levers([0, 1].map(|side| (shapes[side], features[side])));
+        let to_ends = |side: usize| {
+            let (is_primary, pose) = ((side == 0) == sample.primary_is_a, &movings[side].pose);
+            match shapes[side].feature(features[side]) {
+                Feature::Line(line) => {
+                    let along = pose.point_to_body(sample.point_normal).dot(line.normal.perp());
+                    (along - line.start).min(line.end - along)
+                }
+                Feature::Round(_) if row.leans => f64::INFINITY,
+                Feature::Round(round) => {
+                    let sign = if is_primary { -round.sign() } else { round.sign() };
+                    levers[side] * round.range.margin(pose.vector_to_body(sample.normal * sign))
+                }
+            }
+        };
+        to_ends(0).min(to_ends(1)).max(0.0)
     }
 
     /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet what touches them
