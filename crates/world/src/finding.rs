@@ -229,7 +229,9 @@ impl World {
     fn find_open_books(&self, turned_over: f64, findings: &mut Vec<Finding>) {
         if self.keeps_to_tolerance() {
             let share = BOOKS_ERRORS * self.rigid_settings().steps.local_error;
-            let open = open_books(&Books::from(&self.ledger()), turned_over, share);
+            // Errors of steps are relative to what is usual, as is rounding.
+            let least = SELDOM * self.sentry.scales.usual;
+            let open = open_books(&Books::from(&self.ledger()), turned_over.max(least), share);
             findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
         }
     }

@@ -36,6 +36,19 @@ fn the_energy_books_close_to_the_tolerance() {
 }
 
 #[test]
+fn an_event_where_forces_grow_beyond_all_bounds_costs_no_energy() {
+    // Where the corners that hold a shuttle from both sides come to lie opposite each other, the whole step passes astride; a part of
+    // it that ended there would not.
+    let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
+    for tolerance in [1e-7, 1e-8, 1e-11, 1e-12] {
+        let what = format!(
+            "energy books of the grinder at tolerance {tolerance:.0e}, part of the energy turned over"
+        );
+        within(&what, open_part(&mut scene, tolerance), 1e-8);
+    }
+}
+
+#[test]
 fn the_work_of_a_constant_force_is_booked_between_impacts_that_follow_soon() {
     // The motion is simple and the method exact for it, however long the step; the power is not.
     for tolerance in [1e-6, 1e-9, 1e-12] {

@@ -155,10 +155,9 @@ impl RigidSystem {
         let is_smooth = !matches!(group.event, Some((_, SegmentEnd::Switch)));
         if offset != group.span || source == Source::Dense {
             self.with_group(&mut group, |dynamics, tools| {
-                if source == Source::Dense || (is_smooth && dynamics.is_dense_exact(offset)) {
+                let by_dense = source == Source::Dense || (is_smooth && dynamics.is_dense_exact(offset));
+                if by_dense || !dynamics.repeat_to(tools, offset) {
                     dynamics.end_by_dense(offset);
-                } else {
-                    dynamics.repeat_to(tools, offset);
                 }
                 dynamics.end_on_rows(tools);
             });

@@ -132,9 +132,13 @@ impl Stage {
         for body in bodies {
             self.wrenches[body.index()] = Wrench::default();
         }
+        let mut next = 0;
         for &law in laws {
-            let power = works.iter().position(|&work| work == Work::Law(law));
-            self.add_law(&*physics.laws[law], bodies, time, power.map(|place| &mut powers[place]));
+            // Works are in the order of their laws.
+            let does_work = works.get(next) == Some(&Work::Law(law));
+            let power = does_work.then(|| &mut powers[next]);
+            self.add_law(&*physics.laws[law], time, power);
+            next += usize::from(does_work);
         }
         let damping = works.iter().position(|&work| work == Work::Damping);
         let mut damped = 0.0;
@@ -212,21 +216,22 @@ impl Stage {
         }
     }
 
-    fn add_law(&mut self, law: &dyn ForceLaw, bodies: &[BodyId], time: f64, power: Option<&mut f64>) {
+    fn add_law(&mut self, law: &dyn ForceLaw, time: f64, power: Option<&mut f64>) {
         let now = Snapshot::new(time, &self.movings);
         let Some(power) = power else {
             law.apply(&now, &mut Wrenches::new(&mut self.wrenches));
             return;
         };
-        for body in bodies {
-            self.single[body.index()] = Wrench::default();
-        }
+        // A law acts on the bodies that it names, which may be few of many.
+        let named = || law.bodies().iter().filter(|body| !body.is_world()).map(|body| body.index());
+        named().for_each(|index| self.single[index] = Wrench::default());
         law.apply(&now, &mut Wrenches::new(&mut self.single));
         *power = 0.0;
-        for body in bodies {
-            let (moving, wrench) = (&self.movings[body.index()], self.single[body.index()]);
+        for index in named() {
+            // Taken: a body may be named twice.
+            let (moving, wrench) = (&self.movings[index], std::mem::take(&mut self.single[index]));
             *power += wrench.force.dot(moving.velocity) + wrench.torque * moving.angular_velocity;
-            let sum = &mut self.wrenches[body.index()];
+            let sum = &mut self.wrenches[index];
             sum.force += wrench.force;
             sum.torque += wrench.torque;
         }

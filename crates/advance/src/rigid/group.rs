@@ -107,6 +107,8 @@ pub(crate) struct Group {
     pub(crate) roughness: Vec<f64>,
     /// The last step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,
+    /// Its length [s], if no contact varied along it: neither its force nor, of those without force, its gap.
+    pub(crate) steady_step: Option<f64>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
     pub(crate) free_acceleration: f64,
     /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies are large.
@@ -145,7 +147,7 @@ impl Group {
         (self.is_brief, self.has_kinks, self.is_unwatched) = (false, false, false);
         self.stiffness = Stiffness::default();
         self.roughness.clear();
-        self.accepted = None;
+        (self.accepted, self.steady_step) = (None, None);
         self.sunk = 0.0;
         (self.event, self.look) = (None, None);
     }

@@ -371,6 +371,7 @@ impl RigidSystem {
             .any(|group| group.stops.iter().any(|stop| stop.id == id))
     }
 
+    /// Lists the works of a group: those of laws in their order.
     fn list_works(&self, group: &mut Group) {
         group.works.clear();
         let works = group.laws.iter().copied().filter(|&law| !self.has_potential[law]).map(Work::Law);

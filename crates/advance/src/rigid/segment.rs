@@ -63,6 +63,10 @@ const MOST_PLACEMENTS: usize = 4;
 /// Part of its reach by which a body with contacts may move in one step.
 const WATCHED_SHARE: f64 = 0.5;
 
+/// Contact forces that vary along a step by no more than such a part of what they are are steady: the next may be longer by so much,
+/// wherever it takes the bodies.
+const STEADY_PART: f64 = 1e-4;
+
 /// What rounding of positions may add to the energy in a step, in local errors of what is usual in the scene: more, and
 /// energy comes from nothing whatever the steps.
 const UNRESOLVED: f64 = 1e4;
@@ -140,6 +144,8 @@ impl Dynamics<'_> {
             }
             if error <= 1.0 || self.group.kept.passes_astride(step, error) {
                 self.group.kept.note_accepted(step);
+                let is_steady = STEADY_PART * self.growth_by_forces() >= 1.0;
+                self.group.steady_step = is_steady.then_some(step);
                 let accepted = Accepted { length: step, error };
                 // A step that was made short of such a point tells nothing about those after it.
                 let before = self.group.accepted.replace(accepted).filter(|_| !is_led);
@@ -231,8 +237,9 @@ impl Dynamics<'_> {
         self.group.next_step = Some(self.group.next_step.map_or(longest, |next| next.min(longest)));
     }
 
-    /// Repeats the segment up to an offset [s] within it, into the end state.
-    pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) {
+    /// Repeats the segment up to an offset [s] within it, into the end state; false if that is seen to err by more than a step may, as
+    /// where it ends at what the whole step has passed astride.
+    pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) -> bool {
         self.set_scales(&tools.settings.steps, tools.scales);
         tools.stepper.set_scales(tools.scales);
         if offset > 0.0 {
@@ -241,6 +248,7 @@ impl Dynamics<'_> {
             self.group.end_state.clone_from(&self.group.state);
         }
         self.group.span = offset;
+        offset <= 0.0 || tools.stepper.needs_end_rates() || tools.stepper.error_norm(tools.scales) <= 1.0
     }
 
     /// True if dense output errs at an offset [s] by little of what a step may err by: that of explicit methods is of the order
@@ -277,7 +285,8 @@ impl Dynamics<'_> {
     }
 
     /// The longest step [s] along which contacts are surely sampled well: their forces, which no error estimate sees where
-    /// nothing accelerates, and the gaps of those without force vary as bodies move by a part of their size.
+    /// nothing accelerates, and the gaps of those without force vary as bodies move by a part of their size. Where forces have not varied
+    /// along the last step, as of what slides or is carried along, they need not be expected to.
     fn longest_watched_step(&self) -> f64 {
         let group = &self.group;
         let any_leans = !group.leaning.is_empty();
@@ -300,7 +309,8 @@ impl Dynamics<'_> {
             let way = WATCHED_SHARE * reach;
             2.0 * way / (speed + (speed * speed + 2.0 * acceleration * way).sqrt())
         });
-        waits.fold(f64::INFINITY, f64::min)
+        let watched = waits.fold(f64::INFINITY, f64::min);
+        group.steady_step.map_or(watched, |step| watched.max(STEADY_GROWTH * step))
     }
 
     fn reach(&self, body: BodyId) -> f64 {

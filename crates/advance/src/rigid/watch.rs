@@ -21,6 +21,9 @@ pub(crate) const FORCE_SHARE: f64 = 1e-9;
 /// With so many times what counts as no force a contact may seem to pull by rounding when it is held.
 const PULL: f64 = 16.0;
 
+/// Part of what a contact without force may sink by, by which it may vary and stays where it is.
+const STILL_SHARE: f64 = 1e-3;
+
 /// Part of the accuracy by which a held contact may be too near or too far within a step.
 const INNER_SHARE: f64 = 0.5;
 /// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
@@ -139,6 +142,9 @@ impl Dynamics<'_> {
     fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest: Option<(f64, SegmentEnd)> = None;
         let samples = self.sample_rows();
+        if !self.are_still(&samples.heights) {
+            self.group.steady_step = None;
+        }
         self.find_early_sinking(&mut earliest, &samples);
         self.find_early_change(&mut earliest, &samples.rooms);
         self.find_first(&mut earliest, &samples.rooms, &CHANGES);
@@ -163,6 +169,12 @@ impl Dynamics<'_> {
             }
         }
         earliest
+    }
+
+    /// True if contacts that are touched without force neither closed nor opened along the segment.
+    fn are_still(&self, heights: &[[f64; NODES]]) -> bool {
+        let still = STILL_SHARE * self.physics.mechanism.tolerances.sink();
+        heights.iter().all(|sample| sample.iter().all(|height| (height - sample[0]).abs() <= still))
     }
 
     /// Finds for each row the force [N] below which it has none: part of the loads of the less loaded of its bodies, of
