@@ -8,7 +8,8 @@ use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
 use crate::motion::{BodyState, Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
-use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
+use glam::DVec2;
+use halfgap_geometry::{DirectionRange, Feature, FeatureId, PairKind, Shape, pair_kind};
 
 /// Part of the accuracy by which a corner may lean off a line and still fires.
 const LEAN_SHARE: f64 = 1.0 / 16.0;
@@ -29,6 +30,16 @@ pub struct MovingShape<'a, M> {
 }
 
 impl<M: Motion> MovingShape<'_, M> {
+    /// Largest distance [m] of a point whose place depends on how the shape is turned: none of a disc about the centre of mass.
+    fn turning_reach(&self) -> f64 {
+        match self.shape.features() {
+            [Feature::Round(round)] if round.center == DVec2::ZERO && round.range == DirectionRange::Full => {
+                0.0
+            }
+            _ => self.shape.reach(),
+        }
+    }
+
     /// True if place and velocities are numbers at a time [s] of the search.
     fn is_finite(&self, time: f64) -> bool {
         let BodyState { position, angle, velocity, angular_velocity } =
@@ -390,7 +401,9 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     /// A first window in which the bodies move by about a quarter of the smaller one.
     fn first_length(&self, whole: &Window<'_, A, B>) -> f64 {
         let (reach_a, reach_b) = (self.a.shape.reach(), self.b.shape.reach());
-        let speed = whole.speed + whole.spin_a.speed * reach_a + whole.spin_b.speed * reach_b;
+        let turning =
+            whole.spin_a.speed * self.a.turning_reach() + whole.spin_b.speed * self.b.turning_reach();
+        let speed = whole.speed + turning;
         if speed > 0.0 { 0.5 * reach_a.min(reach_b) / speed } else { f64::INFINITY }
     }
 
@@ -401,8 +414,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         // A point turns by at most its arm times the angle, and never farther than across its circle.
         let turned = |spin: f64, reach: f64| (spin * half).min(2.0) * reach;
         let moved = window.speed * half
-            + turned(window.spin_a.speed, self.a.shape.reach())
-            + turned(window.spin_b.speed, self.b.shape.reach());
+            + turned(window.spin_a.speed, self.a.turning_reach())
+            + turned(window.spin_b.speed, self.b.turning_reach());
         let reach = self.farthest_touch() + moved;
         let mut progress = Progress::none_before(end);
         let mut tried = 0;

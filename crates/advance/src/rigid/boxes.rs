@@ -21,8 +21,10 @@ const FEW: usize = 5;
 const FACTOR: f64 = 1.5;
 /// A box is set ahead of a body in flight by this part of its margin: a gas has a seventh fewer moves of boxes for it.
 const AHEAD: f64 = 0.6;
-/// A margin is at least this part of the body's reach, and at most its inverse.
+/// A margin is at least this part of the body's reach, and at most so many times: what is small and far from all else, as a moon, would
+/// leave its boxes without end.
 const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
+const LARGEST_MARGIN: f64 = 1e9;
 
 /// The room a body has around the circle of its reach.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +68,7 @@ impl Room {
         if neighbours > MANY {
             self.margin = (self.margin / FACTOR).max(self.reach * SMALLEST_MARGIN);
         } else if neighbours < FEW {
-            self.margin = (self.margin * FACTOR).min(self.reach / SMALLEST_MARGIN);
+            self.margin = (self.margin * FACTOR).min(self.reach * LARGEST_MARGIN);
         }
     }
 
