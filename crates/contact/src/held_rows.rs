@@ -290,6 +290,18 @@ impl HeldRows {
         self.refining = refining;
     }
 
+    /// As [`solve`](Self::solve), but what soft rows lack is not made good: a millionth of what they hold, and more of that in which
+    /// they all but depend on each other. For who comes back with what is left.
+    ///
+    /// # Panics
+    ///
+    /// As [`solve`](Self::solve).
+    pub fn solve_roughly(&mut self, offset: &[f64], force: &mut [f64]) {
+        assert_eq!(offset.len(), self.len(), "one offset per row");
+        assert_eq!(force.len(), self.len(), "one force per row");
+        self.solve_raised(offset, force);
+    }
+
     fn solve_raised(&mut self, offset: &[f64], force: &mut [f64]) {
         let rows = &self.order.rows;
         let work = &mut self.work;

@@ -2,14 +2,19 @@
 
 use super::within;
 use halfgap::geometry::DVec2;
-use halfgap::{BodyId, BodyState, World};
+use halfgap::{BodyId, BodyState, ConnectorKind, World};
 use halfgap_tests::mechanism::{Workshop, advance, block, connector_error, disc, pendulum_period};
 
 const WORLD: BodyId = BodyId::WORLD;
 
 /// A coupler on parallel cranks of 1 m, at an angle [rad] from hanging; with three cranks one is redundant.
 fn parallelogram(cranks: usize, angle: f64) -> (World, BodyId) {
-    let mut shop = Workshop::new(1e-10);
+    parallelogram_at(1e-10, cranks, angle)
+}
+
+/// The same at a tolerance.
+fn parallelogram_at(tolerance: f64, cranks: usize, angle: f64) -> (World, BodyId) {
+    let mut shop = Workshop::new(tolerance);
     let arm = DVec2::from_angle(angle - std::f64::consts::FRAC_PI_2);
     let feet: Vec<DVec2> = (0..cranks).map(|index| DVec2::new(2.0 * index as f64, 0.0)).collect();
     let last = *feet.last().expect("there are cranks");
@@ -31,17 +36,68 @@ fn parallelogram(cranks: usize, angle: f64) -> (World, BodyId) {
     (shop.build(), bars[0])
 }
 
+/// The period of a parallelogram [s]: the coupler (1 kg) moves with the cranks' ends, without turning; each crank (1 kg, 1 by
+/// 0.1 m) turns about its end.
+fn period_of(cranks: usize, amplitude: f64) -> f64 {
+    let count = cranks as f64;
+    let moment = 1.0 + count * ((1.0 + 0.01) / 12.0 + 0.25);
+    pendulum_period((10.0 * (1.0 + 0.5 * count) / moment).sqrt(), amplitude)
+}
+
+#[test]
+fn a_parallelogram_with_redundant_cranks_goes_through_its_dead_points() {
+    // It lies flat four times in a swing. The redundant cranks leave it but one way to go on.
+    for (cranks, tolerances) in [(3, [1e-4, 1e-6, 1e-8, 1e-10]), (4, [1e-4, 1e-6, 1e-8, 1e-9])] {
+        for tolerance in tolerances {
+            for amplitude in [1.9, 2.2, 2.6] {
+                let (mut world, crank) = parallelogram_at(tolerance, cranks, amplitude);
+                let start = world.state(crank).angle;
+                advance(&mut world, period_of(cranks, amplitude));
+                let what =
+                    format!("{cranks} cranks from {amplitude} rad at {tolerance:e}, a swing: rate [rad/s]");
+                assert!((world.state(crank).angle - start).abs() < 0.1);
+                within(&what, world.state(crank).angular_velocity, 30.0 * tolerance);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rod_that_adds_nothing_to_a_pin_costs_no_accuracy() {
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
+        let amplitude = 2.9;
+        let mut shop = Workshop::new(tolerance);
+        let arm = DVec2::from_angle(amplitude - std::f64::consts::FRAC_PI_2);
+        let bar = shop.bar("bar", DVec2::ZERO, arm);
+        shop.pin(WORLD, bar, DVec2::ZERO);
+        let rod = ConnectorKind::Rod {
+            a: shop.anchor(WORLD, DVec2::ZERO),
+            b: shop.anchor(bar, 0.5 * arm),
+            length: 0.5,
+        };
+        shop.connect(rod, 0.0);
+        let mut world = shop.build();
+        let start = world.state(bar).angle;
+        let rate = f64::sqrt(5.0 / ((1.0 + 0.01) / 12.0 + 0.25));
+        let period = pendulum_period(rate, amplitude);
+        let what = format!("bar on a pin and a rod at {tolerance:e}");
+        for part in [0.1, 0.3, 0.7] {
+            advance(&mut world, part * period);
+            within(&format!("{what}: energy [J]"), world.ledger().integration_error(), 30.0 * tolerance);
+        }
+        advance(&mut world, period);
+        within(&format!("{what}: angle [rad]"), world.state(bar).angle - start, 30.0 * tolerance);
+        within(&format!("{what}: rate [rad/s]"), world.state(bar).angular_velocity, 30.0 * tolerance);
+    }
+}
+
 #[test]
 fn a_parallelogram_with_a_redundant_crank_swings_as_one_pendulum() {
     for cranks in [2, 3, 4] {
         let amplitude = 1.2;
         let (mut world, crank) = parallelogram(cranks, amplitude);
-        // The coupler (1 kg) moves with the cranks' ends, without turning; each crank (1 kg, 1 by 0.1 m) turns about its end.
-        let count = cranks as f64;
-        let moment = 1.0 + count * ((1.0 + 0.01) / 12.0 + 0.25);
-        let rate = (10.0 * (1.0 + 0.5 * count) / moment).sqrt();
         let start = world.state(crank).angle;
-        let period = pendulum_period(rate, amplitude);
+        let period = period_of(cranks, amplitude);
         let energy = world.energy().total();
         advance(&mut world, 3.0 * period);
         let what = format!("parallelogram of {cranks} cranks, 3 swings");

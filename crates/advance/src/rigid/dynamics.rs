@@ -7,12 +7,14 @@ use super::flyer::Flyer;
 use super::group::{Group, Work};
 use super::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 use super::rows::{HeldRow, Mechanism, RowMoment, RowSource, moving_of};
+use super::segment::StepControl;
 use super::system::RigidSettings;
 use super::watch::Samples;
 use crate::ode::Ode;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Connector, MotionBounds, Moving, Spin};
+use halfgap_contact::HeldRows;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -36,6 +38,9 @@ pub(crate) struct Physics<'a> {
     pub(crate) mechanism: Mechanism<'a>,
     pub(crate) laws: &'a [Arc<dyn ForceLaw>],
     pub(crate) extra: Option<ExtraAcceleration>,
+    pub(crate) steps: &'a StepControl,
+    /// States are moved onto the held rows.
+    pub(crate) projects: bool,
 }
 
 impl<'a> Physics<'a> {
@@ -47,7 +52,7 @@ impl<'a> Physics<'a> {
         settings: &'a RigidSettings,
     ) -> Self {
         let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
-        Self { mechanism, laws, extra: settings.extra }
+        Self { mechanism, laws, extra: settings.extra, steps: &settings.steps, projects: settings.projection }
     }
 }
 
@@ -88,6 +93,8 @@ pub(crate) struct Stage {
     /// A state along the segment, and its rates.
     pub(crate) trial: Vec<f64>,
     pub(crate) trial_rates: Vec<f64>,
+    /// The same, moved onto the held rows.
+    pub(crate) on_rows: Vec<f64>,
     /// Bounds on the motion of the group's bodies along the segment.
     pub(crate) bounds: Vec<MotionBounds>,
     /// Places in the group of the bodies that are watched along the segment.
@@ -306,9 +313,18 @@ impl Dynamics<'_> {
     }
 
     fn respond_by_rows(&mut self) {
+        self.respond_with(HeldRows::solve);
+    }
+
+    /// As [`respond`](Self::respond), but rows that share what they hold lack a small part of it. Not of trees.
+    pub(crate) fn respond_roughly(&mut self) {
+        self.respond_with(HeldRows::solve_roughly);
+    }
+
+    fn respond_with(&mut self, solve: fn(&mut HeldRows, &[f64], &mut [f64])) {
         let Stage { offsets, forces, changes, solves, .. } = &mut *self.stage;
         forces.resize(offsets.len(), 0.0);
-        self.group.held.solve(offsets, forces);
+        solve(&mut self.group.held, offsets, forces);
         changes.resize(self.group.bodies.len(), [0.0; 3]);
         changes.fill([0.0; 3]);
         self.group.held.respond(forces, changes);
@@ -350,7 +366,7 @@ impl Dynamics<'_> {
         Response { place: Some(place), acceleration, square }
     }
 
-    fn solve_rows(&mut self) {
+    pub(crate) fn solve_rows(&mut self) {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
         self.stage.gap_error = 0.0;
@@ -467,9 +483,13 @@ impl Ode for Dynamics<'_> {
     type Error = Infallible;
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
-        self.find_rates(offset, state, rates, Self::solve_rows);
+        if !self.group.held.is_soft() {
+            self.find_rates(offset, state, rates, Self::solve_rows);
+            return Ok(());
+        }
+        self.find_rates_on_rows(offset, state, rates);
         let Group { held, kept, dependent, .. } = &mut *self.group;
-        if kept.is_open() && held.is_soft() {
+        if kept.is_open() {
             kept.note(offset, held.kept_beyond(*dependent));
         }
         Ok(())
@@ -478,7 +498,13 @@ impl Ode for Dynamics<'_> {
 
 impl Dynamics<'_> {
     /// Rates of the group's state; `constrain` adds what the rows do to accelerations in the stage.
-    fn find_rates(&mut self, offset: f64, state: &[f64], rates: &mut [f64], constrain: fn(&mut Self)) {
+    pub(crate) fn find_rates(
+        &mut self,
+        offset: f64,
+        state: &[f64],
+        rates: &mut [f64],
+        constrain: fn(&mut Self),
+    ) {
         let bodies = self.group.bodies.len();
         self.stage.evaluations += 1;
         self.stage.load(&self.group.bodies, state);

@@ -41,7 +41,7 @@ const FAR: f64 = 8.0;
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
 /// A change of velocities by more than so many times what is fast corrects nothing: to stop a group altogether, some points change
 /// by a little more than the fastest moves.
-const ALL_OF_IT: f64 = 2.0;
+pub(crate) const ALL_OF_IT: f64 = 2.0;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
 /// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
@@ -357,7 +357,7 @@ impl Dynamics<'_> {
     }
 
     /// The same of a state.
-    fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
+    pub(crate) fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
         let forced = (self.group.free_acceleration * self.length(control)).sqrt();
         let speed = forced.max(self.top_speed(state));
         if speed > 0.0 { speed } else { control.speed }
@@ -518,7 +518,7 @@ impl Dynamics<'_> {
     }
 
     /// How far [m], or by how much [m/s], the changes in the stage move a point of a body at most.
-    fn largest_change(&self) -> f64 {
+    pub(crate) fn largest_change(&self) -> f64 {
         let sizes = self
             .group
             .bodies
@@ -529,7 +529,7 @@ impl Dynamics<'_> {
     }
 
     /// Adds the changes in the stage to the numbers of a state that begin at a place: positions or velocities.
-    fn change(&mut self, state: &mut Vec<f64>, at: usize) {
+    pub(crate) fn change(&mut self, state: &mut Vec<f64>, at: usize) {
         for (value, change) in state[at..].iter_mut().zip(self.stage.changes.iter().flatten()) {
             *value += change;
         }

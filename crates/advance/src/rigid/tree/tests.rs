@@ -4,6 +4,7 @@ use crate::rigid::dynamics::{Dynamics, Physics, Stage, set_body_state};
 use crate::rigid::flyer::{FlightLaw, Flyer};
 use crate::rigid::group::Group;
 use crate::rigid::rows::{HeldRow, Mechanism, RowSource};
+use crate::rigid::test_scene::FINE;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
@@ -145,7 +146,7 @@ impl Scene {
             set_body_state(&mut group.state, count, place, &flyer.state_at(Time::ZERO));
         }
         let mechanism = Mechanism { flyers, connectors, tolerances: &TOLERANCES };
-        let physics = Physics { mechanism, laws: &[], extra: None };
+        let physics = Physics { mechanism, laws: &[], extra: None, steps: &FINE.steps, projects: true };
         let mut stage = Stage::new(vec![Moving::BACKGROUND; count]);
         act(&mut Dynamics { physics, group, stage: &mut stage, start: Time::ZERO })
     }
