@@ -8,8 +8,7 @@ use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
 use crate::motion::{BodyState, Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
-use glam::DVec2;
-use halfgap_geometry::{DirectionRange, Feature, FeatureId, PairKind, Shape, pair_kind};
+use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 
 /// Part of the accuracy by which a corner may lean off a line and still fires.
 const LEAN_SHARE: f64 = 1.0 / 16.0;
@@ -32,12 +31,7 @@ pub struct MovingShape<'a, M> {
 impl<M: Motion> MovingShape<'_, M> {
     /// Largest distance [m] of a point whose place depends on how the shape is turned: none of a disc about the centre of mass.
     fn turning_reach(&self) -> f64 {
-        match self.shape.features() {
-            [Feature::Round(round)] if round.center == DVec2::ZERO && round.range == DirectionRange::Full => {
-                0.0
-            }
-            _ => self.shape.reach(),
-        }
+        if self.shape.centered_disc().is_some() { 0.0 } else { self.shape.reach() }
     }
 
     /// True if place and velocities are numbers at a time [s] of the search.

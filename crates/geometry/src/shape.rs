@@ -102,6 +102,17 @@ impl Shape {
         Aabb { min: pose.position + min, max: pose.position + max }
     }
 
+    /// The radius [m] of a shape that is nothing but a disc about the body's origin: how it is turned does not matter.
+    #[must_use]
+    pub fn centered_disc(&self) -> Option<f64> {
+        match self.features() {
+            [Feature::Round(round)] if round.center == DVec2::ZERO && round.range == DirectionRange::Full => {
+                (round.radius > 0.0).then_some(round.radius)
+            }
+            _ => None,
+        }
+    }
+
     /// Largest distance [m] of a point of the shape from the body's origin.
     #[must_use]
     pub fn reach(&self) -> f64 {

@@ -177,3 +177,31 @@ fn a_weight_a_million_times_as_heavy_rests_on_a_light_block() {
         1e-10,
     );
 }
+
+/// A ball that bounces by 0.8 on a floor of a width [m], 1 m below it, with a spin [rad/s]; far above flies a bullet at a speed [m/s], if it does.
+fn bounce_beside(tolerance: f64, spin: f64, width: f64, bullet: f64) -> f64 {
+    let mut shop = Workshop::new(tolerance);
+    shop.fixed("floor", block(width, 2.0), DVec2::new(0.0, -1.0));
+    let state = BodyState { angular_velocity: spin, ..at_rest(0.0, 1.5) };
+    let ball = shop.settler("ball", disc(0.5), 1.0, state, 0.8);
+    if bullet > 0.0 {
+        shop.body("bullet", disc(0.5), 1.0, thrown(0.0, 20.0, DVec2::new(bullet, 0.0)));
+    }
+    let mut world = shop.build();
+    let fall = (2.0 / GRAVITY).sqrt();
+    // At the top of the first bounce.
+    advance(&mut world, 1.8 * fall);
+    world.state(ball).position.y - 0.5 - 0.64
+}
+
+#[test]
+fn what_is_fast_elsewhere_does_not_make_a_bounce_slow() {
+    for tolerance in [1e-1, 1e-2, 1e-3, 1e-5] {
+        let cases =
+            [("a bullet", 0.0, 10.0, 1e4), ("its spin", 1e4, 10.0, 0.0), ("a long floor", 0.0, 1e5, 0.0)];
+        for (what, spin, width, bullet) in cases {
+            let off = bounce_beside(tolerance, spin, width, bullet);
+            within(&format!("bounce beside {what} at {tolerance:e}: height [m]"), off, tolerance);
+        }
+    }
+}

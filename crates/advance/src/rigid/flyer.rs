@@ -5,7 +5,6 @@ use crate::ode::SegmentPolynomial;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
-use halfgap_geometry::{DirectionRange, Feature, Shape};
 use std::f64::consts::TAU;
 
 /// What the number nearest to a turn [rad] lacks of it.
@@ -56,7 +55,7 @@ impl Flyer {
         } else {
             Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
         };
-        let (reach, disc) = (body.shape.reach(), disc_radius(&body.shape));
+        let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
         Self { start: time, flight, reach, disc, body, turns: 0.0, is_integrated: false, dense: None }
     }
 
@@ -180,19 +179,10 @@ impl Flyer {
     }
 }
 
-/// The radius of a shape that is one full circle about the origin.
-fn disc_radius(shape: &Shape) -> Option<f64> {
-    match shape.features() {
-        [Feature::Round(round)] if round.center == DVec2::ZERO && round.range == DirectionRange::Full => {
-            (round.radius > 0.0).then_some(round.radius)
-        }
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use halfgap_geometry::Shape;
 
     #[test]
     fn an_angle_of_many_turns_is_unwound_and_told_in_full() {

@@ -16,6 +16,8 @@ const GAP_ROUNDINGS: f64 = 512.0;
 /// Twice that: a body falls through the target gap from rest with a speed that is told from rounding.
 const SPEED_ROUNDINGS: f64 = 1024.0;
 
+/// What is slow is not slower than this part of what is by the fastest body.
+const SLOWEST: f64 = 1e-3;
 /// Part of `velocity_tol`, and of the scene's speed, up to which a rate is none.
 const REST_OF_SLOW: f64 = 1e-3;
 const REST: f64 = 1e-5;
@@ -35,6 +37,9 @@ pub struct Scales {
     pub extent: f64,
     /// Largest speed of a point of a body [m/s].
     pub speed: f64,
+    /// The least speed [m/s] of those that bodies have, or get by falling as far as they are large; `None` if none moves or falls. What
+    /// is slow beside a bullet need not be so beside a ball.
+    pub slow: Option<f64>,
     /// Largest acceleration of a body [m/s^2] but for damping, which makes nothing fast.
     pub acceleration: f64,
 }
@@ -71,6 +76,14 @@ impl Scales {
         self.speed.max((self.acceleration * self.extent).sqrt())
     }
 
+    /// A normal speed [m/s] that is slow: a part of what is fast, but to stop at it a body need not have fallen by more than half the same
+    /// part of its size.
+    fn slowness(&self, tolerance: f64) -> f64 {
+        let of_fast = tolerance * self.speed_scale();
+        let of_slow = self.slow.map_or(f64::INFINITY, |slow| tolerance.sqrt() * slow);
+        of_fast.min(of_slow.max(SLOWEST * of_fast))
+    }
+
     /// The thresholds that a relative tolerance asks for.
     #[must_use]
     pub fn tolerances(&self, tolerance: f64) -> Tolerances {
@@ -80,7 +93,7 @@ impl Scales {
         Tolerances {
             target_gap,
             accuracy: Tolerances::ACCURACY_SHARE * target_gap,
-            velocity_tol: (tolerance * self.speed_scale()).max(told_from_rounding),
+            velocity_tol: self.slowness(tolerance).max(told_from_rounding),
         }
     }
 }
@@ -152,6 +165,18 @@ fn resolution_time(tolerances: &Tolerances, scales: &Scales) -> f64 {
 mod tests {
     use super::*;
     use glam::DVec2;
+
+    #[test]
+    fn a_bullet_makes_nothing_else_slow() {
+        let slow = |tolerance: f64, speed: f64| {
+            let scales = Scales { speed, slow: Some(3.0), coordinate: 1.0, ..Scales::default() };
+            scales.tolerances(tolerance).velocity_tol
+        };
+        // Where all is about as fast, or much is asked for, it does not matter.
+        assert_eq!([slow(1e-2, 10.0), slow(1e-8, 1e4)], [1e-1, 1e-4]);
+        assert_eq!([slow(1e-2, 1e4), slow(1e-4, 1e4)], [0.1 * 3.0, 1e-2 * 3.0]);
+        assert_eq!(slow(1e-2, 1e9), SLOWEST * 1e7);
+    }
 
     #[test]
     fn what_happens_far_away_is_no_faster() {

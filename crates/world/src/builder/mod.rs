@@ -196,6 +196,7 @@ impl WorldBuilder {
             energy_of(&named, &self.forces, self.settings.start_time, state, &mut Vec::new()).total()
         };
         let forces = forces_on(&bodies, &wrenches);
+        let torques = torques_on(&bodies, &wrenches);
         let given = total(&bodies);
         let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
         if let Some((connector, rate)) = apart.filter(|&(_, rate)| rate > tolerances.velocity_tol) {
@@ -208,7 +209,7 @@ impl WorldBuilder {
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
         let energies = EnergyScales {
-            usual: usual_energy(&bodies, forces),
+            usual: usual_energy(&bodies, forces) + torques,
             rough: tolerances.target_gap * forces,
             lost: lost_energy(&bodies, forces, &self.settings),
         };
@@ -321,6 +322,12 @@ impl WorldBuilder {
             let acceleration = (law.acceleration + wrench.force / inertia.mass).length()
                 + wrench.torque.abs() / inertia.moment * reach;
             scales.acceleration = scales.acceleration.max(acceleration);
+            let turning =
+                if shape.centered_disc().is_some() { 0.0 } else { body.state.angular_velocity.abs() * reach };
+            let slow = (body.state.velocity.length() + turning).max((acceleration * reach).sqrt());
+            if slow > 0.0 {
+                scales.slow = Some(scales.slow.map_or(slow, |least| least.min(slow)));
+            }
         }
         bounds.into_iter().for_each(|bounds| scales.spread(bounds));
         scales
@@ -356,6 +363,12 @@ fn forces_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
     let movable = bodies.iter().zip(wrenches).filter(|((body, ..), _)| !body.is_fixed());
     let forces = movable.map(|((body, law, _), wrench)| wrench.force + law.acceleration / body.inverse_mass);
     forces.map(|force| force.length()).sum()
+}
+
+/// Sum of the sizes of the torques [N m] on the movable bodies: what they do to a radian [J].
+fn torques_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
+    let movable = bodies.iter().zip(wrenches).filter(|((body, ..), _)| !body.is_fixed());
+    movable.map(|(_, wrench)| wrench.torque.abs()).sum()
 }
 
 fn center_of_mass(body: &BodySpec) -> DVec2 {
