@@ -1,7 +1,7 @@
 //! Rest: bodies that lose their bounce stay where they are, at no cost.
 
 use halfgap::geometry::DVec2;
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, rest_time};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, rest_time, thrown};
 use halfgap_tests::{on_floor, world_of};
 
 #[test]
@@ -80,4 +80,41 @@ fn an_elastic_ball_that_bounces_as_high_as_the_gap_comes_to_rest_in_the_end() {
     let (impacts, lost) = bounces_from(20.0);
     assert!((6900..7100).contains(&impacts), "{impacts} impacts");
     assert!(lost.abs() < 1e-3, "{lost} gaps");
+}
+
+#[test]
+fn what_is_carried_along_takes_few_steps_and_meets_what_is_in_its_way() {
+    // At 30 m/s a block slides along a floor of 200 m, against a wall at its end, and another over its edge.
+    /// At half a block a step it would be hundreds.
+    const MOST_STEPS: u64 = 60;
+    for with_wall in [true, false] {
+        let mut shop = Workshop::new(1e-8);
+        shop.fixed("floor", block(200.0, 1.0), DVec2::new(0.0, -0.5));
+        if with_wall {
+            shop.fixed("wall", block(1.0, 5.0), DVec2::new(90.0, 2.5));
+        }
+        let slider = shop.dull("slider", block(1.0, 0.5), 1.0, thrown(-90.0, 0.25, DVec2::new(30.0, 0.0)));
+        let rider = shop.dull("rider", block(0.5, 0.5), 1.0, thrown(-90.0, 0.75, DVec2::new(30.0, 0.0)));
+        let mut world = shop.build();
+        advance(&mut world, 5.0);
+        let gap = world.tolerances().target_gap;
+        assert!((world.state(slider).position.x - 60.0).abs() < 1e-10);
+        assert!(
+            (world.state(rider).position - world.state(slider).position).distance(DVec2::new(0.0, 0.5))
+                < 2.0 * gap
+        );
+        let steps = world.statistics().steps;
+        assert!(steps < MOST_STEPS, "{steps} steps");
+        advance(&mut world, 6.5);
+        let (slider, rider) = (world.state(slider).position, world.state(rider).position);
+        if with_wall {
+            assert!((slider.x - 89.0).abs() < 2.0 * gap, "it stops at the wall: {slider:?}");
+            assert!((rider.x - 89.25).abs() < 2.0 * gap, "so does what it carries: {rider:?}");
+        } else {
+            assert!(
+                slider.y < 0.25 - 1e-3 && rider.y < 0.75 - 1e-3,
+                "they tip over the edge: {slider:?}, {rider:?}"
+            );
+        }
+    }
 }

@@ -144,7 +144,8 @@ impl Dynamics<'_> {
             }
             if error <= 1.0 || self.group.kept.passes_astride(step, error) {
                 self.group.kept.note_accepted(step);
-                let is_steady = STEADY_PART * self.growth_by_forces() >= 1.0;
+                // What laws do elsewhere nothing here foretells.
+                let is_steady = self.group.laws.is_empty() && STEADY_PART * self.growth_by_forces() >= 1.0;
                 self.group.steady_step = is_steady.then_some(step);
                 let accepted = Accepted { length: step, error };
                 // A step that was made short of such a point tells nothing about those after it.
