@@ -222,3 +222,20 @@ fn who_stops_at_an_event_can_act_there() {
     assert!(world.advance_while(2.0, stop).expect("it bounces").is_break());
     assert!((world.time() - 1.6).abs() < 1e-7);
 }
+
+#[test]
+fn what_is_struck_where_contacts_carry_impulses_only_bounces_and_comes_to_rest() {
+    let settings = WorldSettings { contacts: false, usual_speed: Some(5.0), ..WorldSettings::default() };
+    let mut builder = WorldBuilder::new(settings);
+    let [floor, disc] = [Shape::block(10.0, 1.0), Shape::disc(0.5)].map(|shape| shape.expect("a fine size"));
+    builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+    let state = BodyState { position: DVec2::new(0.0, 0.5), ..BodyState::default() };
+    let disc = builder.add(BodySpec { elasticity: 0.5, ..BodySpec::movable("disc", disc, 1.0, state) });
+    builder.add_gravity(disc, DVec2::new(0.0, -GRAVITY));
+    let mut world = builder.build().expect("it stands");
+    world.advance_to(1.0, &mut |_| ()).expect("it rests");
+    world.intervene(&[upwards(disc, -2.0)], &mut |_| ()).expect("it bounces");
+    assert!((world.state(disc).velocity.y - 1.0).abs() < 1e-3, "{:?}", world.state(disc));
+    world.advance_to(3.0, &mut |_| ()).expect("it rests again");
+    assert!((world.state(disc).position.y - 0.5).abs() < 1e-3, "{:?}", world.state(disc));
+}

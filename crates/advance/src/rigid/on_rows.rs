@@ -31,16 +31,7 @@ impl Dynamics<'_> {
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..MOST_ROUNDS {
-            self.stage.load(&self.group.bodies, state);
-            let mut offsets = std::mem::take(&mut self.stage.offsets);
-            offsets.clear();
-            row_rates.clear();
-            self.factorize(|gap, rate| {
-                offsets.push(gap);
-                row_rates.push(rate);
-            });
-            let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
-            self.stage.offsets = offsets;
+            let error = self.measure_errors(state, &mut row_rates);
             respond(self);
             // A change by x leaves errors of the order of x^2/L.
             if self.largest_change().powi(2) > error * length {

@@ -472,16 +472,7 @@ impl Dynamics<'_> {
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
-            self.stage.load(&self.group.bodies, &end);
-            let mut offsets = std::mem::take(&mut self.stage.offsets);
-            offsets.clear();
-            rates.clear();
-            self.factorize(|gap, rate| {
-                offsets.push(gap);
-                rates.push(rate);
-            });
-            let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
-            self.stage.offsets = offsets;
+            let error = self.measure_errors(&end, &mut rates);
             self.respond();
             // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask for more than
             // what holds near here, and for what rounding makes of their gaps: errors far within the zone are not worth more.
@@ -516,6 +507,22 @@ impl Dynamics<'_> {
         }
         self.stage.rates = rates;
         self.group.end_state = end;
+    }
+
+    /// Measures the rows in a state and factorises: by how far [m] each gap is off, left in the stage's offsets, and its rate. Returns the
+    /// largest error.
+    pub(crate) fn measure_errors(&mut self, state: &[f64], rates: &mut Vec<f64>) -> f64 {
+        self.stage.load(&self.group.bodies, state);
+        let mut offsets = std::mem::take(&mut self.stage.offsets);
+        offsets.clear();
+        rates.clear();
+        self.factorize(|gap, rate| {
+            offsets.push(gap);
+            rates.push(rate);
+        });
+        let error = offsets.iter().fold(0.0f64, |most, gap| most.max(gap.abs()));
+        self.stage.offsets = offsets;
+        error
     }
 
     /// How far [m], or by how much [m/s], the changes in the stage move a point of a body at most.
