@@ -137,7 +137,8 @@ fn detector(kinds: [FeatureKind; 2]) -> Detector {
 }
 
 /// The thresholds of a pair of features: a convex arc in a hollow barely larger has its own.
-pub(crate) fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tolerances {
+#[must_use]
+pub fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tolerances {
     match (a, b) {
         (Feature::Round(a), Feature::Round(b)) if a.radius < 0.0 || b.radius < 0.0 => {
             tolerances.for_clearance(-(a.radius + b.radius))

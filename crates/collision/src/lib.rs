@@ -41,7 +41,9 @@ pub use connector::{
     Alignment, Anchor, Connector, ConnectorError, ConnectorId, ConnectorKind, ConnectorSample, RailError,
     RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, SplineJoint, rope_contact,
 };
-pub use detect::{Moment, contact_levers, detect_features_of_pair, detect_pair, record_features};
+pub use detect::{
+    Moment, contact_levers, detect_features_of_pair, detect_pair, pair_tolerances, record_features,
+};
 pub use estimate::{EstimatePoint, estimate_target_time};
 pub use first_contact::{
     FeatureRule, FirstContact, MovingShape, PairSearch, Search, SearchSettings, disc_contact, first_contact,

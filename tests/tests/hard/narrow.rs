@@ -168,3 +168,26 @@ fn a_block_falls_through_a_channel_as_wide_as_itself() {
     }
     within("block falls through a channel as wide as itself: place [m]", furthest, 1e-7);
 }
+
+#[test]
+fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else() {
+    // A disc falls into a groove with a round bottom, 5e-10 m wider than itself, and bounces there. What opens fires again at its own target,
+    // which in such a fit is a part of its clearance: at that of others it would fire all the time.
+    let (disc, bottom) = (0.06742892346340036, 0.06742892396340036);
+    let mut world = world_of(&format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 0.6, tolerance = 1e-5 }}\n\
+         force = [{{ gravity = {{ acceleration = [0.0, -9.81] }} }}]\n\
+         [[body]]\nname = \"groove\"\nfixed = true\nelasticity = 0.3\ncenter_of_mass = [0.0, 0.0]\n\
+         shape = {{ outline = {{ paths = [{{ start = [-1.0, -1.0], edges = [{{ line = [1.0, -1.0] }}, {{ line = [1.0, 1.0] }}, \
+         {{ line = [{bottom}, 1.0] }}, {{ line = [{bottom}, 0.0] }}, {{ arc = {{ to = [-{bottom}, 0.0], center = [0.0, 0.0], clockwise = true }} }}, \
+         {{ line = [-{bottom}, 1.0] }}, {{ line = [-1.0, 1.0] }}, {{ line = [-1.0, -1.0] }}] }}] }} }}\n\
+         [[body]]\nname = \"disc\"\nelasticity = 0.3\nmass = 1.0\nshape = {{ disc = {{ radius = {disc} }} }}\n\
+         position = [0.0, 0.6]\nvelocity = [0.0, -2.9090472377626666]\n"
+    ));
+    let count = impacts(&mut world, 0.6);
+    assert!((5..50).contains(&count), "{count} impacts");
+    let steps = world.statistics().steps;
+    assert!(steps < 200, "{steps} steps");
+    let disc = world.find("disc").expect("the disc");
+    within("disc in a groove that just holds it: depth [m]", world.state(disc).position.y, 1e-9);
+}

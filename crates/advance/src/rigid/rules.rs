@@ -5,7 +5,7 @@ use super::pairs::PairId;
 use super::region::{Region, Touch};
 use super::settle::DEEPEST;
 use super::system::RigidSystem;
-use halfgap_collision::FeatureRule;
+use halfgap_collision::{FeatureRule, pair_tolerances};
 
 /// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
 const SEAM_SHARE: f64 = 1.0 / 32.0;
@@ -28,7 +28,10 @@ impl RigidSystem {
     /// brought to where they are held it may be moved so deep that the search would take it for the far side of a body, and
     /// it may come back before it is out: such a one fires where it lies.
     fn returns_to(&self, touch: Touch) -> f64 {
-        let target = self.settings.tolerances.target_gap;
+        let [a, b] = [0, 1]
+            .map(|side: usize| self.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
+        // In a hollow barely larger it never gets as far as others have to.
+        let target = pair_tolerances(a, b, &self.settings.tolerances).target_gap;
         let (gap, _) = self.gap_at(touch, self.now);
         if gap < -DEEPEST * target { gap } else { target }
     }
