@@ -193,11 +193,14 @@ impl Quartic {
     fn dip_between(&self, index: usize) -> Option<f64> {
         let first = index as f64 - MIDDLE_NODE;
         let edge = |part: usize| first + part as f64 / PARTS as f64;
+        let enough = NEARLY_ZERO * self.size;
         let mut lowest: Option<Sample> = None;
         let mut before = self.slope(edge(0));
         for part in 0..PARTS {
             let after = self.slope(edge(part + 1));
-            if before < 0.0 && after >= 0.0 {
+            // It is nowhere far below its tangents.
+            let may_dip = || self.value(edge(part)) + before / (PARTS as f64) < enough;
+            if before < 0.0 && after >= 0.0 && may_dip() {
                 let place = self.minimum_between(edge(part), edge(part + 1));
                 let value = self.value(place);
                 if lowest.is_none_or(|(_, least)| value < least) {
@@ -207,7 +210,7 @@ impl Quartic {
             before = after;
         }
         let (place, value) = lowest?;
-        (value < NEARLY_ZERO * self.size).then_some(place + MIDDLE_NODE)
+        (value < enough).then_some(place + MIDDLE_NODE)
     }
 
     /// Where the slope, negative at `low` and not so at `high`, vanishes.
