@@ -66,6 +66,7 @@ fn a_bead_that_is_just_past_a_joint_goes_on_over_the_hill_or_turns_back() {
         assert_eq!(state.position.x < 0.0, goes_over, "{depth} m: {state:?}");
         let energy = 0.5 * state.velocity.length_squared() - state.position.x + GRAVITY * state.position.y;
         within(&format!("bead {depth:e} m past a joint: energy [J]"), energy - depth, 1e-9);
+        assert_eq!(world.statistics().impacts, 0, "the joint is smooth");
     }
 }
 

@@ -179,7 +179,16 @@ impl RigidSystem {
         if is_corner {
             self.note_corner(id)?;
         }
-        Ok(happened && is_corner)
+        // At a smooth joint rounding was stopped, unless something else has met at the same moment.
+        let rest = self.rest_speed();
+        let mut rows = self.last_impact.rows.iter();
+        let meets = rows.any(|row| !row.collision.parties.bilateral && row.rate_before < -rest);
+        let is_impact = happened && (is_corner || meets);
+        if happened && !is_impact {
+            self.counts.impacts -= 1;
+            self.has_hit = false;
+        }
+        Ok(is_impact)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
