@@ -28,11 +28,6 @@ const RESOLVED: f64 = 1e-13;
 
 /// In place of a body: none, or one that cannot move.
 const NONE: u32 = u32::MAX;
-/// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what depends, far less
-/// than what does not.
-const SOFTNESS: f64 = 1e-6;
-/// A row depends on another that makes up more than this part of its square.
-const SHARE: f64 = 1e-12;
 
 /// Rows held as equations, with the structure of their factor kept from solve to solve.
 ///
@@ -138,27 +133,6 @@ impl HeldRows {
         }
     }
 
-    /// From now on the given rows, of those that the last [`factorize`](Self::factorize) has found to depend on each other,
-    /// share what they hold together instead of one of them taking all: none counts as dependent, and their forces are nearly
-    /// the least that do, weighed by the squares of the rows. The others stay as stiff as they are: between a heavy and a light
-    /// body a row has far less left of its square than what shares may lack.
-    ///
-    /// Their squares are raised a little, and what forces then lack is made good step by step.
-    /// So which rows depend on which may change on the way without a jump, and a motion that departs a little from what
-    /// they agree on has no forces that come from their disagreement alone.
-    pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
-        for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
-            *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
-        }
-        self.is_soft = self.raise.iter().any(|&raise| raise > 0.0);
-    }
-
-    /// Whether any rows share what they hold.
-    #[must_use]
-    pub fn is_soft(&self) -> bool {
-        self.is_soft
-    }
-
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -202,14 +176,6 @@ impl HeldRows {
             }
         }
         dependent
-    }
-
-    /// Notes which rows one depends on, whose rest has just been measured: those that make up more than rounding of it.
-    fn note_shares(&mut self, place: usize, diagonal: f64) {
-        self.shares[place] = true;
-        for k in 0..place {
-            self.shares[k] |= self.work[k] * self.work[k] * self.square(k) > SHARE * diagonal;
-        }
     }
 
     /// Sets a row of Ĵ and returns its square.
@@ -343,13 +309,6 @@ impl HeldRows {
                 }
             }
         }
-    }
-
-    /// Whether a row depends on others, by the last [`factorize`](Self::factorize).
-    #[must_use]
-    pub fn is_dependent(&self, row: usize) -> bool {
-        let place = self.order.rows.iter().position(|&other| other as usize == row);
-        place.is_some_and(|place| self.inverse_pivot[place] == 0.0)
     }
 }
 

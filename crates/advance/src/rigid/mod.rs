@@ -3,7 +3,7 @@
 //!
 //! What moves: `parts` is what a system is made of, `flyer` is one body with its segment, `path` its motion along it, `lane` what predictions read of it; `law` is what a force law is, `rows` are
 //! the contacts and connectors that are held, `group` the bodies that share their steps, `dynamics` their equations of
-//! motion, `tree` the same where they hang together by pins, `on_rows` where its stages lie, `segment` one step of them, `energy` what it may not lose, `brief` and `stiff` which method makes it, `kinks` of
+//! motion, `tree` the same where they hang together by pins, `on_rows` where its stages lie, `segment` one step of them, `projection` moves its end onto the rows, `energy` what it may not lose, `brief` and `stiff` which method makes it, `kinks` of
 //! splines end it, `extending` adds it to the group, `deferred` puts it off until somebody looks, `watch` (with `crossing`) finds what ends it early.
 //!
 //! What happens: `boxes` is a body's room in the broad phase, `pairs` and `predictions` say when which pair comes into
@@ -49,6 +49,7 @@ mod parts;
 mod path;
 mod placing;
 mod predictions;
+mod projection;
 mod region;
 mod repeats;
 mod report;

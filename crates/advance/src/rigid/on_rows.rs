@@ -2,10 +2,10 @@
 //!
 //! Where states are on the rows, what one of them asks for the others give already. A stage is off them, by far more than the error
 //! of its step: there the rows all but depend on each other, and what they disagree in makes large forces of nothing. To move a stage
-//! changes nothing of the motion, which is on the rows. Ends of steps are projected in `segment`, with more care.
+//! changes nothing of the motion, which is on the rows. Ends of steps are moved in `projection`, with more care.
 
 use super::dynamics::Dynamics;
-use super::segment::ALL_OF_IT;
+use super::projection::ALL_OF_IT;
 
 /// Newton steps of one stage.
 const MOST_ROUNDS: usize = 8;
