@@ -31,6 +31,7 @@ mod graze;
 mod group;
 mod groups;
 mod hops;
+mod horizon;
 mod impacts;
 mod intervention;
 mod jams;

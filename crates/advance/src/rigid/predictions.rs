@@ -40,6 +40,7 @@ impl RigidSystem {
     /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
         self.lanes[body.index()].follow(&self.flyers[body.index()]);
+        self.forget_contacts_ahead(body);
         self.predict_leaving(body);
     }
 
@@ -150,9 +151,17 @@ impl RigidSystem {
             return;
         }
         self.drop_rules(pair, from);
-        if let Some(outlook) = look_ahead(from, until, |span| Some(self.search(pair, from, span))) {
-            self.note_prediction(pair, outlook);
+        let horizon = self.searched_until([a, b], from, until);
+        let search = |span| Some(self.search(pair, from, span));
+        let Some((prediction, clear)) = look_ahead(from, horizon, search) else { return };
+        match prediction {
+            Prediction::Contact(_) => self.note_contact_ahead([a, b], from, clear),
+            Prediction::Quiet if clear < until => {
+                return self.note_prediction(pair, (Prediction::SearchOn, clear));
+            }
+            Prediction::Quiet | Prediction::SearchOn => {}
         }
+        self.note_prediction(pair, (prediction, clear));
     }
 
     /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near each other: in a

@@ -131,6 +131,8 @@ pub struct RigidSystem {
     /// What predictions read of each body.
     pub(crate) lanes: Vec<Lane>,
     pub(crate) broad: BroadPhase,
+    /// The first contact that is known of each body, or of the group that it leads.
+    pub(crate) first_contacts: Vec<Time>,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
     /// Bodies that no other can collide with.
@@ -200,6 +202,7 @@ impl RigidSystem {
             rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
             lanes: flyers.iter().map(|flyer| Lane::new(flyer, settings.tolerances.target_gap)).collect(),
             broad: BroadPhase::new(),
+            first_contacts: vec![Time::NEVER; count],
             loners: loners(count, settings.collisions, &excluded),
             excluded,
             queue: EventQueue::new(),
