@@ -103,7 +103,9 @@ fn connectors_are_drawn() {
         [[connector]]\nrod = { a = { body = \"world\", point = [0.0, 0.0] }, b = { body = \"a\", point = [0.0, 0.0] }, length = 1.0 }\n\
         [[connector]]\nrope = { a = { body = \"a\", point = [0.0, 0.0] }, b = { body = \"b\", point = [0.0, 0.0] }, length = 1.5 }\n\
         [[connector]]\nslot = { a = { body = \"world\", point = [2.0, 0.0] }, b = { body = \"b\", point = [0.0, 0.0] }, normal = [0.0, 1.0] }\n\
-        [[connector]]\nrail = { a = { body = \"b\", point = [0.0, 0.0] }, path = { points = [[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]] } }\n";
+        [[connector]]\nrail = { a = { body = \"b\", point = [0.0, 0.0] }, path = { points = [[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]] } }\n\
+        [[connector]]\nrail_stop = { a = { body = \"b\", point = [0.0, 0.0] }, path = { points = [[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]] }, at = 1.5, upper = true }\n\
+        [[force]]\nspring = { a = { body = \"a\", point = [0.0, 0.0] }, b = { body = \"b\", point = [0.0, 0.0] }, rest_length = 1.0, stiffness = 2.0, damping = 0.5 }\n";
     let scene = Scene::parse(text, SceneFormat::Toml).unwrap_or_else(|error| panic!("{error}"));
     let world = world(&scene);
     let mut recording = Recording::new("", &world);
@@ -111,11 +113,15 @@ fn connectors_are_drawn() {
     let picture = scene_picture(&world, &recording, &recording.frames[0]);
     assert_drawable(&picture);
     let ties: Vec<&str> = picture.lines().filter(|line| line.contains("#4c5459")).collect();
-    // The rail, through many points, then the rod, the rope with its dashes, and the ring of the slot.
-    assert_eq!(ties.len(), 4, "{ties:?}");
+    // The rail, through many points, and its stop, then the rod, the rope with its dashes, the ring of the slot, and the spring, whose
+    // dashpot lies beside it.
+    assert_eq!(ties.len(), 6, "{ties:?}");
     assert!(ties[0].matches('L').count() > 200, "{}", ties[0]);
-    assert!(ties[1].contains("<path") && !ties[1].contains("dash"), "{}", ties[1]);
-    assert!(ties[2].contains("dash") && ties[3].contains("<circle"), "{ties:?}");
+    for bar in [ties[1], ties[2]] {
+        assert!(bar.contains("<path") && bar.matches('L').count() == 1 && !bar.contains("dash"), "{bar}");
+    }
+    assert!(ties[3].contains("dash") && ties[4].contains("<circle"), "{ties:?}");
+    assert_eq!(ties[5].matches('L').count(), 11, "{}", ties[5]);
 }
 
 fn impact(time: f64, impulse: f64) -> Impact {

@@ -5,6 +5,7 @@ use halfgap::BodyState;
 use halfgap::geometry::{DVec2, Shape};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 use halfgap_tests::world_of;
+use std::fmt::Write;
 
 #[test]
 fn a_disc_in_a_ring_wider_by_1e_9_stays_in_and_keeps_its_energy() {
@@ -190,4 +191,39 @@ fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else(
     assert!(steps < 200, "{steps} steps");
     let disc = world.find("disc").expect("the disc");
     within("disc in a groove that just holds it: depth [m]", world.state(disc).position.y, 1e-9);
+}
+
+#[test]
+fn discs_that_part_slowly_within_their_target_zone_take_no_steps_of_their_own() {
+    // Three discs run round in a ring one behind the other, each a little faster than the last. Bounds on how they turn do not tell
+    // that they part: each pair fires again and again, and what it is told about that must outlast what the other pair does.
+    const TARGET: f64 = 1e-9;
+    const RADIUS: f64 = 0.1;
+    const PARTING: f64 = 1e-9;
+    let way = 1.0 - RADIUS - TARGET;
+    // Nearer than the target by a quarter of the accuracy.
+    let apart = 2.0 * RADIUS + TARGET - 1.5e-10;
+    let angle = 2.0 * (0.5 * apart / way).asin();
+    let mut text = String::from(
+        "format = \"halfgap-scene-1\"\ntitle = \"bearing\"\n\
+        [run]\nduration = 0.01\ntarget_gap = 1e-9\naccuracy = 6e-10\n\
+        [[body]]\nname = \"ring\"\nfixed = true\nshape = { ring = { outer = 1.2, inner = 1.0 } }\n",
+    );
+    for place in 0..3 {
+        let rate = 1.0 + f64::from(place) * PARTING / (way * (0.5 * angle).cos());
+        let out = DVec2::from_angle(f64::from(place) * angle);
+        let (at, velocity) = (out * way, out.perp() * (rate * way));
+        let _ = write!(
+            text,
+            "[[body]]\nname = \"{place}\"\nmass = 1.0\nelasticity = 0.3\nshape = {{ disc = {{ radius = {RADIUS} }} }}\n\
+            position = [{}, {}]\nvelocity = [{}, {}]\n",
+            at.x, at.y, velocity.x, velocity.y
+        );
+    }
+    let mut world = world_of(&text);
+    advance(&mut world, 0.01);
+    let steps = world.statistics().steps;
+    assert!(steps <= 50, "{steps} steps");
+    let nearest = world.statistics().smallest_gap.expect("they touch");
+    within("discs that part in a ring: gap less target [m]", nearest - TARGET, 2e-10);
 }

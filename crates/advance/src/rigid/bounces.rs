@@ -24,13 +24,16 @@ const MOST_LOW: u32 = 1000;
 
 impl RigidSystem {
     /// Remembers the gaps and rates of the contacts of a region, whose bodies have their new velocities.
-    pub(crate) fn note_seen(&mut self, region: &Region) {
+    pub(crate) fn note_seen(&mut self, region: &Region, fired_open: bool) {
         for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
             let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
             let before = self.pairs.seen(pair).iter().find(|old| old.features == touch.features);
             let low = before.map_or(0, |before| self.low_bounces(before, gap));
             let formed = before.map_or(gap, |before| before.formed.max(gap));
-            let fresh = Seen { features: touch.features, time: self.now, gap, formed, rate, low };
+            let goes_on = || before.is_some_and(|before| before.fires_open);
+            let fires_open = if region.fired == Some(*touch) { fired_open } else { goes_on() };
+            let fires_open = fires_open && gap < self.settings.tolerances.target_gap;
+            let fresh = Seen { features: touch.features, time: self.now, gap, formed, rate, low, fires_open };
             let seen = self.pairs.seen_mut(pair);
             seen.retain(|old| old.features != fresh.features);
             if seen.len() == MOST_SEEN {
@@ -59,6 +62,11 @@ impl RigidSystem {
     fn is_low_bounce(&self, record: &Collision) -> bool {
         let Some((pair, features)) = self.features_of(record) else { return false };
         self.has_stayed_low(pair, features, -record.motion.normal_velocity, &record.tolerances)
+    }
+
+    /// True if a contact of a pair would fire although it does not close.
+    pub(crate) fn fires_open(&self, pair: PairId, features: [FeatureId; 2]) -> bool {
+        self.pairs.seen(pair).iter().any(|seen| seen.features == features && seen.fires_open)
     }
 
     /// The pair whose contact a record is, and its features, those of the lesser body first.

@@ -334,7 +334,7 @@ impl RigidSystem {
         self.settle_and_still(work)?;
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
-        self.note_seen(&work.region);
+        self.note_seen(&work.region, work.fired_open);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(work);
         if self.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {

@@ -6,7 +6,7 @@
 //! [`FlightLaw`]: super::FlightLaw
 
 use glam::DVec2;
-use halfgap_collision::{BodyId, Moving};
+use halfgap_collision::{Anchor, BodyId, Moving};
 use std::fmt::Debug;
 
 /// Where all bodies are and how they move at one moment, for a law to read.
@@ -89,6 +89,11 @@ pub trait ForceLaw: Debug + Send + Sync {
     /// Potential energy [J] of which the forces are the gradient; `None` if there is none: its work is then integrated.
     fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
+        None
+    }
+
+    /// The two points between which the law acts, for whoever shows it; `None` if there are no such.
+    fn ends(&self) -> Option<[Anchor; 2]> {
         None
     }
 

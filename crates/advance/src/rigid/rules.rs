@@ -38,7 +38,7 @@ impl RigidSystem {
 
     /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
     /// that touch without force.
-    pub(crate) fn set_rules(&mut self, EventWork { region, settling, fired_open, .. }: &EventWork) {
+    pub(crate) fn set_rules(&mut self, EventWork { region, settling, .. }: &EventWork) {
         let rest = self.rest_speed();
         self.take_rules(region);
         let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
@@ -51,9 +51,8 @@ impl RigidSystem {
             } else if settling.lets_pass(*touch) {
                 touch.lowered_to(self.grazing_gap(touch.bodies))
             } else {
-                // What fired although it does not close would do so again at once. It may sink no farther than its zone.
-                let fired_open = *fired_open && region.fired == Some(*touch) && gap > least;
-                let stays = rate <= rest || fired_open;
+                // What fires although it does not close would do so again at once. It may sink no farther than its zone.
+                let stays = rate <= rest || (gap > least && self.fires_open(pair, touch.features));
                 touch.lowered_to(if stays { self.sinks_to(*touch, gap) } else { self.returns_to(*touch) })
             };
             if is_held {

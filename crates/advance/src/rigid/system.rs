@@ -73,7 +73,7 @@ pub struct RigidSettings {
 /// What was done so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// Segments started.
+    /// Segments started by movable bodies.
     pub segments: u64,
     /// Events handled, of all kinds.
     pub events: u64,
@@ -194,10 +194,11 @@ impl RigidSystem {
         let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = flyers.len();
+        let movable = flyers.iter().filter(|flyer| !flyer.body().is_fixed()).count();
         let connector_ids = (0..).map(ConnectorId);
         let mut system = Self {
             settings,
-            counts: Counts { segments: count as u64, ..Counts::default() },
+            counts: Counts { segments: movable as u64, ..Counts::default() },
             pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
             rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
             lanes: flyers.iter().map(|flyer| Lane::new(flyer, settings.tolerances.target_gap)).collect(),

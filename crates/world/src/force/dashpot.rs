@@ -32,6 +32,10 @@ impl ForceLaw for Dashpot {
         &self.bodies
     }
 
+    fn ends(&self) -> Option<[Anchor; 2]> {
+        Some(self.ends)
+    }
+
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
         let between = Between::of(&self.ends, now);
         if let Some(direction) = between.direction() {

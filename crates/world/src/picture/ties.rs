@@ -1,11 +1,12 @@
-//! Connectors: rails as the curves that they are, rods and ropes as lines between their points, pins and slots as small rings.
+//! What ties bodies: rails as the curves that they are, their stops as bars across, rods and ropes as lines between their points,
+//! pins and slots as small rings, springs and dashpots as zigzags.
 
 use super::svg::{Svg, number};
 use super::view::View;
 use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
-use halfgap_collision::{Anchor, Connector, ConnectorKind, RailPath};
+use halfgap_collision::{Anchor, ConnectorKind, RailPath};
 use halfgap_geometry::Aabb;
 use std::fmt::Write;
 
@@ -15,22 +16,44 @@ const RAIL_POINTS: usize = 256;
 const RING: f64 = 3.5;
 const COLOR: &str = "#4c5459";
 
-/// The boxes of what connectors tie to the world: rails, and points of the background.
+/// Teeth of the zigzag of a spring, their height [px], and the part of it at each end that is straight.
+const TEETH: usize = 8;
+const TOOTH: f64 = 5.0;
+const STRAIGHT: f64 = 0.15;
+/// A stop's bar reaches so far to either side of its rail [px].
+const BAR: f64 = 7.0;
+const LINE: [(&str, &str); 3] = [("fill", "none"), ("stroke", COLOR), ("stroke-width", "1.5")];
+
+/// The boxes of what is tied to the world: rails, and points of the background.
 pub(super) fn fixed_boxes(world: &World) -> impl Iterator<Item = Aabb> + '_ {
-    world.connectors().iter().flat_map(|connector| {
+    let of_connectors = world.connectors().iter().flat_map(|connector| {
         let (a, b) = connector.anchors();
-        let fixed = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
-        let points = fixed.map(|anchor| Aabb::around(anchor.point));
-        points.chain(connector.path().map(|path| path.bounds()))
-    })
+        [Some(a), b]
+    });
+    let anchors = of_connectors.flatten().copied().chain(elastic_ties(world).flatten());
+    let points = anchors.filter(|end| end.body.is_world()).map(|end| Aabb::around(end.point));
+    points.chain(world.connectors().iter().filter_map(|connector| Some(connector.path()?.bounds())))
 }
 
-/// Draws the rails of a world.
+/// The ends of springs and dashpots; of what lies side by side those of one.
+fn elastic_ties(world: &World) -> impl Iterator<Item = [Anchor; 2]> + '_ {
+    let mut last = None;
+    let ends = world.forces().iter().filter_map(|law| law.ends());
+    ends.filter(move |&ends| last.replace(ends) != Some(ends))
+}
+
+/// Draws the rails of a world with their stops.
 pub(super) fn draw_rails(svg: &mut Svg, world: &World, view: &View) {
     for connector in world.connectors() {
-        if let ConnectorKind::Rail { path, .. } = &connector.kind {
-            let attributes = [("fill", "none"), ("stroke", COLOR), ("stroke-width", "1.5")];
-            svg.path(&rail_data(path, view), &attributes);
+        match &connector.kind {
+            ConnectorKind::Rail { path, .. } => svg.path(&rail_data(path, view), &LINE),
+            ConnectorKind::RailStop { path, at, .. } => {
+                let place = path.place_at(*at);
+                let across = place.normal() * (BAR / view.scale());
+                let [a, b] = [place.point() - across, place.point() + across];
+                svg.line(view.to_page(a), view.to_page(b), &LINE[1..]);
+            }
+            _ => {}
         }
     }
 }
@@ -43,38 +66,61 @@ fn rail_data(path: &RailPath, view: &View) -> String {
     let mut data = String::new();
     for length in lengths {
         let (x, y) = view.to_page(path.place_at(length).point());
-        let _ = write!(data, "{}{} {}", if data.is_empty() { 'M' } else { 'L' }, number(x), number(y));
+        let _ = write!(data, "{}{} {}", command(&data), number(x), number(y));
     }
     data
 }
 
 /// Draws what ties bodies in a frame of a recording: ropes with dashes, rods without.
 pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, frame: &Frame, view: &View) {
+    let place_of = |anchor: &Anchor| view.to_page(place_of(world, recording, frame, anchor));
     for connector in world.connectors() {
-        let [a, b] = ends(world, recording, frame, connector).map(|end| end.map(|end| view.to_page(end)));
-        let line = [("stroke", COLOR), ("stroke-width", "1.5"), ("stroke-dasharray", "6 3")];
-        let ring = [("fill", "none"), ("stroke", COLOR), ("stroke-width", "1.5")];
+        let (a, b) = connector.anchors();
+        let [a, b] = [Some(a), b].map(|end| end.map(place_of));
         match (&connector.kind, a, b) {
-            (ConnectorKind::Rod { .. }, Some(a), Some(b)) => svg.line(a, b, &line[..2]),
-            (ConnectorKind::Rope { .. }, Some(a), Some(b)) => svg.line(a, b, &line),
+            (ConnectorKind::Rod { .. }, Some(a), Some(b)) => svg.line(a, b, &LINE[1..]),
+            (ConnectorKind::Rope { .. }, Some(a), Some(b)) => {
+                svg.line(a, b, &[LINE[1], LINE[2], ("stroke-dasharray", "6 3")]);
+            }
             (ConnectorKind::Pin { .. } | ConnectorKind::Slot { .. }, Some(a), _) => {
-                svg.circle(a, RING, &ring);
+                svg.circle(a, RING, &LINE);
             }
             _ => {}
         }
     }
+    for ends in elastic_ties(world) {
+        svg.path(&zigzag(ends.each_ref().map(place_of)), &LINE);
+    }
 }
 
-/// Where the points of a connector are in a frame.
-fn ends(world: &World, recording: &Recording, frame: &Frame, connector: &Connector) -> [Option<DVec2>; 2] {
-    let place_of = |anchor: &Anchor| {
-        if anchor.body.is_world() {
-            return anchor.point;
-        }
-        let place = recording.movable.iter().position(|&body| body == anchor.body);
-        let state = place.and_then(|place| frame.states.get(place).copied());
-        state.unwrap_or_else(|| world.state(anchor.body)).pose().point_to_world(anchor.point)
+/// The path of a spring between two points of the page.
+fn zigzag([a, b]: [(f64, f64); 2]) -> String {
+    let [a, b] = [a, b].map(DVec2::from);
+    let across = (b - a).normalize_or_zero().perp() * TOOTH;
+    let tooth = |at: usize| {
+        let part = STRAIGHT + (1.0 - 2.0 * STRAIGHT) * (at as f64 + 0.5) / TEETH as f64;
+        a.lerp(b, part) + if at % 2 == 0 { across } else { -across }
     };
-    let (a, b) = connector.anchors();
-    [Some(place_of(a)), b.map(place_of)]
+    let [first, last] = [STRAIGHT, 1.0 - STRAIGHT].map(|part| a.lerp(b, part));
+    let points = [a, first].into_iter().chain((0..TEETH).map(tooth)).chain([last, b]);
+    let mut data = String::new();
+    for point in points {
+        let _ = write!(data, "{}{} {}", command(&data), number(point.x), number(point.y));
+    }
+    data
+}
+
+/// Whether the next point of a path begins it.
+fn command(data: &str) -> char {
+    if data.is_empty() { 'M' } else { 'L' }
+}
+
+/// Where an anchor is in a frame.
+fn place_of(world: &World, recording: &Recording, frame: &Frame, anchor: &Anchor) -> DVec2 {
+    if anchor.body.is_world() {
+        return anchor.point;
+    }
+    let place = recording.movable.iter().position(|&body| body == anchor.body);
+    let state = place.and_then(|place| frame.states.get(place).copied());
+    state.unwrap_or_else(|| world.state(anchor.body)).pose().point_to_world(anchor.point)
 }
