@@ -15,8 +15,9 @@ const OPEN: u32 = u32::MAX;
 /// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
 const LOST: f64 = 0.25;
 
-/// Part of its square below which what is left of a row may be no more than rounding.
-const DOUBTFUL: f64 = 1e-6;
+/// Part of its square below which what is left of a row may be no more than rounding, enlarged by closed rows of which as little as
+/// passes for independent was left.
+const DOUBTFUL: f64 = 1e-4;
 
 /// Rounding of what is left of a row: so much times 1 + |z|², where z times the closed rows are closest to it.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
@@ -143,10 +144,16 @@ impl ClosedRows {
         let diagonal = if self.system.movable[row] { 1.0 + self.proximal + self.spread } else { 0.0 };
         let complement = diagonal - square;
         let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
+        let relation = Relation { complement, dependent: complement <= dependence, first };
         // A raise is far more than rounding.
-        let is_doubtful = self.doubts && self.spread == 0.0 && complement <= DOUBTFUL;
-        let dependent = complement <= dependence || (is_doubtful && complement <= self.rounding(closed));
-        Relation { complement, dependent, first }
+        let doubts = self.doubts && self.spread == 0.0;
+        Relation { dependent: relation.dependent || (doubts && self.is_doubtful(relation)), ..relation }
+    }
+
+    /// True if it is bilateral rows that the row found doubtful nearly depends on: of contacts it takes less than it has itself.
+    fn depends_on_bilateral(&self) -> bool {
+        let mut shares = self.shares.iter().zip(&self.rows);
+        shares.all(|(share, &row)| self.free[row] || share.abs() < 1.0)
     }
 
     /// Rounding of the Schur complement of the row just considered: that of Â, enlarged where the closed rows nearly depend
@@ -192,7 +199,9 @@ impl ClosedRows {
                 continue;
             }
             let relation = self.consider(row);
-            if relation.dependent {
+            if relation.dependent
+                || (self.free[row] && self.is_doubtful(relation) && self.depends_on_bilateral())
+            {
                 independent &= !self.free[row];
             } else if relation.complement > least || self.free[row] {
                 self.close(row, relation);
@@ -200,6 +209,34 @@ impl ClosedRows {
         }
         self.narrow_envelope = self.factor.envelope();
         independent
+    }
+
+    /// Closes the bilateral rows as far as they are independent, those of which little is left after all others: of one that is closed
+    /// too early those that depend on it leave nothing but its rounding, enlarged to what passes for independent. Returns whether
+    /// every one was.
+    pub(crate) fn close_bilateral(&mut self) -> bool {
+        let mut independent = true;
+        for least in [DOUBTFUL, 0.0] {
+            for place in 0..self.order.rows.len() {
+                let row = self.order.rows[place] as usize;
+                if !self.free[row] || self.is_closed(row) {
+                    continue;
+                }
+                let relation = self.consider(row);
+                if relation.dependent || self.is_doubtful(relation) {
+                    independent = false;
+                } else if relation.complement > least {
+                    self.close(row, relation);
+                }
+            }
+        }
+        self.narrow_envelope = self.factor.envelope();
+        independent
+    }
+
+    /// True if what is left of the row just considered may be no more than rounding.
+    fn is_doubtful(&mut self, relation: Relation) -> bool {
+        relation.complement <= DOUBTFUL && relation.complement <= self.rounding(self.len())
     }
 
     /// Closes the same rows again, in order, with the forces they have. Returns false if rounding made one dependent:
