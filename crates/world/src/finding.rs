@@ -20,6 +20,9 @@ const GAPS: f64 = 1.0;
 /// Where steps have a given length, and err by what they err, so many times as much may be off, and bodies may overlap so much
 /// more deeply.
 const ROUGHLY: f64 = 10.0;
+/// Where nothing is promised: part of the largest coordinate by which a connector may be off, and of the energy turned over that the
+/// books may lack. Anybody would see more.
+const PLAINLY: f64 = 1e-2;
 /// So many times the room that bodies have to sink between impulses may be used up, where contacts carry no forces.
 const SINKING: f64 = 1.25;
 /// How much of the energy turned over the books may lack, in errors of a step and in roundings of the energies.
@@ -163,8 +166,8 @@ impl Finding {
 }
 
 impl World {
-    /// Looks whether connectors are together, bodies are apart, and the energy books close, as far as the settings
-    /// promise that. Empty if all is well.
+    /// Looks whether connectors are together, bodies are apart, and the energy books close, as the settings promise; where they
+    /// promise nothing, whether that is plain to see. Empty if all is well.
     ///
     /// `turned_over` is the energy [J] that the run has moved: the largest kinetic energy, change of the potential energy
     /// and work of force laws that was seen.
@@ -174,10 +177,9 @@ impl World {
     }
 
     pub(crate) fn find_connectors_off(&self, findings: &mut Vec<Finding>) {
-        if self.rigid_settings().projection {
-            let share = CONNECTOR_TOLERANCES * self.tolerance() + CONNECTOR_ROUNDINGS;
-            self.connectors_off(self.leniency() * share, findings);
-        }
+        let share = CONNECTOR_TOLERANCES * self.tolerance() + CONNECTOR_ROUNDINGS;
+        let is_projected = self.rigid_settings().projection;
+        self.connectors_off(if is_projected { self.leniency() * share } else { PLAINLY }, findings);
     }
 
     /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut within their zone, and
@@ -227,13 +229,12 @@ impl World {
     }
 
     fn find_open_books(&self, turned_over: f64, findings: &mut Vec<Finding>) {
-        if self.keeps_to_tolerance() {
-            let share = BOOKS_ERRORS * self.rigid_settings().steps.local_error;
-            // Errors of steps are relative to what is usual, as is rounding.
-            let least = SELDOM * self.sentry.scales.usual;
-            let open = open_books(&Books::from(&self.ledger()), turned_over.max(least), share);
-            findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
-        }
+        let of_steps = BOOKS_ERRORS * self.rigid_settings().steps.local_error;
+        let share = if self.keeps_to_tolerance() { of_steps } else { PLAINLY };
+        // Errors of steps are relative to what is usual, as is rounding.
+        let least = SELDOM * self.sentry.scales.usual;
+        let open = open_books(&Books::from(&self.ledger()), turned_over.max(least), share);
+        findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
     }
 
     /// Whether the books are open by far more than what is told, or captures take a good part of all energy. Who looks seldom does
@@ -244,7 +245,7 @@ impl World {
             // Where nothing moves or falls, there is only rounding.
             return None;
         }
-        let share = (ASTRAY + ASTRAY_PER_STEP * self.statistics().steps as f64) * self.tolerance();
+        let share = (ASTRAY + ASTRAY_PER_STEP * self.steps() as f64) * self.tolerance();
         let allowed = if *is_watchful {
             let rounding = ASTRAY * f64::EPSILON * books.now.potential.abs().max(books.start.abs());
             share * turned_over + rounding + scales.lost

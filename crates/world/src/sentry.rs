@@ -84,7 +84,7 @@ impl World {
     /// # Errors
     /// It does not; else that of the advance.
     pub(crate) fn stand_guard<T>(&mut self, outcome: Result<T, RunError>) -> Result<T, RunError> {
-        let segments = self.statistics().steps;
+        let segments = self.steps();
         let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
         let is_due = self.is_look_due();
         if outcome.is_ok() && is_soon && !is_due || !self.keeps_to_tolerance() {

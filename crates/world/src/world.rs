@@ -44,7 +44,7 @@ impl Energy {
 /// What a run cost, and how close it came.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
-    /// Segments of motion started.
+    /// Segments of motion started, of movable bodies.
     pub steps: u64,
     /// Evaluations of force laws by an integrator; closed forms need none.
     pub evaluations: u64,
@@ -54,9 +54,9 @@ pub struct Statistics {
     pub backups: u64,
     /// Contact problems solved.
     pub contact_solves: u64,
-    /// Smallest gap [m] seen at an impact.
+    /// Smallest gap [m] of a contact seen, at an event or within a step; `None` if nothing has touched.
     pub smallest_gap: Option<f64>,
-    /// Largest error of a connector [m].
+    /// Largest error of a connector [m] seen within a step or at the present time; `None` without connectors.
     pub largest_connector_error: Option<f64>,
 }
 
@@ -310,6 +310,8 @@ impl World {
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         let counts = self.system.counts();
+        let ids = (0..).map(ConnectorId).take(self.connectors.len());
+        let errors = counts.largest_connector_error.into_iter().chain(ids.map(|id| self.connector_error(id)));
         Statistics {
             steps: counts.segments,
             evaluations: counts.evaluations,
@@ -317,8 +319,13 @@ impl World {
             backups: counts.backups,
             contact_solves: counts.contact_solves,
             smallest_gap: counts.smallest_gap,
-            largest_connector_error: counts.largest_connector_error,
+            largest_connector_error: errors.reduce(f64::max),
         }
+    }
+
+    /// Steps so far.
+    pub(crate) fn steps(&self) -> u64 {
+        self.system.counts().segments
     }
 
     /// Advances to a time [s], telling of each event in order; nothing happens if that is in the past.

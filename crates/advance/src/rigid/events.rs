@@ -334,6 +334,7 @@ impl RigidSystem {
         self.settle_and_still(work)?;
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
+        work.region.motions.iter().for_each(|&(gap, _)| self.counts.note_gap(gap));
         self.note_seen(&work.region, work.fired_open);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(work);

@@ -34,7 +34,9 @@ impl Dynamics<'_> {
         self.note_stiffness(tools, told);
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
         (self.group.event, self.group.look) = (None, None);
-        self.group.largest_error = self.stage.gap_error;
+        // Where ends are projected, what is left there is rounding.
+        let is_projected = tools.settings.projection;
+        self.group.largest_error = if is_projected { self.stage.gap_error } else { self.connector_error() };
         Ok(())
     }
 

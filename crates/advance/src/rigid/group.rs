@@ -117,9 +117,8 @@ pub(crate) struct Group {
     pub(crate) projected: f64,
     /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.
     pub(crate) largest_error: f64,
-    /// How deep [m] a held contact lies in the middle of the segment below where its bodies touch: rows that contradict each
-    /// other do not keep to their gaps.
-    pub(crate) sunk: f64,
+    /// The least gap [m] of a held contact in the middle of the segment, if there is one and somebody looked.
+    pub(crate) least_gap: Option<f64>,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
     /// Offset [s] up to which no contact can lose its force, as the stages of the step tell, while nobody has looked further.
@@ -127,6 +126,11 @@ pub(crate) struct Group {
 }
 
 impl Group {
+    /// How deep [m] a held contact lies below where its bodies touch: rows that contradict each other do not keep to their gaps.
+    pub(crate) fn sunk(&self) -> f64 {
+        self.least_gap.map_or(0.0, |gap| (-gap).max(0.0))
+    }
+
     /// Forgets everything but the room of its buffers.
     pub(crate) fn clear(&mut self) {
         self.bodies.clear();
@@ -148,7 +152,7 @@ impl Group {
         self.stiffness = Stiffness::default();
         self.roughness.clear();
         (self.accepted, self.steady_step) = (None, None);
-        self.sunk = 0.0;
+        self.least_gap = None;
         (self.event, self.look) = (None, None);
     }
 

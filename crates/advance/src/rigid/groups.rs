@@ -91,7 +91,7 @@ impl RigidSystem {
     /// What takes over from a contact that has sunk lies as deep.
     pub(crate) fn holds_deep(&self, bodies: [BodyId; 2]) -> f64 {
         let depths = bodies.map(|body| match self.group_of(body) {
-            Some(group) => group.sunk,
+            Some(group) => group.sunk(),
             None => self.groups.past_of[body.index()].sunk_until(self.now),
         });
         let sunk = depths[0].max(depths[1]);
@@ -131,6 +131,9 @@ impl RigidSystem {
     fn book_works(&mut self, group: &Group) {
         if group.rows.iter().any(|row| row.bilateral) {
             self.counts.note_connector_error(group.largest_error);
+        }
+        if let Some(gap) = group.least_gap {
+            self.counts.note_gap(gap);
         }
         self.ledger.projections += group.projected;
         let first = 2 * group.velocities();

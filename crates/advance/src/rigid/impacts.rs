@@ -133,7 +133,7 @@ impl RigidSystem {
         }
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);
-            if !record.parties.bilateral {
+            if record.parties.primary.site.is_some() {
                 self.counts.note_gap(record.geometry.distance);
             }
         }

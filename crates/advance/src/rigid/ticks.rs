@@ -165,6 +165,10 @@ impl RigidSystem {
     pub(crate) fn handle_tick(&mut self) -> Result<bool, AdvanceError> {
         self.queue.clear(self.tick_source());
         self.ticks.pressed = 0;
+        for index in 0..self.ticks.waiting.len() {
+            let (gap, _) = self.gap_at(self.ticks.waiting[index], self.now);
+            self.counts.note_gap(gap);
+        }
         let mut work = self.work.take().unwrap_or_default();
         work.seeds.clear();
         work.seeds.extend(self.ticks.waiting.iter().flat_map(|touch| touch.bodies));

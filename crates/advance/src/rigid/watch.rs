@@ -202,9 +202,9 @@ impl Dynamics<'_> {
 
     /// By how much held contacts are off between the ends of the segment, where dense output is less exact, in units of what is
     /// allowed so that nothing overlaps and what touches is seen to, or connectors, in units of what steps may err by. The
-    /// largest error of a connector is noted, and how deep a contact lies.
+    /// largest error of a connector is noted, and the least gap of a contact.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
-        (self.group.largest_error, self.group.sunk) = (0.0, 0.0);
+        (self.group.largest_error, self.group.least_gap) = (0.0, None);
         let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
@@ -213,21 +213,26 @@ impl Dynamics<'_> {
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         for &part in if any_contact { &INNER[..] } else { &INNER[..1] } {
             self.put_at(part * self.group.span);
-            for row in &self.group.rows {
+            for row in self.group.rows.iter().filter(|row| matches!(row.source, RowSource::Contact(_))) {
                 let gap = self.physics.mechanism.gap(row, &self.stage.movings);
-                let error = gap - row.gap;
-                match row.source {
-                    RowSource::Contact(_) => {
-                        excess = excess.max(error.abs() / least);
-                        self.group.sunk = self.group.sunk.max(-gap);
-                    }
-                    RowSource::Connector(..) => {
-                        self.group.largest_error = self.group.largest_error.max(error.abs());
-                    }
-                }
+                excess = excess.max((gap - row.gap).abs() / least);
+                self.group.least_gap = Some(self.group.least_gap.map_or(gap, |least| least.min(gap)));
             }
+            self.group.largest_error = self.group.largest_error.max(self.connector_error());
         }
         excess.max(self.group.largest_error / most.max(least))
+    }
+
+    /// The largest distance [m] by which a connector is off, with the bodies in place; the rows of one follow each other.
+    pub(crate) fn connector_error(&self) -> f64 {
+        let (mut last, mut square, mut largest) = (None, 0.0, 0.0f64);
+        for row in &self.group.rows {
+            let RowSource::Connector(id, _) = row.source else { continue };
+            let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
+            square = error * error + if last.replace(id) == Some(id) { square } else { 0.0 };
+            largest = largest.max(square);
+        }
+        largest.sqrt()
     }
 
     /// Forces of the rows at an offset [s] of the segment, left in the stage.

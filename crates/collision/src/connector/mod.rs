@@ -307,7 +307,8 @@ impl Connector {
         }
     }
 
-    /// How far off it is [m]: the largest gap of a bilateral connector, by how much the others are beyond their limit.
+    /// How far off it is [m]: the gap of a bilateral connector, of a pin the distance of its points; by how much the others are beyond
+    /// their limit.
     ///
     /// `hint` is where a rail or a stop has seen its point last, as in [`Connector::measure_near`]. A rail's point that has been seen may
     /// be on any continuation of the path; otherwise, as at a start, only where the nearest place is an end.
@@ -320,7 +321,7 @@ impl Connector {
             let gap = self.measure_near(row, a, b, hint).gap;
             if self.is_bilateral() { gap.abs() } else { (-gap).max(0.0) }
         };
-        (0..self.row_count()).map(off).fold(0.0, f64::max)
+        (0..self.row_count()).map(off).fold(0.0, f64::hypot)
     }
 }
 
