@@ -29,13 +29,13 @@ pub(crate) fn check(options: &CheckOptions) -> Result<End, Failure> {
             }
         };
         if !options.json {
-            output::print(&lines(&report));
+            output::print(&lines(&report))?;
         }
         reports.push(report);
     }
     if options.json {
         let json = serde_json::to_string(&reports).expect("reports are strings, flags and numbers only");
-        output::print(&format!("{json}\n"));
+        output::print(&format!("{json}\n"))?;
     }
     Ok(match () {
         () if reports.iter().any(|report| !report.usable) => End::BadInput,

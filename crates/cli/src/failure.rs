@@ -37,13 +37,15 @@ pub(crate) enum Failure {
     Scene(SceneError),
     /// A file of the recording could not be written.
     Write(PathBuf, io::Error),
+    /// Standard output could not be written to.
+    Output(io::Error),
     /// The threads of a sweep could not be started.
     Threads(rayon::ThreadPoolBuildError),
 }
 
 impl Failure {
     pub(crate) fn exit_code(&self) -> u8 {
-        // A folder that cannot be written to is a wrong option.
+        // What cannot be written to is a wrong option.
         2
     }
 
@@ -56,6 +58,7 @@ impl Failure {
         match self {
             Self::Scene(error) => describe(error),
             Self::Write(path, error) => format!("error: --out: cannot write {}: {error}", path.display()),
+            Self::Output(error) => format!("error: cannot write to standard output: {error}"),
             Self::Threads(error) => format!("error: --threads: {error}"),
         }
     }

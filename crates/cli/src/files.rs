@@ -41,11 +41,11 @@ pub(crate) fn write_all(
     write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))
 }
 
-/// So many of the frames, evenly over the run and with both ends; all if there are no more.
+/// So many of the frames between the first and the last, evenly over the run; all if there are no more.
 fn evenly(frames: &[Frame], count: usize) -> impl Iterator<Item = &Frame> {
-    let count = count.min(frames.len());
     let last = frames.len().saturating_sub(1);
-    (0..count).map(move |index| &frames[index * last / count.saturating_sub(1).max(1)])
+    let count = count.min(last.saturating_sub(1));
+    (1..=count).map(move |index| &frames[index * last / (count + 1)])
 }
 
 fn write(
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_are_spread_evenly_over_the_frames() {
+    fn pictures_are_spread_evenly_between_the_ends() {
         let frame = |index: u32| Frame {
             time: f64::from(index),
             states: Vec::new(),
@@ -77,9 +77,9 @@ mod tests {
         let frames: Vec<_> = (0..9).map(frame).collect();
         let times = |count| evenly(&frames, count).map(|frame| frame.time).collect::<Vec<_>>();
         assert!(times(0).is_empty());
-        assert_eq!(times(1), [0.0]);
-        assert_eq!(times(3), [0.0, 4.0, 8.0]);
-        assert_eq!(times(100).len(), 9);
+        assert_eq!(times(1), [4.0]);
+        assert_eq!(times(3), [2.0, 4.0, 6.0]);
+        assert_eq!(times(100), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         assert_eq!(evenly(&[], 5).count(), 0);
     }
 }

@@ -24,7 +24,7 @@ fn main() -> ExitCode {
         Command::Run(options) => run::run(&options),
         Command::Check(options) => check::check(&options),
         Command::Sweep(options) => sweep::sweep(&options),
-        Command::Solve(options) => Ok(solve::run(&options)),
+        Command::Solve(options) => solve::run(&options),
     };
     match end {
         Ok(end) => end.into(),

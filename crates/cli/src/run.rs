@@ -37,19 +37,17 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     if let Some(folder) = &options.out {
         files::write_all(folder, &world, &report.recording, &result, options.pictures)?;
     }
-    if options.json {
-        output::print(&format!("{}\n", result.to_json()));
-    } else if !options.quiet {
-        output::print(&table::of_result(&result));
-    }
+    let printed = match (options.json, options.quiet) {
+        (true, _) => output::print(&format!("{}\n", result.to_json())),
+        (false, false) => output::print(&table::of_result(&result)),
+        (false, true) => Ok(()),
+    };
     for finding in &report.findings {
         eprintln!("warning: {}: {finding}", options.scene.display());
     }
-    match &report.error {
-        None => Ok(End::Done),
-        Some(error) => {
-            eprintln!("error: {}: stopped early at t = {} s: {error}", options.scene.display(), result.time);
-            Ok(End::Stopped)
-        }
+    if let Some(error) = &report.error {
+        eprintln!("error: {}: stopped early at t = {} s: {error}", options.scene.display(), result.time);
     }
+    printed?;
+    Ok(if report.error.is_none() { End::Done } else { End::Stopped })
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::failure::End;
+use crate::failure::{End, Failure};
 use crate::output;
 use clap::{Args, ValueEnum};
 use halfgap_contact::{
@@ -62,21 +62,21 @@ struct Outcome {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &SolveArgs) -> End {
+pub(crate) fn run(args: &SolveArgs) -> Result<End, Failure> {
     let (file, problem, next) = match read(args) {
         Ok(read) => read,
         Err(message) => {
             eprintln!("error: {}: {message}", args.problem.display());
-            return End::BadInput;
+            return Ok(End::BadInput);
         }
     };
     let outcome = solve(args.method, &problem, next.as_ref());
     if args.json {
-        output::print(&format!("{}\n", json(args.method, &problem, &outcome)));
+        output::print(&format!("{}\n", json(args.method, &problem, &outcome)))?;
     } else {
-        output::print(&explain(&file, &problem, &outcome));
+        output::print(&explain(&file, &problem, &outcome))?;
     }
-    if outcome.result.is_ok() { End::Done } else { End::Stopped }
+    Ok(if outcome.result.is_ok() { End::Done } else { End::Stopped })
 }
 
 /// The file, its problem and that of the next step.
@@ -137,6 +137,9 @@ fn json(method: Choice, problem: &Problem, outcome: &Outcome) -> String {
     file.microseconds_warm = outcome.microseconds_warm;
     if let Err(error) = &outcome.result {
         let infeasible = matches!(error, SolveError::Infeasible(_));
+        if let SolveError::Infeasible(proof) = error {
+            file.inconsistency = proof.contradiction;
+        }
         file.status = if infeasible { "infeasible" } else { "failed" }.to_owned();
         file.method = method.solver().method().name().to_owned();
         file.force.resize(problem.len(), 0.0);
@@ -178,7 +181,35 @@ fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
             let _ = writeln!(text, "FAILED: {error}.");
         }
     }
+    compare(&mut text, file, outcome);
     text
+}
+
+/// Whether the answer is what the file expects, as far as it does.
+fn compare(text: &mut String, file: &ContactFile, outcome: &Outcome) {
+    let found = match &outcome.result {
+        Ok(()) => Some(true),
+        Err(SolveError::Infeasible(_)) => Some(false),
+        Err(_) => None,
+    };
+    let says = |feasible: bool| if feasible { "has a solution" } else { "has none" };
+    if let (Some(said), Some(found)) = (file.feasible, found) {
+        let verdict = if said == found { "as found" } else { "which was not found" };
+        let _ = writeln!(text, "The file says that it {}, {verdict}.", says(said));
+    }
+    let Some(expected) = file.expected.as_ref().filter(|_| found == Some(true)) else { return };
+    let solution = &outcome.solution;
+    for (what, said, found) in [
+        ("acceleration", &expected.acceleration, &solution.acceleration),
+        ("force", &expected.force, &solution.force),
+    ] {
+        let Some(said) = said.as_ref().filter(|said| said.len() == found.len()) else { continue };
+        let differences = said.iter().zip(found).map(|(said, found)| (said - found).abs());
+        let Some((row, most)) = differences.enumerate().max_by(|p, q| p.1.total_cmp(&q.1)) else { continue };
+        let _ = write!(text, "The expected {what} differs by {most:.1e} at most, in row {row}");
+        let allowed = expected.tolerance.map(|tolerance| format!("; {tolerance:.1e} is allowed"));
+        let _ = writeln!(text, "{}.", allowed.unwrap_or_default());
+    }
 }
 
 fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {

@@ -54,9 +54,9 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     }
     if options.json {
         let json = serde_json::to_string(&sweep).expect("a sweep is strings and numbers only");
-        output::print(&format!("{json}\n"));
+        output::print(&format!("{json}\n"))?;
     } else if !options.quiet {
-        output::print(&lines(&sweep));
+        output::print(&lines(&sweep))?;
     }
     let stopped = sweep.runs.iter().any(|run| run.result.status != Outcome::Done);
     Ok(if stopped { End::Stopped } else { End::Done })

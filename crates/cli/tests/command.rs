@@ -140,8 +140,11 @@ fn out_writes_recording_and_pictures() {
     let recording: serde_json::Value = serde_json::from_str(&read("recording.json")).expect("JSON");
     assert_eq!(recording["frames"].as_array().map(Vec::len), Some(4));
     assert!(read("result.json").contains("\"status\":\"done\""));
-    assert_eq!(read("picture-0000.svg"), read("start.svg"));
-    assert_eq!(read("picture-0002.svg"), read("end.svg"));
+    // There are no more times in between.
+    assert!(!Path::new(&folder.path("out/picture-0002.svg")).exists());
+    for (name, time) in [("picture-0000.svg", "t = 0.750 s"), ("picture-0001.svg", "t = 1.500 s")] {
+        assert!(read(name).contains(time), "{name}");
+    }
     for name in ["start.svg", "end.svg", "energy.svg", "events.svg", "picture-0001.svg"] {
         assert!(read(name).starts_with("<svg ") && read(name).ends_with("</svg>\n"), "{name}");
     }
@@ -407,4 +410,35 @@ fn sweep_names_what_cannot_be_varied() {
         assert_eq!(output.status.code(), Some(2), "{vary}: {message}");
         assert!(message.contains(why), "{vary}: {message}");
     }
+}
+
+#[test]
+fn solve_tells_whether_the_answer_is_the_expected_one() {
+    let folder = Folder::new("solve");
+    let problem = |rest: &str| {
+        let text = format!("{{\"format\": \"halfgap-contact-1\", \"A\": [[2, 1], [1, 2]], {rest}}}");
+        folder.write("problem.json", &text)
+    };
+    let solved = problem(
+        "\"b\": [-5, -6], \"feasible\": false, \"expected\": {\"acceleration\": [0, 0.25], \"tolerance\": 1e-9}",
+    );
+    let output = halfgap(&["solve", &solved]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = folder.plain(&output.stdout);
+    let verdicts: Vec<&str> = text.lines().rev().take(2).collect();
+    let expected = [
+        "The expected acceleration differs by 2.5e-1 at most, in row 1; 1.0e-9 is allowed.",
+        "The file says that it has none, which was not found.",
+    ];
+    assert_eq!(verdicts, expected, "{text}");
+
+    let contradiction = folder.write(
+        "contradiction.json",
+        "{\"format\": \"halfgap-contact-1\", \"A\": [[1, 1], [1, 1]], \"b\": [-1, -1.5], \"bilateral\": [true, true]}",
+    );
+    let output = halfgap(&["solve", &contradiction, "--json"]);
+    assert_eq!(output.status.code(), Some(3));
+    let solution: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(solution["status"], "infeasible");
+    assert!(solution["inconsistency"].as_f64().is_some_and(|part| part > 0.1), "{solution}");
 }

@@ -122,7 +122,8 @@ impl ContactFile {
     ///
     /// [`FileError`]; only the shape of the file is looked at here.
     pub fn parse(text: &str) -> Result<Self, FileError> {
-        let file: ContactFile = serde_json::from_str(text)?;
+        // Some editors put a mark before a text.
+        let file: ContactFile = serde_json::from_str(text.strip_prefix('\u{feff}').unwrap_or(text))?;
         if file.format == PROBLEM_FORMAT { Ok(file) } else { Err(FileError::Format(file.format)) }
     }
 

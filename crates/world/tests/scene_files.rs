@@ -125,7 +125,7 @@ fn names_must_be_known_and_unique() {
     insta::assert_snapshot!(message("name = \"ball\"", "name = \"world\""), @r#"line 13: body[1].name: "world" is reserved for the immovable background"#);
     insta::assert_snapshot!(message("[\"floor\"]", "[\"flor\"]"), @r#"line 18: body[1].passes_through[0]: there is no body named "flor""#);
     insta::assert_snapshot!(message("bodies.ball", "bodies.\"the bal\""), @r#"line 26: expected[0].bodies."the bal": there is no body named "the bal""#);
-    insta::assert_snapshot!(message("[0.0, -9.81] }", "[0.0, -9.81], bodies = [\"world\"] }"), @r#"line 21: force[0].gravity.bodies[0]: there is no body named "world""#);
+    insta::assert_snapshot!(message("[0.0, -9.81] }", "[0.0, -9.81], bodies = [\"world\"] }"), @r#"line 21: force[0].gravity.bodies[0]: must be a body, not the background "world""#);
 }
 
 #[test]
@@ -166,6 +166,16 @@ fn json_messages_have_lines_too() {
     insta::assert_snapshot!(bad(&scene(&format!("{{{disc},\n   \"mass\": 1}}"))), @"line 4: body[0]: missing field `name`");
     insta::assert_snapshot!(bad(&scene("{\"name\": \"a\",, }")), @"line 4: not valid JSON: key must be a string");
     insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mass\": NaN}}"))), @"line 5: not valid JSON: expected value");
+    let of_law = |law: &str| {
+        format!(
+            "\u{feff}{{\"format\": \"halfgap-scene-1\", \"title\": \"t\",\n\"run\": {{\"duration\": 1, \"impact_law\": {law}}}}}"
+        )
+    };
+    insta::assert_snapshot!(bad(&of_law("1")), @"line 2: run.impact_law: expected a string");
+    assert!(
+        Scene::parse(&of_law("\"hybrid\""), SceneFormat::Json).is_ok(),
+        "a mark before the text is none of it"
+    );
     insta::assert_snapshot!(bad(&format!("{}x", scene(&format!("{{\"name\": \"a\", {disc}, \"mass\": 1}}")))), @"line 4: not valid JSON: text after the end of the scene");
 }
 

@@ -4,6 +4,7 @@ use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
 use super::locate::find_offset;
+use serde::de::IgnoredAny;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -55,7 +56,7 @@ impl SceneSource {
     /// A scene from a text.
     #[must_use]
     pub fn new(text: impl Into<String>, format: SceneFormat) -> Self {
-        Self { text: text.into(), format, file: None }
+        Self { text: without_mark(text.into()), format, file: None }
     }
 
     /// Reads a `.toml` or `.json` file.
@@ -89,7 +90,7 @@ impl SceneSource {
         let text = String::from_utf8(bytes).map_err(|error| {
             fail(format!("is not UTF-8 text: byte {} is not", error.utf8_error().valid_up_to()))
         })?;
-        Ok(Self { text, format, file: Some(path.to_path_buf()) })
+        Ok(Self { text: without_mark(text), format, file: Some(path.to_path_buf()) })
     }
 
     /// Parses and validates the scene.
@@ -150,6 +151,10 @@ impl SceneSource {
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
             match inner.classify() {
                 serde_json::error::Category::Data => self.data_error(field, message),
+                // So it says if a name is wanted and something else is there.
+                _ if serde_json::from_str::<IgnoredAny>(&self.text).is_ok() => {
+                    self.data_error(field, "expected a string")
+                }
                 _ => self.syntax_error(message, offset),
             }
         })?;
@@ -176,6 +181,15 @@ impl SceneSource {
             .in_file(self.file.as_deref())
             .at_offset(&self.text, offset)
     }
+}
+
+/// The text without the mark that some editors put before it.
+fn without_mark(mut text: String) -> String {
+    const MARK: char = '\u{feff}';
+    if text.starts_with(MARK) {
+        text.remove(0);
+    }
+    text
 }
 
 /// The byte offset of a line and a column in bytes, both counted from 1 (a column of 0 is the end of the line before).

@@ -51,6 +51,9 @@ struct Names<'a>(BTreeSet<&'a str>);
 
 impl Names<'_> {
     fn require(&self, name: &str, at: &At<'_>) -> Result<(), SceneError> {
+        if name == WORLD {
+            return Err(at.error(format!("must be a body, not the background {WORLD:?}")));
+        }
         if self.0.contains(name) { Ok(()) } else { Err(at.error(format!("there is no body named {name:?}"))) }
     }
 
