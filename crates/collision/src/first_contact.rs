@@ -51,7 +51,7 @@ pub struct SearchSettings {
     pub direct_pairs: usize,
     /// Feature pairs in a window above which the next window is shorter.
     pub crowded: usize,
-    /// Windows of one call of [`search_step`].
+    /// Windows of one call of [`search_step`] in which any features are near each other.
     pub windows: u32,
     /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper ones lie on the
     /// far sides of their bodies.
@@ -314,10 +314,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     fn by_windows(&self, from: f64, span: f64) -> Search {
         let mut start = from;
         let mut length = None;
-        for _ in 0..self.settings.windows.max(1) {
-            if start >= span {
-                break;
-            }
+        let mut left = self.settings.windows.max(1);
+        while start < span && left > 0 {
             let near = self.skip_far(start, span);
             if near >= span {
                 return Search::NoneBefore(span);
@@ -347,6 +345,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
                 Search::NoneBefore(time) => return Search::NoneBefore(time),
                 contact => return contact,
             }
+            // Where nothing is near windows soon get long: few are to come.
+            left -= u32::from(tried > 0);
             length = Some(if tried > self.settings.crowded {
                 0.5 * wanted
             } else if tried == 0 {

@@ -4,7 +4,7 @@
 use glam::DVec2;
 use halfgap_collision::{
     BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
-    disc_contact, first_contact,
+    disc_contact, first_contact, search_step,
 };
 use halfgap_geometry::{EdgeSpec, Feature, FeatureId, PathSpec, Shape};
 
@@ -316,6 +316,23 @@ fn nothing_is_proven_of_what_is_no_number() {
     assert_eq!(search(DVec2::new(f64::NAN, 0.0), 0.0, &sound), nothing);
     assert_eq!(search(place, f64::INFINITY, &sound), nothing);
     assert_eq!(search(place, 0.0, &Tolerances { target_gap: f64::NAN, ..sound }), nothing);
+}
+
+#[test]
+fn a_speck_far_above_a_floor_is_searched_in_one_call() {
+    // Its first windows are as short as it takes to fall its own size.
+    let (floor, speck) =
+        (Shape::block(10.0, 1.0).expect("a fine block"), Shape::disc(1e-9).expect("a fine radius"));
+    let rest = Flight::fixed(DVec2::new(0.0, -0.5), 0.0);
+    let state =
+        BodyState { position: DVec2::new(0.0, 2.0), velocity: DVec2::new(1.0, 0.0), ..BodyState::default() };
+    let fall = Flight::new(state, DVec2::new(0.0, -10.0), 0.0, 0.0);
+    let side_a = MovingShape { shape: &floor, motion: &rest, offset: 0.0 };
+    let side_b = MovingShape { shape: &speck, motion: &fall, offset: 0.0 };
+    let tolerances = Tolerances { target_gap: 1e-12, accuracy: 0.6e-12, velocity_tol: 1e-9 };
+    let search = search_step(&side_a, &side_b, 0.0, 1.0, &tolerances, &SearchSettings::default());
+    let Search::Contact(found) = search else { panic!("{search:?}") };
+    assert!((found.time - 0.4f64.sqrt()).abs() < 1e-9, "{found:?}");
 }
 
 #[test]
