@@ -43,3 +43,17 @@ fn a_light_disc_between_a_wall_and_a_heavy_one_counts_the_digits_of_pi() {
         assert_eq!(world.ledger().captures, 0.0);
     }
 }
+
+#[test]
+fn a_light_disc_under_a_heavy_block_throws_it_up_again_at_a_loose_tolerance() {
+    // At 150 m/s it crosses so many target gaps between two blows that each of them counts.
+    let mut shop = Workshop::new(1e-2);
+    shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -0.5));
+    shop.body("light", disc(0.1), 1.0, at_rest(0.0, 0.15));
+    shop.body("heavy", block(1.0, 1.0), 1e4, at_rest(0.0, 0.9));
+    let mut world = shop.build();
+    let energy = world.energy().total();
+    assert!(impacts(&mut world, 2.0) > 1000);
+    let kept = world.energy().total() / energy - 1.0;
+    within("light disc under a heavy block at 1e-2: energy, relative", kept, 1e-9);
+}

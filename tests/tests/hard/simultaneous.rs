@@ -144,3 +144,28 @@ fn a_symmetric_fall_into_a_wedge_stays_symmetric() {
     let off = forces.iter().map(|row| (row.force - each).abs()).fold(0.0, f64::max);
     within("disc in a wedge: forces [N]", off, 1e-11);
 }
+
+#[test]
+fn elastic_discs_that_follow_each_other_within_the_zone_of_a_wall_lose_nothing() {
+    // The first comes back from the wall, is sent there again by the second before it has left the zone, and comes back once more.
+    for tolerance in [1e-2, 1e-3, 1e-6, 1e-8, 1e-10] {
+        for law in [ImpactLaw::Hybrid, ImpactLaw::Simultaneous] {
+            let gap = 1.5e-3 * tolerance;
+            let overrides = ToleranceOverrides { target_gap: Some(gap), ..ToleranceOverrides::default() };
+            let settings =
+                WorldSettings { tolerance, impact_law: law, overrides, ..WorldSettings::default() };
+            let mut shop = Workshop::weightless(tolerance);
+            shop.builder = WorldBuilder::new(settings);
+            shop.fixed("wall", block(1.0, 6.0), DVec2::new(0.5, 0.0));
+            let speed = DVec2::new(3.0, 0.0);
+            let first = shop.body("first", disc(0.15), 1.0, thrown(-0.35, 0.0, speed));
+            let second = shop.body("second", disc(0.15), 1.0, thrown(-0.65 - 2.0 * gap, 0.0, speed));
+            let mut world = shop.build();
+            assert_eq!(impacts(&mut world, 0.2), 3);
+            for body in [first, second] {
+                let name = format!("disc behind another within the zone of a wall, at {tolerance:e}: speed");
+                within(&name, world.state(body).velocity.x / -3.0 - 1.0, 1e-12);
+            }
+        }
+    }
+}

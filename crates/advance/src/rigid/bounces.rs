@@ -16,6 +16,9 @@ use halfgap_geometry::FeatureId;
 
 /// Forces may press bodies together by so many times the acceleration of the scene.
 const FORCED: f64 = 1e3;
+/// So many times it they press together what something else has struck within its zone, as in a heap so many bodies deep. What is faster
+/// bounces: else the energy of a blow would be lost, which an elastic body passes on and gets back at once.
+const STRUCK: f64 = 1e2;
 /// So many feature pairs are remembered of a pair of bodies.
 const MOST_SEEN: usize = 16;
 /// Bounces no higher than so many target gaps are low, and end after so many in a row.
@@ -106,9 +109,27 @@ impl RigidSystem {
         // stayed only if it is no faster than forces make it within the zone. Without contact forces it would sink then, and that is
         // for what is low beyond doubt.
         let went = 0.5 * (up - down).abs() * lasted;
-        let forced = FORCED * self.settings.tolerances.velocity_tol / self.settings.resolution_time;
-        let is_forced = self.settings.impulse_step.is_none() && down * down <= 2.0 * forced * most;
-        seen.gap + rise <= most && (went <= most || is_forced)
+        let forced = |times: f64| {
+            self.settings.impulse_step.is_none() && down * down <= 2.0 * times * self.acceleration() * most
+        };
+        let is_low =
+            || if self.is_struck_since(pair, seen) { forced(STRUCK) } else { went <= most || forced(FORCED) };
+        seen.gap + rise <= most && is_low()
+    }
+
+    /// True if the velocity of a body of a pair was changed at once since a contact of it was seen: what has turned it is no force.
+    fn is_struck_since(&self, pair: PairId, seen: &Seen) -> bool {
+        let strikes = self.pairs.bodies(pair).into_iter().filter_map(|body| self.struck[body.index()]);
+        strikes.into_iter().any(|strike| strike > seen.time)
+    }
+
+    /// The acceleration of the scene [m/s^2]; zero where there are no forces but those of contacts and connectors.
+    fn acceleration(&self) -> f64 {
+        if self.is_forceless {
+            0.0
+        } else {
+            self.settings.tolerances.velocity_tol / self.settings.resolution_time
+        }
     }
 }
 

@@ -130,6 +130,9 @@ impl RigidSystem {
         for (&body, &[x, y, spin]) in region.bodies.iter().zip(&region.changes) {
             self.restart_flight(body, time);
             self.flyer_mut(body).cut(time, DVec2::new(x, y), spin);
+            if [x, y, spin] != [0.0; 3] {
+                self.struck[body.index()] = Some(time);
+            }
         }
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);

@@ -15,7 +15,7 @@ const CALM_EVENTS: usize = 20;
 const CALM_EVENTS_PER_ROW: usize = 10;
 /// An event is wide if its bodies came towards each other by more than so many target gaps since the one before: a light body between
 /// heavy ones that close on it rattles ever faster until it has turned them back. Of wide ones so many times as many are allowed.
-const WIDE: f64 = 100.0;
+const WIDE: f64 = 10.0;
 const CALM_WIDE_EVENTS: usize = 50;
 /// Events between which bodies come towards each other by less than such a part of the target zone, and which follow each other in
 /// less than such a part of the time in which what is usually fast crosses the smallest body, are counted on, however long they go

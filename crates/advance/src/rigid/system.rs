@@ -30,6 +30,7 @@ use crate::ode::Method;
 use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
+use glam::DVec2;
 use halfgap_collision::{
     BodyId, BroadPhase, Connector, ConnectorId, Moving, RailHint, SearchSettings, Tolerances,
 };
@@ -141,6 +142,10 @@ pub struct RigidSystem {
     pub(crate) now: Time,
     pub(crate) groups: Groups,
     pub(crate) recent: Vec<Recent>,
+    /// When the velocity of each body was last changed at once.
+    pub(crate) struck: Vec<Option<Time>>,
+    /// Nothing accelerates bodies but contacts and connectors.
+    pub(crate) is_forceless: bool,
     pub(crate) paces: Vec<Pace>,
     /// For how long [s] the system will be advanced in all; 0 if nothing is known.
     pub(crate) horizon: f64,
@@ -210,6 +215,9 @@ impl RigidSystem {
             now: start,
             groups: Groups::new(count),
             recent: vec![Recent::default(); count],
+            struck: vec![None; count],
+            is_forceless: laws.is_empty()
+                && flyers.iter().all(|flyer| flyer.law().acceleration == DVec2::ZERO),
             paces: vec![Pace::default(); count],
             horizon: 0.0,
             ticks: Ticks::default(),

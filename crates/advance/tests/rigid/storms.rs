@@ -77,7 +77,7 @@ fn ends_after(calm: usize, lighter: f64, room: f64, speed: f64) {
 #[test]
 fn one_impact_more_than_a_row_may_have_in_the_resolution_time_is_without_elasticity() {
     // Twenty events and ten for the one row that each of them has.
-    ends_after(30, 1e4, 40.0 * TOLERANCES.target_gap, FAST);
+    ends_after(30, 1e4, 4.0 * TOLERANCES.target_gap, FAST);
 }
 
 #[test]
