@@ -8,7 +8,7 @@ use crate::motion::{Motion, Polynomial};
 use crate::quadratic::{first_closing_by, first_closing_time};
 use crate::tolerances::rounding;
 use glam::DVec2;
-use halfgap_geometry::{Feature, LineFeature, PairKind, Pose, RoundFeature};
+use halfgap_geometry::{Feature, LineFeature, PairKind, Pose, RoundFeature, touching_distance};
 
 /// The gap of a feature pair, less its target, as c + v t + a t^2/2 in some unit whose zero is the target.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +84,7 @@ pub(crate) fn quadratic<A: Motion, B: Motion>(
         (_, Feature::Round(round_a), Feature::Round(round_b)) => {
             let a = center_path(round_a, motion_a, offsets[0])?;
             let b = center_path(round_b, motion_b, offsets[1])?;
-            let radii = round_a.radius + round_b.radius;
+            let radii = touching_distance(round_a, round_b);
             of_centers(&a, &b, radii, kind == PairKind::Inner, target)
         }
         _ => None,

@@ -6,7 +6,7 @@ use crate::merge::merge_collisions;
 use crate::motion::Moving;
 use crate::record::{Collision, Detector, Participant, Parties};
 use crate::tolerances::Tolerances;
-use halfgap_geometry::{Feature, FeatureId, FeatureKind, GapSample, Shape};
+use halfgap_geometry::{Feature, FeatureId, FeatureKind, GapSample, Shape, touching_distance};
 
 /// A body at the moment of detection.
 #[derive(Clone, Copy, Debug)]
@@ -141,7 +141,7 @@ fn detector(kinds: [FeatureKind; 2]) -> Detector {
 pub fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tolerances {
     match (a, b) {
         (Feature::Round(a), Feature::Round(b)) if a.radius < 0.0 || b.radius < 0.0 => {
-            tolerances.for_clearance(-(a.radius + b.radius))
+            tolerances.for_clearance(-touching_distance(a, b))
         }
         _ => *tolerances,
     }

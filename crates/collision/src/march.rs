@@ -25,7 +25,9 @@
 use crate::motion::{Ball, Motion, MotionBounds, Moving};
 use crate::tolerances::rounding;
 use glam::DVec2;
-use halfgap_geometry::{CenterGap, Feature, LineFeature, LineGap, PairKind, Pose, RoundFeature};
+use halfgap_geometry::{
+    CenterGap, Feature, LineFeature, LineGap, PairKind, Pose, RoundFeature, touching_distance,
+};
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
@@ -240,7 +242,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         if inner || look.is_behind(pair.depth) {
             // In terms of H = +-(|d|^2 - reach^2), whose acceleration +-2 (|u|^2 + d.d'') is bounded at the centre too.
             let distance = gap.center_distance;
-            let reach = (round_a.radius + round_b.radius + pair.target).abs();
+            let reach = (touching_distance(round_a, round_b) + pair.target).abs();
             let d_max =
                 if look.is_behind(pair.depth) { distance + u_max * ahead } else { reach.max(distance) };
             look.value *= distance + reach;

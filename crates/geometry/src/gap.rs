@@ -6,7 +6,7 @@
 //! * centre to line: n = the line's outward normal, b = foot of cA on it, g = n.(cA - b) - rhoA.
 //!
 //! A is the *primary* side, n points from the *normal* side B to A. Only a vertex or a convex arc of the lesser radius
-//! touches a concave arc inside its range; concave against concave or a line is carried by the arc's end vertices.
+//! touches a concave arc inside its range (of the same radius: as if that were larger by 1e-12 of itself); concave against concave or a line is carried by the arc's end vertices.
 //!
 //! Sources: D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH '94, 23-34,
 //! appendix; E. Neumann, "Curved Edge Physics", 2015.
@@ -37,6 +37,23 @@ pub enum PairKind {
     LineRound,
 }
 
+/// Play, as a part of the radius, of an arc in a hollow of the same radius up to as much: shapes are drawn so, and without any there
+/// would be no direction in which they touch.
+const LEAST_PLAY: f64 = 1e-12;
+
+/// The sum of the signed radii of two features [m], the distance of the centres at which they touch; of an arc in a hollow that just
+/// fits, that of a hollow a little larger.
+#[must_use]
+#[inline]
+pub fn touching_distance(a: &RoundFeature, b: &RoundFeature) -> f64 {
+    let sum = a.radius + b.radius;
+    if a.radius >= 0.0 && b.radius >= 0.0 {
+        return sum;
+    }
+    let play = LEAST_PLAY * a.radius.abs().max(b.radius.abs());
+    if sum.abs() <= play { -play } else { sum }
+}
+
 /// How two features can touch inside their ranges; `None` if they cannot, or if end vertices carry their contact.
 #[must_use]
 pub fn pair_kind(a: &Feature, b: &Feature) -> Option<PairKind> {
@@ -46,7 +63,7 @@ pub fn pair_kind(a: &Feature, b: &Feature) -> Option<PairKind> {
         (Feature::Line(_), Feature::Round(round)) => (round.radius >= 0.0).then_some(PairKind::LineRound),
         (Feature::Round(a), Feature::Round(b)) if a.radius >= 0.0 && b.radius >= 0.0 => Some(PairKind::Outer),
         (Feature::Round(a), Feature::Round(b)) => {
-            (a.radius + b.radius < 0.0 && (a.radius >= 0.0 || b.radius >= 0.0)).then_some(PairKind::Inner)
+            (touching_distance(a, b) < 0.0 && (a.radius >= 0.0 || b.radius >= 0.0)).then_some(PairKind::Inner)
         }
     }
 }
@@ -79,7 +96,7 @@ impl CenterGap {
         let center_distance = d.length();
         let sign = if inner { -1.0 } else { 1.0 };
         let normal = if center_distance > 0.0 { d * (sign / center_distance) } else { DVec2::X };
-        let gap = sign * center_distance - (a.radius + b.radius);
+        let gap = sign * center_distance - touching_distance(a, b);
         Self { gap, normal, center_distance, center_a, center_b }
     }
 
@@ -272,5 +289,26 @@ impl GapSample {
             excess_normal: 0.0,
             overrun: 0.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feature::DirectionRange;
+
+    #[test]
+    fn a_hollow_that_just_fits_has_a_little_play_and_a_smaller_one_takes_nothing_in() {
+        let round = |radius: f64| RoundFeature { center: DVec2::ZERO, radius, range: DirectionRange::Full };
+        let disc = round(0.5);
+        for (hollow, play) in [(0.5, 5e-13), (0.5 + 1e-13, 5e-13), (0.5 - 1e-13, 5e-13), (0.5 + 1e-9, 1e-9)] {
+            let distance = touching_distance(&disc, &round(-hollow));
+            assert!((distance + play).abs() < 1e-16, "{hollow} m: {distance} m");
+            let kind = pair_kind(&Feature::Round(disc), &Feature::Round(round(-hollow)));
+            assert_eq!(kind, Some(PairKind::Inner));
+        }
+        let smaller = round(-0.5 + 1e-9);
+        assert_eq!(pair_kind(&Feature::Round(disc), &Feature::Round(smaller)), None);
+        assert_eq!(touching_distance(&disc, &disc), 1.0);
     }
 }

@@ -70,7 +70,7 @@ pub use error::{ArcError, LineError, ShapeError};
 pub use feature::{
     DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
-pub use gap::{CenterGap, GapKind, GapSample, LineGap, PairKind, pair_kind};
+pub use gap::{CenterGap, GapKind, GapSample, LineGap, PairKind, pair_kind, touching_distance};
 pub use glam::DVec2;
 pub use line::Line;
 pub use mass::MassProperties;

@@ -227,3 +227,41 @@ fn discs_that_part_slowly_within_their_target_zone_take_no_steps_of_their_own() 
     let nearest = world.statistics().smallest_gap.expect("they touch");
     within("discs that part in a ring: gap less target [m]", nearest - TARGET, 2e-10);
 }
+
+#[test]
+fn what_fits_without_play_is_held_as_by_a_pin() {
+    for tolerance in [1e-3, 1e-6, 1e-8, 1e-10] {
+        // A disc hangs in a ring of its own radius.
+        let mut shop = Workshop::new(tolerance);
+        shop.fixed("ring", Shape::ring(1.0, 0.5).expect("a fine ring"), DVec2::ZERO);
+        let ball = shop.dull("disc", disc(0.5), 1.0, at_rest(0.0, 0.0));
+        let mut world = shop.build();
+        advance(&mut world, 0.5);
+        let name = |what: &str| format!("disc in a ring of its own radius, at {tolerance:e}: {what}");
+        within(&name("sunk [m]"), world.state(ball).position.length(), 1e-12);
+        let held: f64 = world.contact_forces().iter().map(|contact| contact.force * contact.normal.y).sum();
+        within(&name("force [N]"), held - GRAVITY, 1e-6);
+        // A pin slides along a slot as wide as itself to its round end.
+        let mut world = world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"slot\"\nrun = {{ duration = 2.0, tolerance = {tolerance:e} }}\n\
+             [[body]]\nname = \"slot\"\nfixed = true\nelasticity = 0.0\ncenter_of_mass = [0.0, 0.0]\n\
+             shape = {{ outline = {{ paths = [{{ start = [-2.0, -1.0], edges = [{{ line = [2.0, -1.0] }}, {{ line = [2.0, 1.0] }}, \
+             {{ line = [-2.0, 1.0] }}, {{ line = [-2.0, -1.0] }}] }}, {{ start = [-1.0, -0.2], edges = [{{ line = [1.0, -0.2] }}, \
+             {{ arc = {{ to = [1.0, 0.2], center = [1.0, 0.0] }} }}, {{ line = [-1.0, 0.2] }}, \
+             {{ arc = {{ to = [-1.0, -0.2], center = [-1.0, 0.0] }} }}] }}] }} }}\n\
+             [[body]]\nname = \"pin\"\nmass = 1.0\nshape = {{ disc = {{ radius = 0.2 }} }}\nvelocity = [1.0, 0.0]\n"
+        ));
+        advance(&mut world, 2.0);
+        let pin = world.state(world.find("pin").expect("the pin"));
+        within(
+            &format!("pin in a slot of its own width, at {tolerance:e}: end [m]"),
+            pin.position.x - 1.0,
+            1e-12,
+        );
+        within(
+            &format!("pin in a slot of its own width, at {tolerance:e}: speed [m/s]"),
+            pin.velocity.length(),
+            1e-12,
+        );
+    }
+}
