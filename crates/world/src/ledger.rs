@@ -100,6 +100,11 @@ impl Turnover {
         let lifted = (books.now.potential - self.start_potential).abs();
         self.energy = self.energy.max(books.now.kinetic + lifted + books.works);
     }
+
+    /// Notes a kinetic energy [J] that there was in between.
+    pub(crate) fn note_kinetic(&mut self, kinetic: f64) {
+        self.energy = self.energy.max(kinetic);
+    }
 }
 
 #[cfg(test)]

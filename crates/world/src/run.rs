@@ -159,6 +159,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
     recording.impacts = stepper.impacts;
     recording.contacts = stepper.contacts;
     recording.ledger = world.ledger();
+    turnover.note_kinetic(world.largest_kinetic_energy());
     let findings = findings.at_end(world, turnover.energy);
     RunReport { recording, stops, start_energy, error, findings, wall_seconds: stepper.wall.as_secs_f64() }
 }

@@ -93,7 +93,10 @@ impl World {
         self.sentry.looked = segments;
         let mut room = std::mem::take(&mut self.sentry.room);
         let books = self.books(&mut room.booked, &mut room.movings);
-        self.sentry.turnover.get_or_insert_with(|| Turnover::new(books.now)).note(&books);
+        let kinetic = self.largest_kinetic_energy();
+        let turnover = self.sentry.turnover.get_or_insert_with(|| Turnover::new(books.now));
+        turnover.note(&books);
+        turnover.note_kinetic(kinetic);
         let found = self.astray(&books, &mut room.near);
         self.sentry.room = room;
         match found {

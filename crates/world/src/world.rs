@@ -323,6 +323,11 @@ impl World {
         }
     }
 
+    /// The largest kinetic energy [J] that some bodies had at the end of a step: who looks now and then may never see it.
+    pub(crate) fn largest_kinetic_energy(&self) -> f64 {
+        self.system.counts().largest_kinetic_energy
+    }
+
     /// Steps so far.
     pub(crate) fn steps(&self) -> u64 {
         self.system.counts().segments

@@ -257,3 +257,32 @@ b = { body = "end", point = [-1.334836350888328, -7.15927673718285] }
 a = { body = "end", point = [0.00041576912081334264, -0.00016921750925485496] }
 b = { body = "world", point = [-1.5625249252775768, -5.905388794892994] }
 "#;
+
+/// Runs a scene as the command does, without records in between.
+fn run_to_the_end(scene: &str) -> halfgap::RunReport {
+    let scene = Scene::parse(scene, halfgap::scene::SceneFormat::Toml).expect("a fine scene");
+    let mut world = World::from_scene(&scene).expect("a world that can be built");
+    halfgap::run(&mut world, &halfgap::RunPlan::of_scene(&scene, halfgap::Record::Ends), &mut |_| ())
+}
+
+#[test]
+fn books_are_weighed_by_what_goes_on_between_looks() {
+    // Whoever looks once a period sees a disc on a spring at rest each time, and of two on long orbits how slow they are far apart.
+    let spring = "format = \"halfgap-scene-1\"\ntitle = \"spring\"\nrun = { duration = 400.0 }\n\
+        [[body]]\nname = \"disc\"\nmass = 1.0\nposition = [1.0, 0.0]\nshape = { disc = { radius = 0.1 } }\n\
+        [[force]]\nspring = { a = { body = \"world\", point = [0, 0] }, b = { body = \"disc\", point = [0, 0] }, rest_length = 0.0, \
+        stiffness = 39.47841760435743 }\n";
+    let orbits = "format = \"halfgap-scene-1\"\ntitle = \"orbits\"\nrun = { duration = 14049.629462081451, tolerance = 1e-9 }\n\
+        force = [{ mutual_gravity = { strength = 1.0 } }]\n\
+        [[body]]\nname = \"a\"\nmass = 1.0\nshape = { disc = { radius = 1e-4 } }\nposition = [-9.995, 0.0]\nvelocity = [0.0, -0.0050012504689448045]\n\
+        [[body]]\nname = \"b\"\nmass = 1.0\nshape = { disc = { radius = 1e-4 } }\nposition = [9.995, 0.0]\nvelocity = [0.0, 0.0050012504689448045]\n";
+    for scene in [spring, orbits] {
+        let report = run_to_the_end(scene);
+        assert!(
+            report.error.is_none() && report.findings.is_empty(),
+            "{:?} {:?}",
+            report.error,
+            report.findings
+        );
+    }
+}

@@ -2,9 +2,12 @@
 
 use super::dynamics::{Dynamics, body_state};
 use super::extending::Tools;
+use super::group::Group;
 use super::law::Snapshot;
 use super::segment::StepControl;
+use super::system::RigidSystem;
 use halfgap_collision::BodyId;
+use halfgap_contact::Inertia;
 
 /// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it. Where rows all
 /// but depend on each other, or near a centre of attraction, what is rounding elsewhere does work, and no error estimate
@@ -19,6 +22,20 @@ pub(crate) struct Energy {
     total: f64,
     /// Of the motion alone.
     kinetic: f64,
+}
+
+impl RigidSystem {
+    /// Notes the kinetic energy of a group's bodies at the end of its segment, which nobody may look at else.
+    pub(crate) fn note_kinetic_energy(&mut self, group: &Group) {
+        let count = group.bodies.len();
+        let of_bodies = group.bodies.iter().enumerate().map(|(place, &body)| {
+            let state = body_state(&group.end_state, count, place);
+            let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
+            state.velocity.length_squared() / inverse_mass + state.angular_velocity.powi(2) / inverse_moment
+        });
+        let kinetic = 0.5 * of_bodies.sum::<f64>();
+        self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(kinetic);
+    }
 }
 
 impl Dynamics<'_> {

@@ -496,6 +496,7 @@ impl RigidSystem {
             self.give_up(&group);
             return Err(error);
         }
+        self.note_kinetic_energy(&group);
         self.queue.set(self.group_source(leader), group.due());
         if group.is_unwatched {
             self.defer_dense(leader);
