@@ -17,6 +17,9 @@ const LEAN_SHARE: f64 = 1.0 / 16.0;
 /// than the line by the square of this: nothing to be seen.
 const OVERRUN_SHARE: f64 = 1.0 / 1024.0;
 
+/// Windows that are searched after a march that came to the end of its steps, each as long as it came.
+const CREEPING_WINDOWS: u32 = 64;
+
 /// A shape in motion, as the search sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingShape<'a, M> {
@@ -315,6 +318,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let mut start = from;
         let mut length = None;
         let mut left = self.settings.windows.max(1);
+        let mut is_creeping = false;
         while start < span && left > 0 {
             let near = self.skip_far(start, span);
             if near >= span {
@@ -342,8 +346,13 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             let (progress, tried) = self.search_window(&window, start, end);
             match progress.into_search() {
                 Search::NoneBefore(time) if time >= end => start = end,
-                Search::NoneBefore(time) => return Search::NoneBefore(time),
-                contact => return contact,
+                Search::NoneBefore(time) if !is_creeping => {
+                    // Bounds over less time are tighter: where a march has crept so far, it takes a few steps.
+                    (is_creeping, left) = (true, CREEPING_WINDOWS);
+                    (length, start) = (Some(time - start), time);
+                    continue;
+                }
+                end => return end,
             }
             // Where nothing is near windows soon get long: few are to come.
             left -= u32::from(tried > 0);
