@@ -113,15 +113,15 @@ fn connectors_are_drawn() {
     let picture = scene_picture(&world, &recording, &recording.frames[0]);
     assert_drawable(&picture);
     let ties: Vec<&str> = picture.lines().filter(|line| line.contains("#4c5459")).collect();
-    // The rail, through many points, and its stop, then the rod, the rope with its dashes, the ring of the slot, and the spring, whose
+    // The rail, through many points, and its stop, then the rod, the rope with its dashes, the slot's line and ring, and the spring, whose
     // dashpot lies beside it.
-    assert_eq!(ties.len(), 6, "{ties:?}");
+    assert_eq!(ties.len(), 7, "{ties:?}");
     assert!(ties[0].matches('L').count() > 200, "{}", ties[0]);
-    for bar in [ties[1], ties[2]] {
+    for bar in [ties[1], ties[2], ties[4]] {
         assert!(bar.contains("<path") && bar.matches('L').count() == 1 && !bar.contains("dash"), "{bar}");
     }
-    assert!(ties[3].contains("dash") && ties[4].contains("<circle"), "{ties:?}");
-    assert_eq!(ties[5].matches('L').count(), 11, "{}", ties[5]);
+    assert!(ties[3].contains("dash") && ties[5].contains("<circle"), "{ties:?}");
+    assert_eq!(ties[6].matches('L').count(), 11, "{}", ties[6]);
 }
 
 fn impact(time: f64, impulse: f64) -> Impact {

@@ -1,12 +1,12 @@
 //! What ties bodies: rails as the curves that they are, their stops as bars across, rods and ropes as lines between their points,
-//! pins and slots as small rings, springs and dashpots as zigzags.
+//! pins and slots as small rings, those of slots on a line along which they slide, springs and dashpots as zigzags.
 
 use super::svg::{Svg, number};
 use super::view::View;
 use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
-use halfgap_collision::{Anchor, ConnectorKind, RailPath};
+use halfgap_collision::{Anchor, BodyId, ConnectorKind, RailPath, SlotFrame};
 use halfgap_geometry::Aabb;
 use std::fmt::Write;
 
@@ -14,6 +14,8 @@ use std::fmt::Write;
 const RAIL_POINTS: usize = 256;
 /// Radius of the ring of a pin or a slot [px].
 const RING: f64 = 3.5;
+/// The line of a slot reaches so far to either side of its ring [px].
+const SLOT: f64 = 12.0;
 const COLOR: &str = "#4c5459";
 
 /// Teeth of the zigzag of a spring, their height [px], and the part of it at each end that is straight.
@@ -82,7 +84,18 @@ pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, fra
             (ConnectorKind::Rope { .. }, Some(a), Some(b)) => {
                 svg.line(a, b, &[LINE[1], LINE[2], ("stroke-dasharray", "6 3")]);
             }
-            (ConnectorKind::Pin { .. } | ConnectorKind::Slot { .. }, Some(a), _) => {
+            (ConnectorKind::Pin { .. }, Some(a), _) => svg.circle(a, RING, &LINE),
+            (ConnectorKind::Slot { a: on_a, b: on_b, normal, frame }, Some(a), _) => {
+                let carrier = match frame {
+                    SlotFrame::A => *on_a,
+                    SlotFrame::B => *on_b,
+                    SlotFrame::World => Anchor { body: BodyId::WORLD, point: DVec2::ZERO },
+                };
+                let aside = Anchor { point: carrier.point + normal.perp(), ..carrier };
+                let [from, to] = [carrier, aside].map(|anchor| DVec2::from(place_of(&anchor)));
+                let along = (to - from).normalize_or_zero() * SLOT;
+                let [from, to] = [-along, along].map(|way| (a.0 + way.x, a.1 + way.y));
+                svg.line(from, to, &LINE[1..]);
                 svg.circle(a, RING, &LINE);
             }
             _ => {}

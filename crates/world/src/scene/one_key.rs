@@ -3,6 +3,12 @@
 //! serde's own externally tagged enums read the same form, but their message for two keys differs between formats and
 //! names neither key.
 
+/// The message where a second key stands beside the one that there must be, one of those that are known.
+pub(super) fn misplaced(key: &str, extra: &str, known: &[&str]) -> String {
+    let both = format!("must have exactly one key, found `{key}` and `{extra}`");
+    if known.contains(&extra) { both } else { format!("{both}: what belongs to `{key}` goes into its table") }
+}
+
 /// Declares an enum and reads it from a table with exactly one key, which names the variant.
 macro_rules! one_key_enum {
     ($(#[$meta:meta])* $name:ident: $what:literal { $($(#[$doc:meta])* $key:literal => $variant:ident($data:ty)),+ $(,)? }) => {
@@ -41,14 +47,19 @@ macro_rules! one_key_enum {
                         };
                         let value = match key.as_str() {
                             $($key => $name::$variant(map.next_value()?),)+
-                            _ => return Err(A::Error::unknown_field(&key, &[$($key),+])),
+                            _ => {
+                                map.next_value::<serde::de::IgnoredAny>()?;
+                                let named = map.next_key::<String>()?.filter(|key| [$($key),+].contains(&key.as_str()));
+                                return Err(named.map_or_else(
+                                    || A::Error::unknown_field(&key, &[$($key),+]),
+                                    |named| A::Error::custom($crate::scene::one_key::misplaced(&named, &key, &[$($key),+])),
+                                ));
+                            }
                         };
-                        match map.next_key::<String>()? {
-                            None => Ok(value),
-                            Some(extra) => Err(A::Error::custom(format!(
-                                "must have exactly one key, found `{key}` and `{extra}`"
-                            ))),
-                        }
+                        let extra = map.next_key::<String>()?;
+                        extra.map_or(Ok(value), |extra| {
+                            Err(A::Error::custom($crate::scene::one_key::misplaced(&key, &extra, &[$($key),+])))
+                        })
                     }
                 }
 
