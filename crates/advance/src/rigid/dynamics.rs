@@ -541,6 +541,18 @@ impl Dynamics<'_> {
         self.group.force_length = self.stage.force_length;
     }
 
+    /// The largest distance [m] by which a connector is off, with the bodies in place; the rows of one follow each other.
+    pub(crate) fn connector_error(&self) -> f64 {
+        let (mut last, mut square, mut largest) = (None, 0.0, 0.0f64);
+        for row in &self.group.rows {
+            let RowSource::Connector(id, _) = row.source else { continue };
+            let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
+            square = error * error + if last.replace(id) == Some(id) { square } else { 0.0 };
+            largest = largest.max(square);
+        }
+        largest.sqrt()
+    }
+
     /// Largest error [m] of a held gap, with the bodies in place.
     pub(crate) fn largest_gap_error(&self) -> f64 {
         let mut twin = None;

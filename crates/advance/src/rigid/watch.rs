@@ -223,18 +223,6 @@ impl Dynamics<'_> {
         excess.max(self.group.largest_error / most.max(least))
     }
 
-    /// The largest distance [m] by which a connector is off, with the bodies in place; the rows of one follow each other.
-    pub(crate) fn connector_error(&self) -> f64 {
-        let (mut last, mut square, mut largest) = (None, 0.0, 0.0f64);
-        for row in &self.group.rows {
-            let RowSource::Connector(id, _) = row.source else { continue };
-            let error = self.physics.mechanism.gap(row, &self.stage.movings) - row.gap;
-            square = error * error + if last.replace(id) == Some(id) { square } else { 0.0 };
-            largest = largest.max(square);
-        }
-        largest.sqrt()
-    }
-
     /// Forces of the rows at an offset [s] of the segment, left in the stage.
     pub(crate) fn evaluate_at(&mut self, offset: f64) {
         self.find_state_at(offset);

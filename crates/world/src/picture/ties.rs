@@ -112,7 +112,7 @@ fn zigzag([a, b]: [(f64, f64); 2]) -> String {
     let across = (b - a).normalize_or_zero().perp() * TOOTH;
     let tooth = |at: usize| {
         let part = STRAIGHT + (1.0 - 2.0 * STRAIGHT) * (at as f64 + 0.5) / TEETH as f64;
-        a.lerp(b, part) + if at % 2 == 0 { across } else { -across }
+        a.lerp(b, part) + if at.is_multiple_of(2) { across } else { -across }
     };
     let [first, last] = [STRAIGHT, 1.0 - STRAIGHT].map(|part| a.lerp(b, part));
     let points = [a, first].into_iter().chain((0..TEETH).map(tooth)).chain([last, b]);
