@@ -6,7 +6,8 @@
 //! * centre to line: n = the line's outward normal, b = foot of cA on it, g = n.(cA - b) - rhoA.
 //!
 //! A is the *primary* side, n points from the *normal* side B to A. Only a vertex or a convex arc of the lesser radius
-//! touches a concave arc inside its range (of the same radius: as if that were larger by 1e-12 of itself); concave against concave or a line is carried by the arc's end vertices.
+//! touches a concave arc inside its range, and one of the same radius, as if that were larger by 1e-12 of itself; concave against
+//! concave or a line is carried by the arc's end vertices.
 //!
 //! Sources: D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH '94, 23-34,
 //! appendix; E. Neumann, "Curved Edge Physics", 2015.
@@ -41,8 +42,8 @@ pub enum PairKind {
 /// would be no direction in which they touch.
 const LEAST_PLAY: f64 = 1e-12;
 
-/// The sum of the signed radii of two features [m], the distance of the centres at which they touch; of an arc in a hollow that just
-/// fits, that of a hollow a little larger.
+/// The sum of the signed radii of two features [m], whose size is the distance of their centres where they touch; of an arc in a
+/// hollow that just fits, that of a hollow a little larger.
 #[must_use]
 #[inline]
 pub fn touching_distance(a: &RoundFeature, b: &RoundFeature) -> f64 {

@@ -4,6 +4,9 @@
 //! constant acceleration that is v1^2 t / (2 (v1 + v2)). Such a pair meets without elasticity, unless something else in the
 //! same event closes fast. What is cut off is shorter than the fall through the zone and no higher than it.
 //!
+//! That holds of what forces turn. What something else has struck since bounces as it would anywhere, unless it is so slow that forces
+//! make it as fast within the zone.
+//!
 //! What is perfectly elastic and has come to bounce a few target gaps high, as when something light hits it while it rests,
 //! would go on with that for ever, hundreds of thousands of times a second. The energy of that is what the gap itself is
 //! worth: after very many such bounces in a row it is let go as well.
