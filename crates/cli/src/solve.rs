@@ -201,7 +201,7 @@ fn compare(text: &mut String, file: &ContactFile, outcome: &Outcome) {
     let solution = &outcome.solution;
     for (what, said, found) in [
         ("acceleration", &expected.acceleration, &solution.acceleration),
-        ("force", &expected.force, &solution.force),
+        ("force (others may do where contacts are redundant)", &expected.force, &solution.force),
     ] {
         let Some(said) = said.as_ref().filter(|said| said.len() == found.len()) else { continue };
         let differences = said.iter().zip(found).map(|(said, found)| (said - found).abs());

@@ -65,10 +65,15 @@ fn rail_data(path: &RailPath, view: &View) -> String {
     let mut lengths: Vec<f64> = even.chain(path.knots().iter().map(|knot| knot.arc_length)).collect();
     lengths.sort_unstable_by(f64::total_cmp);
     lengths.dedup();
+    polyline(lengths.into_iter().map(|length| view.to_page(path.place_at(length).point())))
+}
+
+/// The data of a path through points of the page.
+fn polyline(points: impl Iterator<Item = (f64, f64)>) -> String {
     let mut data = String::new();
-    for length in lengths {
-        let (x, y) = view.to_page(path.place_at(length).point());
-        let _ = write!(data, "{}{} {}", command(&data), number(x), number(y));
+    for (x, y) in points {
+        let command = if data.is_empty() { 'M' } else { 'L' };
+        let _ = write!(data, "{command}{} {}", number(x), number(y));
     }
     data
 }
@@ -86,13 +91,8 @@ pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, fra
             }
             (ConnectorKind::Pin { .. }, Some(a), _) => svg.circle(a, RING, &LINE),
             (ConnectorKind::Slot { a: on_a, b: on_b, normal, frame }, Some(a), _) => {
-                let carrier = match frame {
-                    SlotFrame::A => *on_a,
-                    SlotFrame::B => *on_b,
-                    SlotFrame::World => Anchor { body: BodyId::WORLD, point: DVec2::ZERO },
-                };
-                let aside = Anchor { point: carrier.point + normal.perp(), ..carrier };
-                let [from, to] = [carrier, aside].map(|anchor| DVec2::from(place_of(&anchor)));
+                let direction = slot_direction([on_a, on_b], *normal, *frame);
+                let [from, to] = direction.map(|anchor| DVec2::from(place_of(&anchor)));
                 let along = (to - from).normalize_or_zero() * SLOT;
                 let [from, to] = [-along, along].map(|way| (a.0 + way.x, a.1 + way.y));
                 svg.line(from, to, &LINE[1..]);
@@ -116,16 +116,17 @@ fn zigzag([a, b]: [(f64, f64); 2]) -> String {
     };
     let [first, last] = [STRAIGHT, 1.0 - STRAIGHT].map(|part| a.lerp(b, part));
     let points = [a, first].into_iter().chain((0..TEETH).map(tooth)).chain([last, b]);
-    let mut data = String::new();
-    for point in points {
-        let _ = write!(data, "{}{} {}", command(&data), number(point.x), number(point.y));
-    }
-    data
+    polyline(points.map(|point| (point.x, point.y)))
 }
 
-/// Whether the next point of a path begins it.
-fn command(data: &str) -> char {
-    if data.is_empty() { 'M' } else { 'L' }
+/// Two points of the direction in which a slot slides, on what carries it.
+fn slot_direction([a, b]: [&Anchor; 2], normal: DVec2, frame: SlotFrame) -> [Anchor; 2] {
+    let carrier = match frame {
+        SlotFrame::A => *a,
+        SlotFrame::B => *b,
+        SlotFrame::World => Anchor { body: BodyId::WORLD, point: DVec2::ZERO },
+    };
+    [carrier, Anchor { point: carrier.point + normal.perp(), ..carrier }]
 }
 
 /// Where an anchor is in a frame.
