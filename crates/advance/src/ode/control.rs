@@ -2,8 +2,11 @@
 
 use super::method::Method;
 
-/// The next step aims at this part of the length at which the error would be just acceptable.
-const SAFETY: f64 = 0.9;
+/// The next step aims at this part of the length at which the error would be what is asked for.
+const SAFETY: f64 = 0.87;
+/// Steps whose error is up to this many times what is asked for are kept. Steps aim at less than a third of what is asked for and miss
+/// it by chance: to make a whole step again for the sake of such a miss costs more than to aim a little lower.
+const KEPT: f64 = 2.0;
 /// A step shrinks to this part at most, since the estimate says little about much shorter steps.
 const SMALLEST_FACTOR: f64 = 0.2;
 /// A step grows by this factor at most, since the estimate says little about much longer steps.
@@ -22,6 +25,12 @@ pub struct Accepted {
     pub length: f64,
     /// Its error norm.
     pub error: f64,
+}
+
+/// True if a step with such an error norm is kept, rather than made again.
+#[must_use]
+pub fn is_kept(error_norm: f64) -> bool {
+    error_norm <= KEPT
 }
 
 impl Method {

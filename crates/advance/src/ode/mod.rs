@@ -54,7 +54,7 @@ mod stepper;
 mod tableau;
 mod through;
 
-pub use control::Accepted;
+pub use control::{Accepted, is_kept};
 pub use method::Method;
 pub use polynomial::{Jet, SegmentPolynomial, Spread};
 pub use stepper::{Stepper, Stiffness};
