@@ -3,10 +3,10 @@
 use super::method::Method;
 
 /// The next step aims at this part of the length at which the error would be what is asked for.
-const SAFETY: f64 = 0.87;
-/// Steps whose error is up to this many times what is asked for are kept. Steps aim at less than a third of what is asked for and miss
-/// it by chance: to make a whole step again for the sake of such a miss costs more than to aim a little lower.
-const KEPT: f64 = 2.0;
+const SAFETY: f64 = 0.9;
+/// Steps whose error is up to this many times what is asked for are kept. Steps aim at less than half of what is asked for and miss it
+/// by chance: what such a miss adds to all errors is not worth a whole step.
+const KEPT: f64 = 1.5;
 /// A step shrinks to this part at most, since the estimate says little about much shorter steps.
 const SMALLEST_FACTOR: f64 = 0.2;
 /// A step grows by this factor at most, since the estimate says little about much longer steps.

@@ -64,6 +64,7 @@ mod singular;
 mod staying;
 mod stiff;
 mod storms;
+mod switches;
 mod system;
 #[cfg(test)]
 mod test_scene;

@@ -40,6 +40,8 @@ pub(crate) const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 /// Part of the accuracy by which a step of bodies in contact may err, lest what they fly by is hit too late.
 const CLEAR_SHARE: f64 = 0.5;
 
+/// Error norm of a step up to which its dense output counts as exact.
+const DENSE_ERROR: f64 = 0.1;
 /// What is smooth and begins with the square of the part of a step is at most this times that square of what it is in the middle.
 const EARLY_SHARE: f64 = 16.0;
 
@@ -121,14 +123,14 @@ impl Dynamics<'_> {
             // Where the error takes the rates at the end, they are asked for once: where the end is in the end.
             let closed = tools.stepper.needs_end_rates().then(|| self.close_step(tools));
             let mut error = tools.stepper.error_norm(tools.scales);
-            if is_kept(error) {
+            if self.keeps(error) {
                 error = error.max(self.work_error(tools.stepper, tools.scales.len(), work_scale));
             }
             if !error.is_finite() {
                 (step, rejected) = (step * RETREAT, true);
                 continue;
             }
-            if is_kept(error) || self.group.kept.passes_astride(step, error) {
+            if self.keeps(error) || self.group.kept.passes_astride(step, error) {
                 self.group.kept.note_accepted(step);
                 // What laws do elsewhere nothing here foretells.
                 let is_steady = self.group.laws.is_empty() && STEADY_PART * self.growth_by_forces() >= 1.0;
@@ -150,6 +152,12 @@ impl Dynamics<'_> {
             step = self.group.kept.shorter_length(shorter, method);
             (rejected, is_led) = (true, is_led || step < shorter);
         }
+    }
+
+    /// True if a step with such an error is kept. Where nothing touches, errors follow the step, and it is not by chance that one errs.
+    fn keeps(&self, error: f64) -> bool {
+        let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
+        if any_contact { is_kept(error) } else { error <= 1.0 }
     }
 
     /// Projects the end and evaluates the rates there. Returns the energy at the end, if anybody had to look.
@@ -235,17 +243,17 @@ impl Dynamics<'_> {
             self.group.end_state.clone_from(&self.group.state);
         }
         self.group.span = offset;
-        offset <= 0.0 || tools.stepper.needs_end_rates() || is_kept(tools.stepper.error_norm(tools.scales))
+        offset <= 0.0 || tools.stepper.needs_end_rates() || self.keeps(tools.stepper.error_norm(tools.scales))
     }
 
-    /// True if dense output errs at an offset [s] by no more than a step may: that of explicit methods is of the order
+    /// True if dense output errs at an offset [s] by little of what a step may err by: that of explicit methods is of the order
     /// of the error estimate, and since it has the values and the rates at the start, near that by less with the square of
     /// the offset.
     pub(crate) fn is_dense_exact(&self, offset: f64) -> bool {
         let part = offset / self.group.span;
         let share = (EARLY_SHARE * part * part).min(1.0);
         self.group.stepping() != Stepping::Stiff
-            && self.group.accepted.is_some_and(|step| share * step.error <= 1.0)
+            && self.group.accepted.is_some_and(|step| share * step.error <= DENSE_ERROR)
     }
 
     /// Ends the segment at an offset [s] within it, by its dense output.

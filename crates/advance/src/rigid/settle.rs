@@ -12,7 +12,6 @@ use super::rows::{HeldRow, RowSource};
 use super::segment::LONGEST_STEP;
 use super::settling::{SMALL_CONTRADICTION, Settling};
 use super::system::RigidSystem;
-use super::watch::FORCE_SHARE;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
@@ -30,6 +29,10 @@ const ROPE_SHARE: f64 = 0.5;
 /// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its force. With less it
 /// sinks so slowly that it may as well be touched again.
 const RELEASED_SHARE: f64 = 1e-3;
+
+/// Part of the loads of its bodies that a contact carries by rounding only, and need not be held. More than that may be what keeps a
+/// body in balance: one that stands on corners next to each other, as a brick on the joint of two others, falls over without.
+const IDLE_SHARE: f64 = 1e-13;
 
 /// Part of what counts as rest by which a contact may open, and be held, where such contacts take turns.
 const HASTY_SHARE: f64 = 1e-3;
@@ -292,7 +295,7 @@ impl RigidSystem {
             let record = region.records[index];
             let loads = places_of(region, &record).map(|place| gross[place]);
             let is_released = region.released.is_some() && Touch::of(&record) == region.released;
-            let share = if is_released { RELEASED_SHARE } else { FORCE_SHARE };
+            let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
             let least = share * loads.fold(f64::INFINITY, f64::min);
             let lies_deep = self.lifted(&record).is_some();
             let stays = record.parties.bilateral || force > least || lies_deep;

@@ -1,17 +1,14 @@
 //! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features or, touched
-//! without force, sinks, a stop that closes, a force law that changes branch.
+//! without force, sinks; stops that close and force laws that change branch are in `switches`.
 //!
 //! Each is a function along the dense output whose first fall below zero is an event. Places are read at once, forces only
 //! when the time comes up to which none can vanish.
 
 use super::brief::Stepping;
-use super::crossing::{
-    EARLY, NODES, between_nodes, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
-};
+use super::crossing::{EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall_before, node};
 use super::dynamics::Dynamics;
-use super::group::{Group, SegmentEnd, Stop};
-use super::law::Snapshot;
-use super::rows::{HeldRow, RowSource, moving_of};
+use super::group::{Group, SegmentEnd};
+use super::rows::{HeldRow, RowSource};
 use super::segment::StepControl;
 use crate::ode::Ode;
 
@@ -464,73 +461,7 @@ impl Dynamics<'_> {
             self.stage.forces[row] + self.stage.least[row]
         }
     }
-
-    /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
-    /// then begins with a part of the segment so short that the point is off. On a closed rail what has gone by a stop seems to have
-    /// come round: laps are told apart by what is read before.
-    fn find_stop(&mut self, stop: Stop) -> Option<f64> {
-        let path = self.physics.mechanism.connectors[stop.id.index()].path();
-        let lap = path.filter(|path| path.is_closed()).map(|path| path.length());
-        let mut reach = self.group.span;
-        for _ in 0..MOST_SHORTER {
-            let mut values = [0.0; NODES];
-            for index in 0..NODES {
-                let before = values[index.saturating_sub(1)];
-                let value = self.stop_at(stop, node(index, reach));
-                values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
-            }
-            let touches = values[0] <= 0.0;
-            values[0] = values[0].max(0.0);
-            if !touches || values[1] >= 0.0 {
-                return first_fall(&values, reach, |offset| {
-                    in_lap(self.stop_at(stop, offset), between_nodes(&values, reach, offset), lap)
-                });
-            }
-            reach *= SHORTER;
-        }
-        Some(reach)
-    }
-
-    /// Gap of a stop [m], with what it may sink by.
-    fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
-        self.place_at(offset);
-        let connector = &self.physics.mechanism.connectors[stop.id.index()];
-        let [a, b] = connector.bodies().map(|body| moving_of(&self.stage.movings, body));
-        connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
-    }
-
-    fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {
-        self.place_at(offset);
-        let now = Snapshot::new(self.start.seconds() + offset, &self.stage.movings);
-        self.physics.laws[law].switch(index, &now)
-    }
-
-    /// The first change of sign of a switching function. Just after one it is zero: a little later tells its sign.
-    fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
-        let span = self.group.span;
-        let sign = self.switch_at(law, index, span * SIGN_AT).signum();
-        let values = std::array::from_fn(|node_index| {
-            let value = sign * self.switch_at(law, index, node(node_index, span));
-            if node_index == 0 { value.max(0.0) } else { value }
-        });
-        first_fall(&values, span, |offset| {
-            let value = sign * self.switch_at(law, index, offset);
-            if offset <= span * SIGN_AT { value.max(0.0) } else { value }
-        })
-    }
 }
-
-/// A distance along a closed path [m] that is known up to laps, nearest to another.
-fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
-    lap.map_or(value, |lap| value + lap * ((near - value) / lap).round())
-}
-
-/// A search for a stop begins with this part of the segment, and again, if that is too long.
-const SHORTER: f64 = 0.25;
-/// Cap on that.
-const MOST_SHORTER: usize = 30;
-/// Part of the segment after which the sign of a switching function is taken.
-const SIGN_AT: f64 = 1.0 / 1024.0;
 
 #[cfg(test)]
 mod tests {
