@@ -75,6 +75,13 @@ impl CollisionRow {
         sum
     }
 
+    /// What a unit impulse along the row changes its rate by through each of its bodies alone [1/kg]; they add up to the row's own
+    /// coupling.
+    #[must_use]
+    pub(crate) fn shares(&self) -> [f64; 2] {
+        [0, 3].map(|first: usize| (first..first + 3).map(|k| self.jacobian[k] * self.response[k]).sum())
+    }
+
     /// True if the rows act on a common body that can move.
     #[must_use]
     pub fn shares_movable_body(&self, other: &CollisionRow) -> bool {

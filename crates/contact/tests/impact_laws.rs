@@ -250,6 +250,46 @@ fn held_rows_at_rest_take_part_in_a_simultaneous_impact() {
     assert!(near(speeds(ImpactLaw::Hybrid), [0.0, 0.0, 1.0]));
 }
 
+/// The speed with which a mass comes back that a lighter one, at rest between it and a wall, turns round, blow by blow.
+fn turned_round_by(light: f64) -> f64 {
+    let (mut heavy_speed, mut light_speed) = (1.0, 0.0);
+    while heavy_speed > light_speed || light_speed > 0.0 {
+        if heavy_speed > light_speed {
+            let together = (heavy_speed + light * light_speed) / (1.0 + light);
+            (heavy_speed, light_speed) = (2.0 * together - heavy_speed, 2.0 * together - light_speed);
+        } else {
+            light_speed = -light_speed;
+        }
+    }
+    heavy_speed
+}
+
+#[test]
+fn light_bodies_before_a_wall_turn_a_heavy_one_round() {
+    for (light, count) in [(1e-2, 1), (1e-4, 1), (1e-6, 1), (1e-8, 1), (1e-4, 3), (1e-6, 2)] {
+        let mover = |mass: f64, speed: f64| Mover { inverse: [1.0 / mass; 3], velocity: [speed, 0.0, 0.0] };
+        let wall = Mover { inverse: [0.0; 3], velocity: [0.0; 3] };
+        let mut movers = vec![mover(1.0, 1.0)];
+        movers.extend((0..count).map(|_| mover(light, 0.0)));
+        movers.push(wall);
+        let touch = |first| Touch {
+            bodies: [first, first + 1],
+            angle: std::f64::consts::PI,
+            moments: [0.0; 2],
+            elasticity: 1.0,
+        };
+        let touches: Vec<Touch> = (0..=count).map(touch).collect();
+        for law in LAWS.into_iter().filter(|law| *law != ImpactLaw::Simultaneous) {
+            let what = format!("{law:?}, {count} of {light:e} kg");
+            let (after, _) = resolve(law, ImpactOrder::Fastest, &movers, &touches).expect("a line of bodies");
+            let lost = energy(&after) - energy(&movers);
+            assert!(lost.abs() < 1e-7, "{what}: {lost} J");
+            let off = after[0].velocity[0] - turned_round_by(light);
+            assert!(count > 1 || off.abs() < 1e-7, "{what}: off by {off} m/s");
+        }
+    }
+}
+
 #[test]
 fn a_row_that_opens_is_not_held_by_force_in_a_simultaneous_impact() {
     // The impulse along the first normal turns the second row round, which opened before: to stop it there would push

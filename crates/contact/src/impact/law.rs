@@ -115,7 +115,8 @@ impl ImpactLaw {
             ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, random)),
         };
         let slow = impact.slow_speed();
-        let mut patience = Patience::new(impact.rows.len(), small.max(QUIET * slow), slow);
+        let mut patience =
+            Patience::new(impact.rows.len(), impact.lightness(), small.max(QUIET * slow), slow);
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }
@@ -161,6 +162,13 @@ impl Impact {
         let outcome = self.resolve_inelastic();
         self.is_trial = false;
         outcome
+    }
+
+    /// Mass of the lightest body by that of the heaviest, as rows feel them.
+    fn lightness(&self) -> f64 {
+        let shares = || self.rows.iter().flat_map(CollisionRow::shares).filter(|share| *share > 0.0);
+        let (least, most) = (shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max));
+        if most > 0.0 { least / most } else { 1.0 }
     }
 
     /// Speed [m/s] below which no row rebounds.

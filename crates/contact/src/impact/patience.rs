@@ -5,6 +5,10 @@
 //! in stages, each of so many rows solved, from a rounding of the impact's speed to all of it; what then still closes is
 //! stopped without elasticity. The energy lost by that is of the order of the square of what counted last. After the
 //! first rows only speeds at which elasticity acts count: to stop what is slower takes one problem, not a row after another.
+//!
+//! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi / atan(sqrt(m / M)) small blows,
+//! which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003, 375-394); a line of n light ones
+//! takes some n times as many. A stage lasts as long, for each row.
 
 /// Part of the impact's fastest rate below which a row is done.
 pub(super) const RICOCHET: f64 = 1e-12;
@@ -12,8 +16,12 @@ pub(super) const RICOCHET: f64 = 1e-12;
 pub(super) const QUIET: f64 = 1e-3;
 /// Rows solved before slow rows are left to the end.
 const FIRST_ROWS: usize = 20;
-/// Rows solved in one stage, per row of the impact.
+/// Rows solved in one stage, per row of the impact, at least.
 const ROWS_PER_STAGE: usize = 20;
+/// Blows by which a light body turns a heavy one round, times the root of the ratio of their masses, at most: pi/atan(x) <= 4/x.
+const BLOWS: f64 = 4.0;
+/// The most of them, however light a body is: those of masses as 1 to 1e9.
+const MOST_BLOWS: f64 = 1e5;
 /// Factor of what counts as closing, from one stage to the next.
 const RAISE: f64 = 10.0;
 /// Number of stages: the last leaves nothing that is less than the impact itself.
@@ -32,9 +40,12 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// For an impact of `rows` rows in which rates up to `small` are done, and no row rebounds that is slower than `slow`.
-    pub(super) fn new(rows: usize, small: f64, slow: f64) -> Self {
-        Self { small, slow: Some(slow), per_stage: ROWS_PER_STAGE * rows, left: FIRST_ROWS, stages: STAGES }
+    /// For an impact of `rows` rows in which rates up to `small` are done, and no row rebounds that is slower than `slow`. The
+    /// lightest body has a mass of `lightness` times that of the heaviest.
+    pub(super) fn new(rows: usize, lightness: f64, small: f64, slow: f64) -> Self {
+        let blows = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
+        let per_stage = blows.max(ROWS_PER_STAGE) * rows;
+        Self { small, slow: Some(slow), per_stage, left: FIRST_ROWS, stages: STAGES }
     }
 
     /// Rate [m/s] up to which a row is done.
@@ -66,7 +77,7 @@ mod tests {
 
     #[test]
     fn it_ends_after_so_many_rows_with_all_of_the_impact() {
-        let mut patience = Patience::new(3, RICOCHET, 0.0);
+        let mut patience = Patience::new(3, 1.0, RICOCHET, 0.0);
         let mut solved = 0;
         while patience.spend(1) {
             solved += 1;
@@ -77,7 +88,7 @@ mod tests {
 
     #[test]
     fn slow_rows_do_not_count_after_the_first() {
-        let mut patience = Patience::new(3, RICOCHET, 0.5);
+        let mut patience = Patience::new(3, 1.0, RICOCHET, 0.5);
         assert!(patience.spend(FIRST_ROWS - 1) && patience.small() == RICOCHET);
         assert!(patience.spend(1) && patience.small() == 0.5);
     }
