@@ -164,9 +164,10 @@ impl Impact {
         outcome
     }
 
-    /// Mass of the lightest body by that of the heaviest, as rows feel them.
+    /// Mass of the lightest body by that of the heaviest, as rows feel them that rebound.
     fn lightness(&self) -> f64 {
-        let shares = || self.rows.iter().flat_map(CollisionRow::shares).filter(|share| *share > 0.0);
+        let rebounding = || self.rows.iter().filter(|row| row.elasticity > 0.0);
+        let shares = || rebounding().flat_map(CollisionRow::shares).filter(|share| *share > 0.0);
         let (least, most) = (shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max));
         if most > 0.0 { least / most } else { 1.0 }
     }
