@@ -89,6 +89,16 @@ fn hook() -> RailPath {
     RailPath::from_edges(at(-3.0, 0.0), &edges).expect("a fine hook")
 }
 
+/// A closed path of four lines, and one of two arcs, with corners between them.
+fn cornered() -> [RailPath; 2] {
+    let line = |x, y| EdgeSpec::Line { to: at(x, y) };
+    let square = [line(1.0, 0.0), line(1.0, 1.0), line(0.0, 1.0), line(0.0, 0.0)];
+    let arc = |x, center: f64| EdgeSpec::Arc { to: at(x, 0.0), center: at(0.0, center), clockwise: false };
+    let lens = [arc(-1.5, -0.5), arc(1.5, 0.5)];
+    [(at(0.0, 0.0), &square[..]), (at(1.5, 0.0), &lens[..])]
+        .map(|(start, edges)| RailPath::from_edges(start, edges).expect("a fine path"))
+}
+
 fn all() -> [RailPath; 6] {
     [wave(), bean(), eight(), stadium(), loop_the_loop(), hook()]
 }
@@ -222,7 +232,7 @@ fn sampled_distance(path: &RailPath, samples: &[DVec2], point: DVec2) -> f64 {
 #[test]
 fn the_nearest_place_is_the_nearest_of_all() {
     let mut random = Random(1);
-    for (index, path) in all().iter().enumerate() {
+    for (index, path) in all().iter().chain(&cornered()).enumerate() {
         let samples: Vec<DVec2> =
             (0..=4000).map(|step| path.place_at(path.length() * f64::from(step) / 4000.0).point()).collect();
         for _ in 0..2000 {
@@ -230,6 +240,8 @@ fn the_nearest_place_is_the_nearest_of_all() {
             let place = path.nearest(point, None);
             let distance = (place.point() - point).length();
             let expected = sampled_distance(path, &samples, point);
+            let is_told = (path.distance(point) - distance).abs() < 1e-12;
+            assert!(is_told || !path.is_closed(), "path {index}, {point}: {}", path.distance(point));
             assert!((distance - expected).abs() < 1e-7, "path {index}, {point}: {distance}, not {expected}");
             assert_foot(&place, point);
         }

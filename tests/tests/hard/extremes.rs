@@ -1,7 +1,7 @@
 //! Numbers far from one.
 
 use super::{bounced, within};
-use halfgap::geometry::{DVec2, Shape};
+use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
 use halfgap::{BodyId, BodyState, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
 use halfgap_tests::reference_scene;
@@ -35,6 +35,45 @@ fn a_small_disc_bounces_on_a_planet_of_a_million_metres() {
     let off = world.state(ball).position.y - (1.75 - bounced(depth, 10.25));
     within("ball on a planet of 1e6 m, 10 bounces: height [m]", off, 1e-7);
     within("ball on a planet of 1e6 m: energy [J]", world.energy().total() - 17.5, 1e-9);
+}
+
+/// The top of a circle, 10 m wide; the ends of the arc are at height 0.
+fn cap(radius: f64) -> Shape {
+    let center = DVec2::new(0.0, -(radius * radius - 25.0).sqrt());
+    let edges = vec![
+        EdgeSpec::Line { to: DVec2::new(5.0, -1.0) },
+        EdgeSpec::Line { to: DVec2::new(5.0, 0.0) },
+        EdgeSpec::Arc { to: DVec2::new(-5.0, 0.0), center, clockwise: false },
+        EdgeSpec::Line { to: DVec2::new(-5.0, -1.0) },
+    ];
+    Shape::from_paths(&[PathSpec { start: DVec2::new(-5.0, -1.0), edges }]).expect("a cap")
+}
+
+#[test]
+fn a_block_comes_down_on_the_top_of_a_planet_whatever_its_radius() {
+    // However short its arc, how far a planet's surface is can be told no better than to the rounding of its radius.
+    for radius in [1e3, 1e5, 1e6, 6.371e6] {
+        for tolerance in [1e-5, 1e-8, 1e-10] {
+            for angle in [0.2, 0.5, 1.0] {
+                let mut shop = Workshop::new(tolerance);
+                let middle = cap(radius).mass_properties().centroid;
+                shop.fixed("planet", cap(radius), middle);
+                let state = BodyState { angle, ..at_rest(0.0, 0.55) };
+                let settler = shop.settler("block", block(0.5, 0.5), 1.0, state, 0.3);
+                let mut world = shop.build();
+                advance(&mut world, 3.0);
+                let off = world.state(settler).position.y - 0.25;
+                let what = format!("{radius} m, {tolerance:e}, {angle} rad");
+                assert!((-1e-3..0.11).contains(&off), "{what}: {off} m above where it rests");
+                let lost = world.ledger().integration_error();
+                within(
+                    &format!("block on a planet of {what}: energy [J]"),
+                    lost,
+                    200.0 * tolerance.max(1e-6),
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -31,7 +31,7 @@ const FINEST_TOLERANCE: f64 = 1e-12;
 pub struct Scales {
     /// Bounding radius [m] of the smallest movable body; `None` if nothing moves.
     pub smallest_radius: Option<f64>,
-    /// Largest coordinate in size [m].
+    /// Largest coordinate in size, or radius of an arc [m]: gaps are told from the rounding of both.
     pub coordinate: f64,
     /// How far it is across all of it [m], or from the origin if that is less.
     pub extent: f64,
@@ -49,6 +49,11 @@ impl Scales {
     pub fn spread(&mut self, bounds: Aabb) {
         self.coordinate = bounds.min.abs().max(bounds.max.abs()).max_element();
         self.extent = bounds.size().length().min(self.coordinate);
+    }
+
+    /// Takes in the radius [m] of an arc, after the bounds: however short the arc, its gaps are measured from its centre.
+    pub fn round_off(&mut self, radius: f64) {
+        self.coordinate = self.coordinate.max(radius);
     }
 
     /// The smallest target gap [m] that coordinates of this size allow.

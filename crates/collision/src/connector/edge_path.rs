@@ -81,8 +81,8 @@ impl EdgePath {
     pub(super) fn nearest(&self, point: DVec2, hint: Option<&RailHint>) -> RailPlace {
         let (piece, along) = match hint {
             None => {
-                let piece = self.nearest_piece(point);
-                (piece, self.pieces[piece].along(point, self.near_middle(piece)))
+                let (foot, start) = self.nearest_foot(point);
+                return RailPlace::new(foot, start + foot.parameter);
             }
             Some(hint) if hint.stays => {
                 let piece = self.hinted_piece(hint);
@@ -98,7 +98,7 @@ impl EdgePath {
     #[inline]
     pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {
         let piece = match hint {
-            None => self.nearest_piece(point),
+            None => return self.nearest_foot(point).0,
             Some(hint) if hint.stays => self.hinted_piece(hint),
             Some(hint) => self.follow(point, hint).0,
         };
@@ -114,6 +114,22 @@ impl EdgePath {
         let mut foot = self.pieces[piece].foot_at(piece, along);
         foot.parameter = along;
         RailPlace::new(foot, arc_length)
+    }
+
+    /// The foot of a point on all of the path, and where its piece starts [m]. Beyond a corner that is the corner itself, unless it is
+    /// so near that rounding would say in which direction the point lies.
+    fn nearest_foot(&self, point: DVec2) -> (Foot, f64) {
+        let index = self.nearest_piece(point);
+        let piece = &self.pieces[index];
+        let along = piece.along(point, self.near_middle(index));
+        let nearest = along.clamp(piece.range[0], piece.range[1]);
+        let is_beyond = (along - nearest).abs() > ASTRAY * self.length;
+        let foot = if is_beyond {
+            Foot { parameter: nearest, ..from_corner(&piece.foot_at(index, nearest), point) }
+        } else {
+            Foot { parameter: along, ..piece.foot(index, point) }
+        };
+        (foot, piece.start)
     }
 
     /// The piece nearest to a point; a continuation if that is where the point lies beyond the nearest end.
@@ -196,6 +212,14 @@ impl EdgePath {
         let middle = self.pieces[piece].half_way();
         if middle.is_finite() { middle } else { 0.0 }
     }
+}
+
+/// The foot at a corner of the path, of a point that lies off it in no direction of its pieces.
+fn from_corner(corner: &Foot, point: DVec2) -> Foot {
+    let offset = point - corner.point;
+    let side = if corner.normal.dot(offset) < 0.0 { -1.0 } else { 1.0 };
+    let normal = side * offset.normalize_or(side * corner.normal);
+    Foot { normal, tangent: -normal.perp(), curvature: 0.0, gap: side * offset.length(), ..*corner }
 }
 
 /// The edges, each starting exactly where the one before it ends.

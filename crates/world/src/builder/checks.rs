@@ -1,6 +1,6 @@
 //! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
 
-use super::{BodySpec, WorldBuilder, centered};
+use super::{BodySpec, WorldBuilder, centered, largest_radius};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
@@ -93,13 +93,17 @@ impl WorldBuilder {
         }
     }
 
-    /// Refuses coordinates so large that gaps as small as the smallest movable body cannot be told from rounding.
+    /// Refuses coordinates and radii so large that gaps as small as the smallest movable body cannot be told from rounding.
     pub(super) fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
         let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
         let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);
         let mut far = bodies.map(|body| (body, farthest_in(&centered(body).bounds_at(&body.state.pose()))));
         if let Some((body, value)) = far.find(|&(_, value)| value > largest) {
             return Err(too_large(body, "coordinates", largest, value));
+        }
+        let mut radii = self.bodies.iter().map(|body| (body, largest_radius(&body.shape)));
+        if let Some((body, value)) = radii.find(|&(_, value)| value > largest) {
+            return Err(too_large(body, "radii", largest, value));
         }
         let mut connectors = self.connectors.iter().enumerate();
         connectors.try_for_each(|(index, spec)| self.require_near(index, &spec.connector, largest))

@@ -17,7 +17,7 @@ use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
-use halfgap_geometry::{Aabb, Pose, Shape, ShapePool};
+use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
 
@@ -234,7 +234,7 @@ impl WorldBuilder {
         let is_too_small = self.settings.overrides.target_gap.is_none() && wanted < smallest;
         is_too_small.then(|| {
             format!(
-                "tolerance {} asks for a target gap of {} m, but coordinates of {} m allow no less than {} m",
+                "tolerance {} asks for a target gap of {} m, but coordinates or radii of {} m allow no less than {} m",
                 Rounded(tolerance),
                 Rounded(wanted),
                 Rounded(scales.coordinate),
@@ -330,6 +330,7 @@ impl WorldBuilder {
             }
         }
         bounds.into_iter().for_each(|bounds| scales.spread(bounds));
+        self.bodies.iter().for_each(|body| scales.round_off(largest_radius(&body.shape)));
         scales
     }
 }
@@ -378,6 +379,15 @@ fn center_of_mass(body: &BodySpec) -> DVec2 {
         let rounding = CENTROID_ROUNDINGS * f64::EPSILON * body.shape.reach();
         if centroid.length() <= rounding { DVec2::ZERO } else { centroid }
     })
+}
+
+/// Largest radius [m] of a shape's arcs.
+pub(super) fn largest_radius(shape: &Shape) -> f64 {
+    let radii = shape.edges().filter_map(|edge| match edge {
+        Edge::Arc(arc) => Some(arc.radius()),
+        Edge::Line(_) => None,
+    });
+    radii.fold(0.0, f64::max)
 }
 
 /// The shape about the centre of mass.
