@@ -84,7 +84,7 @@ impl From<&Ledger> for Books {
 }
 
 /// The energy that a run has turned over, as far as somebody looked.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turnover {
     start_potential: f64,
     /// The largest sum of kinetic energy, change of the potential energy, and work of force laws that was seen [J].

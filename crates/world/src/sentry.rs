@@ -31,7 +31,8 @@ pub(crate) struct Sentry {
     pub(crate) scales: EnergyScales,
     /// The user says what counts as slow.
     pub(crate) slow_is_given: bool,
-    turnover: Option<Turnover>,
+    /// Since the start.
+    pub(crate) turnover: Turnover,
     /// Segments that had been started at the last look.
     looked: u64,
     /// How many of the looks of a known duration are behind, and whether none of them was left out.
@@ -69,7 +70,7 @@ impl Sentry {
             duration,
             scales,
             slow_is_given: settings.overrides.velocity_tol.is_some(),
-            turnover: None,
+            turnover: Turnover::default(),
             looked: 0,
             looks: 0.0,
             is_watchful: duration > 0.0,
@@ -94,9 +95,8 @@ impl World {
         let mut room = std::mem::take(&mut self.sentry.room);
         let books = self.books(&mut room.booked, &mut room.movings);
         let kinetic = self.largest_kinetic_energy();
-        let turnover = self.sentry.turnover.get_or_insert_with(|| Turnover::new(books.now));
-        turnover.note(&books);
-        turnover.note_kinetic(kinetic);
+        self.sentry.turnover.note(&books);
+        self.sentry.turnover.note_kinetic(kinetic);
         let found = self.astray(&books, &mut room.near);
         self.sentry.room = room;
         match found {
@@ -110,10 +110,7 @@ impl World {
         let mut found = Vec::new();
         self.find_connectors_off(&mut found);
         self.find_overlaps(near, &mut found);
-        found.into_iter().next().or_else(|| {
-            let turned_over = self.sentry.turnover.map_or(0.0, |turnover| turnover.energy);
-            self.books_astray(books, turned_over)
-        })
+        found.into_iter().next().or_else(|| self.books_astray(books, self.sentry.turnover.energy))
     }
 
     /// Whether the time of one of the looks of a known duration has come.
@@ -224,6 +221,16 @@ mod tests {
         assert!(
             matches!(finding, Finding::Captured { energy, slow: 10.0, .. } if (energy - 10.0).abs() < 1e-6)
         );
+    }
+
+    #[test]
+    fn what_was_turned_over_before_the_first_look_counts() {
+        // The disc falls by 0.5 m and lies there: nothing moves when somebody looks.
+        let mut world = slow_disc();
+        world.start.energy += 1e-5;
+        world.advance_to(1.0, &mut |_| ()).expect("so little of 5 J is rounding");
+        assert!(world.sentry.turnover.energy > 4.9, "{:?}", world.sentry.turnover);
+        assert!(world.energy().kinetic < 1e-12);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
-use crate::ledger::{Books, LawWork, Ledger};
+use crate::ledger::{Books, LawWork, Ledger, Turnover};
 use crate::run_error::RunError;
 use crate::sentry::Sentry;
 use glam::DVec2;
@@ -118,7 +118,9 @@ impl World {
         sentry: Sentry,
     ) -> Self {
         let told = Event::Impact(Impact::default());
-        Self { system, bodies, forces, connectors, now, warnings, start, told, sentry }
+        let mut world = Self { system, bodies, forces, connectors, now, warnings, start, told, sentry };
+        world.sentry.turnover = Turnover::new(world.energy());
+        world
     }
 
     /// The present time [s].

@@ -16,7 +16,8 @@ const LARGEST_GROWTH: f64 = 100.0;
 /// Part of the guess that is proposed when nothing seems to change.
 const AT_REST: f64 = 1e-3;
 impl Stepper {
-    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two derivatives.
+    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two derivatives. With a negative limit
+    /// the run goes back: the step is negative, and no longer.
     ///
     /// Source: HNW II.4, "Starting step size", with `scales` as in [`error_norm`](Stepper::error_norm). Costs one
     /// derivative; methods with fixed steps ask for none and answer `limit`.
@@ -37,15 +38,16 @@ impl Stepper {
         let size = mean_square(from.state, scales).sqrt();
         let rate = mean_square(from.rates, scales).sqrt();
         let blind = size < TOO_SMALL_TO_TELL || rate < TOO_SMALL_TO_TELL;
-        let guess = if blind { BLIND_GUESS } else { SMALL_CHANGE * size / rate }.min(limit);
-        let second = self.second_derivative(system, from, scales, guess)?;
+        let (longest, way) = (limit.abs(), limit.signum());
+        let guess = if blind { BLIND_GUESS } else { SMALL_CHANGE * size / rate }.min(longest);
+        let second = self.second_derivative(system, from, scales, way * guess)?;
         let largest = rate.max(second);
         let proposed = if largest <= NO_CHANGE {
             BLIND_GUESS.max(AT_REST * guess)
         } else {
             (SMALL_CHANGE / largest).powf(1.0 / f64::from(order + 1))
         };
-        Ok(proposed.min(LARGEST_GROWTH * guess).min(limit))
+        Ok(way * proposed.min(LARGEST_GROWTH * guess).min(longest))
     }
 
     /// Estimates the size of the second derivative [1/s^2] by the change of the rates along a step of Euler.
@@ -65,6 +67,6 @@ impl Stepper {
         for (rate, start) in changes.iter_mut().zip(from.rates) {
             *rate -= start;
         }
-        Ok(mean_square(changes, scales).sqrt() / step)
+        Ok(mean_square(changes, scales).sqrt() / step.abs())
     }
 }

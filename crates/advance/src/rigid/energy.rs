@@ -3,10 +3,11 @@
 use super::dynamics::{Dynamics, body_state};
 use super::extending::Tools;
 use super::group::Group;
+use super::impacts::ImpactReport;
 use super::law::Snapshot;
 use super::segment::StepControl;
 use super::system::RigidSystem;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, BodyState};
 use halfgap_contact::Inertia;
 
 /// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it. Where rows all
@@ -28,13 +29,27 @@ impl RigidSystem {
     /// Notes the kinetic energy of a group's bodies at the end of its segment, which nobody may look at else.
     pub(crate) fn note_kinetic_energy(&mut self, group: &Group) {
         let count = group.bodies.len();
-        let of_bodies = group.bodies.iter().enumerate().map(|(place, &body)| {
-            let state = body_state(&group.end_state, count, place);
-            let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
-            state.velocity.length_squared() / inverse_mass + state.angular_velocity.powi(2) / inverse_moment
-        });
-        let kinetic = 0.5 * of_bodies.sum::<f64>();
+        let of_bodies = group
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(place, &body)| self.kinetic_energy(body, &body_state(&group.end_state, count, place)));
+        let kinetic = of_bodies.sum::<f64>();
         self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(kinetic);
+    }
+
+    /// Notes the kinetic energy that the bodies of an impact came with.
+    pub(crate) fn note_kinetic_energy_before(&mut self, impact: &ImpactReport) {
+        let after = impact.states.iter().map(|(body, state)| self.kinetic_energy(*body, state)).sum::<f64>();
+        let kinetic = after - impact.energy_change;
+        self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(kinetic);
+    }
+
+    /// Kinetic energy [J] of a movable body in a state.
+    fn kinetic_energy(&self, body: BodyId, state: &BodyState) -> f64 {
+        let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
+        let (square, spin) = (state.velocity.length_squared(), state.angular_velocity.powi(2));
+        0.5 * (square / inverse_mass + spin / inverse_moment)
     }
 }
 

@@ -461,6 +461,7 @@ impl RigidSystem {
         let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
         *booked += report.energy_change;
+        self.note_kinetic_energy_before(report);
     }
 }
 

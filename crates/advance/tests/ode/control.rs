@@ -145,6 +145,20 @@ fn the_first_step_is_nearly_acceptable_and_not_far_too_short() {
 }
 
 #[test]
+fn the_first_step_back_is_as_long_as_the_one_ahead() {
+    let mut stepper = Stepper::new(Method::Dop853);
+    let (state, rates) = (exact(0.0), rates_at(0.0, &exact(0.0)));
+    let start = Point { offset: 0.0, state: &state, rates: &rates };
+    let mut first = |limit: f64| {
+        let Ok(step) = stepper.starting_step(&mut Planet::default(), start, &[1e-9; SIZE], limit);
+        step
+    };
+    let (ahead, back) = (first(10.0), first(-10.0));
+    assert!(back < 0.0 && (ahead / -back - 1.0).abs() < 0.1, "{ahead} s ahead, {back} s back");
+    assert_eq!(first(-1e-6), -1e-6);
+}
+
+#[test]
 fn the_first_step_follows_the_tolerance_as_the_estimate_does() {
     // For DOP853 the error of a step falls as its 8th power.
     let proposed = |tolerance: f64| {

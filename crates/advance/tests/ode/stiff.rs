@@ -1,6 +1,6 @@
 //! Systems parts of which decay much faster than anything moves.
 
-use halfgap_advance::ode::{Method, Ode, Point, SegmentPolynomial, Stepper};
+use halfgap_advance::ode::{Method, Ode, Point, SegmentPolynomial, Stepper, is_kept};
 use std::convert::Infallible;
 
 /// Rate [1/s] at which the fast part decays.
@@ -237,4 +237,32 @@ fn a_state_that_is_not_found_is_told_and_is_the_start() {
     let start = Point { offset: 0.0, state: &[2.0], rates: &[1.0] };
     let Ok(()) = stepper.step(&mut Nothing, start, 0.1, &mut end);
     assert_eq!((end, stepper.error_norm(&[1.0])), ([2.0], f64::INFINITY));
+}
+
+/// What runs dry: the rates are no numbers below zero.
+struct Tank;
+
+impl Ode for Tank {
+    type Error = Infallible;
+
+    fn derivative(&mut self, _offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        rates[0] = -state[0].sqrt();
+        Ok(())
+    }
+}
+
+#[test]
+fn a_step_to_where_there_are_no_rates_is_none() {
+    for method in [Method::RadauIia5, Method::Dop853, Method::DormandPrince5] {
+        let mut stepper = Stepper::new(method);
+        let mut end = [0.0];
+        let start = Point { offset: 0.0, state: &[1.0], rates: &[-1.0] };
+        for step in [1.5, f64::INFINITY] {
+            let Ok(()) = stepper.step(&mut Tank, start, step, &mut end);
+            let error = stepper.error_norm(&[1e-9]);
+            assert!(!is_kept(error), "{method:?}, {step} s: {error}, {end:?}");
+        }
+        let Ok(()) = stepper.step(&mut Tank, start, 1e-3, &mut end);
+        assert!(is_kept(stepper.error_norm(&[1e-9])), "{method:?}");
+    }
 }

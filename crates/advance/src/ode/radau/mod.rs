@@ -88,6 +88,7 @@ impl Radau {
         self.find_rounding();
         self.solved = self.solved && self.solve_stages(system, from)?;
         end.copy_from_slice(from.state);
+        self.solved = self.solved && self.stages.iter().flatten().all(|way| way.is_finite());
         if self.solved {
             end.iter_mut().zip(&self.stages[2]).for_each(|(end, way)| *end += way);
             self.estimate_error(from);
@@ -252,8 +253,8 @@ impl Radau {
             |row: &[f64; 3], at: usize| (0..3).map(|stage| row[stage] * rates[stage][at]).sum::<f64>();
         let mut sum = 0.0;
         let mut note = |at: usize, correction: f64| {
-            let beyond = (correction.abs() - rounding[at]).max(0.0) / self.scales[at];
-            sum += beyond * beyond;
+            let size = beyond(correction, rounding[at]) / self.scales[at];
+            sum += size * size;
         };
         let [first, second, third] = &mut self.split;
         let right = &mut self.right[..active];
@@ -304,7 +305,7 @@ impl Radau {
         }
         self.real.solve(&mut self.error[..self.active]);
         for (error, rounding) in self.error.iter_mut().zip(&self.rounding) {
-            *error = (error.abs() - rounding).max(0.0);
+            *error = beyond(*error, *rounding);
         }
     }
 
@@ -330,6 +331,11 @@ impl Radau {
         }
         self.stiffness = (rate * self.length).abs();
     }
+}
+
+/// By how much a number is larger in size than its rounding; what is not a number stays none.
+fn beyond(number: f64, rounding: f64) -> f64 {
+    if number.abs() <= rounding { 0.0 } else { number.abs() - rounding }
 }
 
 /// Root of the mean of the squares of the first numbers, measured by their scales.
