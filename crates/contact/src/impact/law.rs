@@ -164,8 +164,11 @@ impl Impact {
         outcome
     }
 
-    /// Mass of the lightest body by that of the heaviest, as rows feel them that rebound.
+    /// Mass of the lightest body by that of the heaviest, as rows feel them that rebound; 1 where connectors take part.
     fn lightness(&self) -> f64 {
+        if self.has_connectors {
+            return 1.0;
+        }
         let rebounding = || self.rows.iter().filter(|row| row.elasticity > 0.0);
         let shares = || rebounding().flat_map(CollisionRow::shares).filter(|share| *share > 0.0);
         let (least, most) = (shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max));

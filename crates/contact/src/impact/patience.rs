@@ -8,7 +8,8 @@
 //!
 //! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi / atan(sqrt(m / M)) small blows,
 //! which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003, 375-394); a line of n light ones
-//! takes some n times as many. A stage lasts as long, for each row.
+//! takes some n times as many. The first stage lasts as long, for each row. Where connectors take part it does not: they may pass
+//! impulses round for ever.
 
 /// Part of the impact's fastest rate below which a row is done.
 pub(super) const RICOCHET: f64 = 1e-12;
@@ -34,6 +35,8 @@ pub(super) struct Patience {
     small: f64,
     /// Speed [m/s] below which no row rebounds, while it does not count.
     slow: Option<f64>,
+    /// Rows solved in the first stage, and in each other.
+    first_stage: usize,
     per_stage: usize,
     left: usize,
     stages: usize,
@@ -44,8 +47,8 @@ impl Patience {
     /// lightest body has a mass of `lightness` times that of the heaviest.
     pub(super) fn new(rows: usize, lightness: f64, small: f64, slow: f64) -> Self {
         let blows = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
-        let per_stage = blows.max(ROWS_PER_STAGE) * rows;
-        Self { small, slow: Some(slow), per_stage, left: FIRST_ROWS, stages: STAGES }
+        let [first_stage, per_stage] = [blows.max(ROWS_PER_STAGE), ROWS_PER_STAGE].map(|each| each * rows);
+        Self { small, slow: Some(slow), first_stage, per_stage, left: FIRST_ROWS, stages: STAGES }
     }
 
     /// Rate [m/s] up to which a row is done.
@@ -60,7 +63,7 @@ impl Patience {
             return true;
         }
         if let Some(slow) = self.slow.take() {
-            self.left = self.per_stage;
+            self.left = self.first_stage;
             self.small = self.small.max(slow);
         } else if self.stages > 0 {
             self.stages -= 1;

@@ -6,6 +6,9 @@ use super::many_rows::Beginning;
 use super::pair_problem::{solve_one, solve_two};
 use super::patience::Patience;
 
+/// Impulses that gain more than this part of all that they turn over are none: a rebound gains nothing but rounding.
+const GAIN: f64 = 1e-3;
+
 impl Impact {
     /// Makes the bilateral rows fit, alone and without elasticity, if one does not.
     ///
@@ -27,19 +30,40 @@ impl Impact {
     /// Problems of all rows: each that closes is to rebound, rows at rest and bilateral ones are held.
     ///
     /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it then closes, it
-    /// is solved in the next round, with all others that do.
+    /// is solved in the next round, with all others that do. Where rows all but depend on each other, and no impulses hold them all,
+    /// those found may drive the bodies instead: such a round is taken back, and what closes is left to be stopped.
     pub(super) fn solve_all(&mut self, small: f64, patience: &mut Patience) -> Result<(), ImpactError> {
         let mut set = std::mem::take(&mut self.scratch.set);
         let mut outcome = Ok(());
         while outcome.is_ok() && self.is_any_violated(patience.small()) {
             self.list_held(&mut set, small);
+            self.scratch.rates.clone_from(&self.rates);
+            self.scratch.impulses.clone_from(&self.impulses);
             outcome = self.rebound_together(&set);
+            if outcome.is_ok() && self.has_gained() {
+                self.rates.clone_from(&self.scratch.rates);
+                self.impulses.clone_from(&self.scratch.impulses);
+                break;
+            }
             if !patience.spend(set.len()) {
                 break;
             }
         }
         self.scratch.set = set;
         outcome
+    }
+
+    /// True if the impulses since the rates and impulses that were put aside have done work, more than rounding makes of them.
+    fn has_gained(&self) -> bool {
+        let before = self.scratch.impulses.iter().zip(&self.scratch.rates);
+        let rows = before.zip(self.impulses.iter().zip(&self.rates));
+        let (mut work, mut size) = (0.0, 0.0);
+        for ((old_impulse, old_rate), (impulse, rate)) in rows {
+            let change = impulse - old_impulse;
+            work += 0.5 * change * (old_rate + rate);
+            size += 0.5 * change.abs() * (old_rate.abs() + rate.abs());
+        }
+        work > GAIN * size
     }
 
     /// One problem without elasticity of the rows that close, rest, or open slowly; as long as others are driven to close,
