@@ -231,9 +231,11 @@ impl World {
     fn find_open_books(&self, turned_over: f64, findings: &mut Vec<Finding>) {
         let of_steps = BOOKS_ERRORS * self.rigid_settings().steps.local_error;
         let share = if self.keeps_to_tolerance() { of_steps } else { PLAINLY };
-        // Errors of steps are relative to what is usual, as is rounding.
-        let least = SELDOM * self.sentry.scales.usual;
+        // Errors of steps are relative to what is usual, as is rounding; where nothing moves or falls, that is of what rounding moves.
+        let scales = &self.sentry.scales;
+        let least = SELDOM * scales.usual;
         let open = open_books(&Books::from(&self.ledger()), turned_over.max(least), share);
+        let open = open.filter(|error| scales.usual > 0.0 || error.is_nan() || *error > scales.lost);
         findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
     }
 
@@ -310,6 +312,19 @@ mod tests {
         let found = open_books(&books, 4.0, 0.01).map(|error| Finding::OpenBooks { error, turned_over: 4.0 });
         let expected = "the energy books do not close: 0.1 J of 4 J turned over are not accounted for";
         assert_eq!(found.map(|finding| finding.to_string()).as_deref(), Some(expected));
+    }
+
+    #[test]
+    fn what_rounding_moves_where_nothing_else_does_is_no_energy() {
+        let settings = WorldSettings { duration: Some(1.0), ..WorldSettings::default() };
+        let mut builder = WorldBuilder::new(settings);
+        builder.add(disc("still", 1.0));
+        let world = builder.build().expect("it rests");
+        for (energy, is_told) in [(1e-33, false), (1e-20, false), (1e-6, true)] {
+            let mut world = world.clone();
+            world.start.energy -= energy;
+            assert_eq!(!world.findings(energy).is_empty(), is_told, "{energy} J");
+        }
     }
 
     #[test]

@@ -21,10 +21,10 @@ const FEW: usize = 5;
 const FACTOR: f64 = 1.5;
 /// A box is set ahead of a body in flight by this part of its margin: a gas has a seventh fewer moves of boxes for it.
 const AHEAD: f64 = 0.6;
-/// A margin is at least this part of the body's reach, and at most so many times: what is small and far from all else, as a moon, would
-/// leave its boxes without end.
+/// A margin is at least this part of the body's reach, and at most so many times, beyond all coordinates: what flies off, or is small
+/// and far from all else, as a moon, would leave its boxes without end.
 const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
-const LARGEST_MARGIN: f64 = 1e9;
+const LARGEST_MARGIN: f64 = 1e80;
 
 /// The room a body has around the circle of its reach.
 #[derive(Clone, Copy, Debug)]
@@ -154,6 +154,20 @@ mod tests {
 
     fn leaves(velocity: DVec2, acceleration: DVec2) -> Option<f64> {
         leaving_time(&Polynomial { position: DVec2::ZERO, velocity, acceleration }, &CORE)
+    }
+
+    #[test]
+    fn what_flies_off_leaves_few_boxes_however_fast_it_is() {
+        for distance in [1e6, 1e20, 1e50] {
+            let mut room = Room::new(0.5, 1e-9);
+            let (mut way, mut boxes) = (0.0, 0);
+            while way < distance && boxes < 1000 {
+                way += room.margin;
+                room.adapt(0);
+                boxes += 1;
+            }
+            assert!(boxes < 300, "{boxes} boxes on {distance} m");
+        }
     }
 
     #[test]
