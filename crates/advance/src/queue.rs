@@ -7,7 +7,8 @@
 
 use crate::time::Time;
 
-/// Index of whatever predicts events: a pair, a body, a force law.
+/// Index of whatever predicts events: a pair, a body, a force law. Indices had better be small: the queue keeps a place for each up to
+/// the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 

@@ -54,7 +54,8 @@ impl Shape {
     /// Finds the distance of the outlines of this shape at `pose` and another at its own pose, and a nearest pair of
     /// points.
     ///
-    /// Good to a few units in the last place of the shapes' size and of their distance from each other.
+    /// Good to a few units in the last place of the shapes' size, of the radii of their arcs, and of their distance from each other: an arc
+    /// that is nearly straight is no better known than where its centre is.
     ///
     /// # Examples
     ///
@@ -70,7 +71,7 @@ impl Shape {
     /// ```
     ///
     /// # Panics
-    /// If a number of a pose is not finite.
+    /// If a number of a pose, or the square of a distance, is not finite: at coordinates from some 1e150 m on.
     #[must_use]
     pub fn distance(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> ShapeDistance {
         let relative = pose.seen_from(other_pose);

@@ -36,7 +36,7 @@ impl Shape {
     /// ```
     ///
     /// # Panics
-    /// If a coordinate of the point is not a number.
+    /// If a coordinate of the point is not a number, or the square of its distance is none: from some 1e150 m on.
     #[must_use]
     pub fn nearest(&self, point: DVec2) -> NearestPoint {
         let bound =
