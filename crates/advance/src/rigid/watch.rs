@@ -13,7 +13,7 @@ use super::segment::StepControl;
 use crate::ode::Ode;
 
 /// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
-pub(crate) const FORCE_SHARE: f64 = 1e-9;
+const FORCE_SHARE: f64 = 1e-9;
 
 /// With so many times what counts as no force a contact may seem to pull by rounding when it is held.
 const PULL: f64 = 16.0;
