@@ -22,6 +22,9 @@ use crate::solver::{Method, Solver};
 /// dictionary after many pivots.
 const RAY: f64 = 1e-9;
 
+/// Growth that any solution would have, by a ray that is believed: of masses as far apart as 1e8 rounding leaves rays that are none.
+const SURE: f64 = 1e9;
+
 /// Sizes of the perturbation of b, in units of the scale, for one attempt each. On large redundant problems the exact
 /// rule for ties drowns in rounding; a small perturbation separates them, and its basis mostly serves b itself.
 const PERTURBATIONS: [f64; 4] = [1e-8, 0.0, 1e-6, 1e-4];
@@ -254,6 +257,7 @@ impl Solver for Lemke {
             let end = self.pivot();
             if let End::Ray(column) = end
                 && let Some(proof) = self.certificate(problem, column)
+                && proof.least_growth() >= SURE
             {
                 return Err(SolveError::Infeasible(Box::new(proof)));
             }

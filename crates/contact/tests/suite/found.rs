@@ -31,6 +31,29 @@ fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
 }
 
 #[test]
+fn what_rounding_makes_of_a_ray_is_no_proof() -> Result<(), Box<dyn std::error::Error>> {
+    // Two contacts with forces of 1e4 and 1e5, one of them of a light body with a moment far too small for it, and a joint.
+    let inverse_mass = [9145.108044063347, 9145.108044063347, 0.00012616026371794375];
+    let rows = [
+        [-20.07996482141255, 22.59873375924099, -29.236885047095612],
+        [0.07062260208885474, 0.039761572465652095, -0.05303438859690081],
+        [0.0008949073315673381, -0.019689927287867125, 0.0193061575675774],
+    ];
+    let triplets: Vec<_> =
+        (0..3).flat_map(|row| (0..3).map(move |column| (row, column, rows[row][column]))).collect();
+    let offset = [67.4650371517092, 0.05020061840013432, -0.04862678856871801];
+    let mut problem = Problem::from_rows(&triplets, &inverse_mass, &offset)?;
+    problem.set_bilateral(&[true, false, false])?;
+    let mut solution = Solution::new();
+    Auto::default().solve(&problem, &mut solution)?;
+    assert!(solution.force[2] > 1e5, "{:?}", solution.force);
+    // Its pivots may not find them, but then it must not say that there are none.
+    let outcome = Lemke::default().solve(&problem, &mut solution);
+    assert!(!matches!(outcome, Err(SolveError::Infeasible(_))), "{outcome:?}");
+    Ok(())
+}
+
+#[test]
 fn a_row_that_rounding_left_out_of_the_basis_is_taken_in() {
     let case = Case::found("parallel_rows_at_a_tie");
     let mut solution = Solution::new();
