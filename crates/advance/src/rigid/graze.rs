@@ -12,11 +12,13 @@ use super::settle::DEEPEST;
 use super::settling::Settling;
 use super::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Collision, ConnectorId};
+use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule};
 use halfgap_geometry::FeatureId;
 
 /// Depth, in target gaps, that what grazes does not come to: a little less than that from which contacts are lifted.
 const DEPTH: f64 = 0.9 * DEEPEST;
+/// Errors of connectors in the middle of a step by which gaps may seem to be less than they are.
+const SEEMING: f64 = 2.0;
 /// A lever that is less than this part of what it would be without the connectors is next to none.
 const LEVER: f64 = 1e-3;
 
@@ -24,10 +26,13 @@ impl RigidSystem {
     /// True if two features that fire only graze: the search lets them come as deep from now on.
     pub(crate) fn grazes(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let touch = Touch { bodies: self.pairs.bodies(pair), features };
-        let rule = touch.lowered_to(self.grazing_gap(touch.bodies));
-        if self.pairs.rules(pair).contains(&rule) || !self.turns_back(touch) {
+        let most = self.grazing_gap(touch.bodies);
+        let has_come =
+            |rule: &FeatureRule| rule.features == features && rule.target.is_some_and(|gap| gap <= most);
+        if self.pairs.rules(pair).iter().any(has_come) || !self.turns_back(touch) {
             return false;
         }
+        let rule = touch.lowered_to(self.least_grazing_gap(touch.bodies));
         self.pairs.change_rules(pair, |rules| {
             // Of several rules for the same features the first counts.
             rules.retain(|rule| rule.features != features);
@@ -70,7 +75,13 @@ impl RigidSystem {
     /// True if features of which one is held by connectors, as they move now, part again before they are as deep as what grazes never
     /// is.
     fn turns_back(&self, touch: Touch) -> bool {
-        self.parts_again(touch.bodies, self.grazing_gap(touch.bodies), |time| self.gap_at(touch, time))
+        self.parts_again(touch.bodies, self.least_grazing_gap(touch.bodies), |time| self.gap_at(touch, time))
+    }
+
+    /// The gap [m] to which what grazes may seem to come: within a step bodies are off what holds them, and that is no depth.
+    fn least_grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
+        let errors = bodies.iter().filter_map(|&body| self.group_of(body)).map(|group| group.largest_error);
+        self.grazing_gap(bodies) - SEEMING * errors.sum::<f64>()
     }
 
     /// True if a rope one end of which is held by other connectors, too, as it moves now, is slack again before it is longer by as much
