@@ -325,7 +325,8 @@ impl World {
         }
     }
 
-    /// The largest kinetic energy [J] that some bodies had at the end of a step: who looks now and then may never see it.
+    /// The largest kinetic energy [J] that some bodies had at the end of a step, or came to an impact with: who looks now and then may
+    /// never see it.
     pub(crate) fn largest_kinetic_energy(&self) -> f64 {
         self.system.counts().largest_kinetic_energy
     }

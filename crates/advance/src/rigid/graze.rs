@@ -17,7 +17,7 @@ use halfgap_geometry::FeatureId;
 
 /// Depth, in target gaps, that what grazes does not come to: a little less than that from which contacts are lifted.
 const DEPTH: f64 = 0.9 * DEEPEST;
-/// Errors of connectors in the middle of a step by which gaps may seem to be less than they are.
+/// Gaps may seem to be less than they are by so many times what connectors are off by in the middle of a step.
 const SEEMING: f64 = 2.0;
 /// A lever that is less than this part of what it would be without the connectors is next to none.
 const LEVER: f64 = 1e-3;
@@ -78,7 +78,8 @@ impl RigidSystem {
         self.parts_again(touch.bodies, self.least_grazing_gap(touch.bodies), |time| self.gap_at(touch, time))
     }
 
-    /// The gap [m] to which what grazes may seem to come: within a step bodies are off what holds them, and that is no depth.
+    /// The gap [m] to which what grazes may seem to come: between the ends of a step its dense output has bodies off what holds them,
+    /// and that is no depth.
     fn least_grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
         let errors = bodies.iter().filter_map(|&body| self.group_of(body)).map(|group| group.largest_error);
         self.grazing_gap(bodies) - SEEMING * errors.sum::<f64>()

@@ -92,7 +92,7 @@ pub struct Counts {
     pub smallest_gap: Option<f64>,
     /// Largest error of a connector's gap [m] seen.
     pub largest_connector_error: Option<f64>,
-    /// Largest kinetic energy [J] that bodies with common steps had at the end of one.
+    /// Largest kinetic energy [J] that bodies with common steps had at the end of one, or those of an impact before it.
     pub largest_kinetic_energy: f64,
 }
 
