@@ -2,8 +2,8 @@
 //! impact. Forces that last are laws.
 
 use super::error::AdvanceError;
-use super::events::EventWork;
-use super::storms::Recent;
+use super::event::events::EventWork;
+use super::limits::storms::Recent;
 use super::system::{Handled, RigidSystem};
 use crate::time::Time;
 use glam::DVec2;

@@ -1,7 +1,7 @@
 //! What a system is made of, and what it cannot be made of: bodies that are not there, numbers that are none.
 
-use super::flyer::FlightLaw;
-use super::law::ForceLaw;
+use super::motion::flyer::FlightLaw;
+use super::motion::law::ForceLaw;
 use super::system::RigidSettings;
 use crate::time::Time;
 use halfgap_collision::{Body, BodyId, BodyState, Connector};

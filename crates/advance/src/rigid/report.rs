@@ -1,11 +1,11 @@
 //! What the outside may ask for: forces of rows, contacts that begin and end, the energy's books at any time.
 
-use super::dynamics::Dynamics;
-use super::group::{Group, Work};
+use super::event::region::Region;
+use super::held::settling::Settling;
 use super::ledger::Ledger;
-use super::region::Region;
-use super::rows::{HeldRow, RowSource, moving_of};
-use super::settling::Settling;
+use super::step::dynamics::Dynamics;
+use super::step::group::{Group, Work};
+use super::step::rows::{HeldRow, RowSource, moving_of};
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
@@ -223,7 +223,7 @@ fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
     }
 }
 
-impl super::rows::Mechanism<'_> {
+impl super::step::rows::Mechanism<'_> {
     /// Where a row's force acts on its primary body [m], and its normal.
     fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));

@@ -1,6 +1,6 @@
 //! From one relative tolerance and the sizes in a scene to the thresholds of touching and the errors of steps.
 
-use super::segment::StepControl;
+use super::step::segment::StepControl;
 use super::system::RigidSettings;
 use crate::ode::Method;
 use halfgap_collision::{SearchSettings, Tolerances};

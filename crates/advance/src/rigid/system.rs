@@ -3,29 +3,29 @@
 //! Kinds of events: a body leaves its box, a pair's search goes on, two bodies come into contact, a group's segment ends.
 //! Between events nothing is computed; an event touches only its bodies and what is near them.
 
-use super::boxes::Room;
-use super::brief::Steppers;
-use super::by_body::ByBody;
-use super::connectors::ConnectorState;
-use super::deferred::loners;
-use super::dynamics::{ExtraAcceleration, Stage};
 use super::error::AdvanceError;
-use super::events::EventWork;
-use super::flyer::Flyer;
-use super::groups::Groups;
-use super::impacts::ImpactReport;
-use super::lane::Lane;
-use super::law::{ForceLaw, Snapshot};
+use super::event::connectors::ConnectorState;
+use super::event::events::EventWork;
+use super::event::groups::Groups;
+use super::event::impacts::ImpactReport;
+use super::event::ticks::Ticks;
 use super::ledger::Ledger;
-use super::marks::Marks;
-use super::pace::Pace;
-use super::pairs::{Link, PairId, Pairs, Prediction};
+use super::limits::pace::Pace;
+use super::limits::storms::Recent;
+use super::motion::flyer::Flyer;
+use super::motion::lane::Lane;
+use super::motion::law::{ForceLaw, Snapshot};
 use super::parts::RigidParts;
 use super::report::ContactChanges;
-use super::rows::Mechanism;
-use super::segment::StepControl;
-use super::storms::Recent;
-use super::ticks::Ticks;
+use super::search::boxes::Room;
+use super::search::by_body::ByBody;
+use super::search::marks::Marks;
+use super::search::pairs::{Link, PairId, Pairs, Prediction};
+use super::step::brief::Steppers;
+use super::step::deferred::loners;
+use super::step::dynamics::{ExtraAcceleration, Stage};
+use super::step::rows::Mechanism;
+use super::step::segment::StepControl;
 use crate::ode::Method;
 use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;

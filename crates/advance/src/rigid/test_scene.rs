@@ -1,9 +1,9 @@
 //! Settings and bodies for tests: discs at rest on a floor, for what happens between bodies that are held.
 
-use super::flyer::FlightLaw;
-use super::group::Group;
+use super::motion::flyer::FlightLaw;
 use super::parts::RigidParts;
-use super::segment::StepControl;
+use super::step::group::Group;
+use super::step::segment::StepControl;
 use super::system::{RigidSettings, RigidSystem};
 use crate::ode::Method;
 use crate::time::Time;

@@ -1,0 +1,148 @@
+//! Events that are overdue when a segment starts: by rounding, a contact has a little less than no force already, or is a little
+//! beyond its features, and is held all the same. `watch` waits for falls from above, which such a contact does not make any
+//! more: it would pull from then on, or run along an edge that is not there.
+
+use super::crossing::{NODES, fall_from_below};
+use super::watch::Watch;
+use crate::rigid::step::dynamics::Dynamics;
+use crate::rigid::step::group::SegmentEnd;
+
+impl Dynamics<'_> {
+    /// The earliest fall of any row of a watch that is below zero at the start and falls on, if it comes before what was found so
+    /// far; with the samples, how far each was below zero when it was first seen to be, which is noted (0 of others), and how far a
+    /// row may be by rounding alone. A row may fall on along many segments.
+    pub(super) fn find_overdue(
+        &mut self,
+        earliest: &mut Option<(f64, SegmentEnd)>,
+        (samples, below): (&[[f64; NODES]], &mut Vec<f64>),
+        watch: &Watch,
+        rounding: impl Fn(&Self, usize) -> f64,
+    ) {
+        below.resize(samples.len(), 0.0);
+        for (row, (values, below)) in samples.iter().zip(below).enumerate() {
+            if values[0] >= 0.0 {
+                *below = 0.0;
+                continue;
+            }
+            if *below == 0.0 {
+                *below = -values[0];
+            }
+            let allowed = 2.0 * rounding(self, row).max(*below);
+            let fall = fall_from_below(values, self.group.span, allowed, |offset| {
+                (watch.place_for)(self, row, offset);
+                (watch.read)(self, row)
+            });
+            if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
+                *earliest = Some((offset, (watch.end)(row)));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::step::group::Group;
+    use crate::rigid::test_scene::{block_on_its_corner, resting_discs, turn_on_its_corner};
+    use crate::rigid::{ForceLaw, RigidSystem, Snapshot, Wrenches};
+    use crate::time::Time;
+    use glam::DVec2;
+    use halfgap_collision::BodyId;
+    use std::sync::Arc;
+
+    /// Weight of a body [N].
+    const WEIGHT: f64 = 9.81;
+
+    /// Lifts body 1 ever more: after a second with its weight.
+    #[derive(Debug)]
+    struct Lift;
+
+    impl ForceLaw for Lift {
+        fn name(&self) -> &'static str {
+            "lift"
+        }
+
+        fn bodies(&self) -> &[BodyId] {
+            &[BodyId(1)]
+        }
+
+        fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+            wrenches.add_force(BodyId(1), DVec2::new(0.0, WEIGHT * now.time), DVec2::ZERO);
+        }
+    }
+
+    /// Steps the group of body 1, which is changed first, anew, and finds what ends the step.
+    fn stepped(mut system: RigidSystem, change: impl FnOnce(&mut Group)) -> Box<Group> {
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        change(&mut group);
+        system.with_group(&mut group, |dynamics, tools| {
+            dynamics.set_out();
+            dynamics.extend(tools).expect("it moves");
+            dynamics.make_dense(tools.stepper);
+            dynamics.find_event();
+        });
+        group
+    }
+
+    #[test]
+    fn a_contact_that_pulls_a_little_from_the_start_lets_go() {
+        for late in [1e-8, 1e-6, 1e-3] {
+            let mut system = resting_discs(&[0.0]);
+            system.laws = vec![Arc::new(Lift)];
+            let group = stepped(system, |group| {
+                group.laws = vec![0];
+                group.start = Time::from_seconds(1.0 + late);
+                group.next_step = Some(1e-2);
+            });
+            assert!(group.forces[0] < 0.0, "{} N", group.forces[0]);
+            let Some((offset, SegmentEnd::Release(0))) = group.event else {
+                panic!("{late}: {:?}", group.event)
+            };
+            // With twice as much, or as much as may be rounding.
+            let pull = (late + offset) / late;
+            assert!(pull > 1.0 && pull < 10.0, "{late} s late: {offset} s");
+        }
+    }
+
+    #[test]
+    fn a_contact_that_is_a_little_beyond_its_features_from_the_start_runs_off() {
+        // The corner goes 0.2 rad on; the block topples on.
+        for beyond in [1e-7, 1e-4] {
+            let group = stepped(block_on_its_corner(), |group| {
+                turn_on_its_corner(group, group.state[2] + 0.2 + beyond, 1.0);
+                group.next_step = Some(1e-2);
+            });
+            let Some((offset, SegmentEnd::Change(0))) = group.event else {
+                panic!("{beyond}: {:?}", group.event)
+            };
+            let way = offset / beyond;
+            assert!(way > 0.5 && way < 3.0, "{beyond} rad beyond: {offset} s");
+        }
+    }
+
+    #[test]
+    fn a_contact_that_goes_on_beyond_its_features_by_many_short_steps_runs_off() {
+        const BEYOND: f64 = 1e-4;
+        let mut system = block_on_its_corner();
+        system.settings.steps.largest_step = Some(0.3 * BEYOND);
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        let angle = group.state[2] + 0.2 + BEYOND;
+        turn_on_its_corner(&mut group, angle, 1.0);
+        group.end_state.clone_from(&group.state);
+        group.end_rates.clone_from(&group.rates);
+        group.span = 0.0;
+        system.groups.put(group);
+        let mut turned = 0.0;
+        for _ in 0..10 {
+            system.continue_group(BodyId(1)).expect("it topples");
+            let group = system.group_of(BodyId(1)).expect("it is held");
+            if let Some((offset, SegmentEnd::Change(0))) = group.event {
+                turned += offset;
+                assert!(turned > 0.5 * BEYOND && turned < 3.0 * BEYOND, "{turned} rad");
+                return;
+            }
+            turned += group.span;
+        }
+        panic!("it is held after {turned} rad");
+    }
+}

@@ -1,0 +1,150 @@
+//! What ends a group's segment early that no held row tells: a stop that closes, a force law that changes branch.
+
+use super::crossing::{NODES, between_nodes, first_fall, node};
+use crate::rigid::motion::law::Snapshot;
+use crate::rigid::step::dynamics::Dynamics;
+use crate::rigid::step::group::{Group, Stop};
+use crate::rigid::step::rows::moving_of;
+
+/// A search for a stop begins with this part of the segment, and again, if that is too long.
+const SHORTER: f64 = 0.25;
+/// Cap on that.
+const MOST_SHORTER: usize = 30;
+/// Part of the first segment of a group after which the sign of a switching function is taken.
+const SIGN_AT: f64 = 1.0 / 1024.0;
+
+impl Dynamics<'_> {
+    /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
+    /// then begins with a part of the segment so short that the point is off. On a closed rail what has gone by a stop seems to have
+    /// come round: laps are told apart by what is read before.
+    pub(super) fn find_stop(&mut self, stop: Stop) -> Option<f64> {
+        let path = self.physics.mechanism.connectors[stop.id.index()].path();
+        let lap = path.filter(|path| path.is_closed()).map(|path| path.length());
+        let mut reach = self.group.span;
+        for _ in 0..MOST_SHORTER {
+            let mut values = [0.0; NODES];
+            for index in 0..NODES {
+                let before = values[index.saturating_sub(1)];
+                let value = self.stop_at(stop, node(index, reach));
+                values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
+            }
+            let touches = values[0] <= 0.0;
+            values[0] = values[0].max(0.0);
+            if !touches || values[1] >= 0.0 {
+                return first_fall(&values, reach, |offset| {
+                    in_lap(self.stop_at(stop, offset), between_nodes(&values, reach, offset), lap)
+                });
+            }
+            reach *= SHORTER;
+        }
+        Some(reach)
+    }
+
+    /// Gap of a stop [m], with what it may sink by.
+    fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
+        self.place_at(offset);
+        let connector = &self.physics.mechanism.connectors[stop.id.index()];
+        let [a, b] = connector.bodies().map(|body| moving_of(&self.stage.movings, body));
+        connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
+    }
+
+    fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {
+        self.place_at(offset);
+        let now = Snapshot::new(self.start.seconds() + offset, &self.stage.movings);
+        self.physics.laws[law].switch(index, &now)
+    }
+
+    /// The first change of sign of a switching function. Just after one, as a group is made, it is zero: a little later tells its
+    /// sign.
+    pub(super) fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
+        let Group { span, start, made, .. } = *self.group;
+        let sign_at = if start == made { span * SIGN_AT } else { 0.0 };
+        let sign = self.switch_at(law, index, sign_at).signum();
+        let values = std::array::from_fn(|node_index| {
+            let value = sign * self.switch_at(law, index, node(node_index, span));
+            if node_index == 0 { value.max(0.0) } else { value }
+        });
+        first_fall(&values, span, |offset| {
+            let value = sign * self.switch_at(law, index, offset);
+            if offset <= sign_at { value.max(0.0) } else { value }
+        })
+    }
+}
+
+/// A distance along a closed path [m] that is known up to laps, nearest to another.
+fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
+    lap.map_or(value, |lap| value + lap * ((near - value) / lap).round())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SIGN_AT;
+    use crate::rigid::motion::flyer::FlightLaw;
+    use crate::rigid::motion::law::{ForceLaw, Snapshot, Wrenches};
+    use crate::rigid::parts::RigidParts;
+    use crate::rigid::system::RigidSystem;
+    use crate::rigid::test_scene::FINE;
+    use crate::time::Time;
+    use halfgap_collision::{Body, BodyId, BodyState};
+    use halfgap_geometry::Shape;
+    use std::sync::Arc;
+
+    /// A law without force that changes branch at a time [s].
+    #[derive(Debug)]
+    struct Clock {
+        rings: f64,
+        bodies: [BodyId; 1],
+    }
+
+    impl ForceLaw for Clock {
+        fn name(&self) -> &str {
+            "clock"
+        }
+
+        fn bodies(&self) -> &[BodyId] {
+            &self.bodies
+        }
+
+        fn apply(&self, _now: &Snapshot<'_>, _wrenches: &mut Wrenches<'_>) {}
+
+        fn switches(&self) -> usize {
+            1
+        }
+
+        fn switch(&self, _index: usize, now: &Snapshot<'_>) -> f64 {
+            now.time - self.rings
+        }
+    }
+
+    /// Offset [s] at which a clock rings that is to ring so long after the start of a segment, which is the first of its group or not.
+    fn rings_at(delay: f64, is_first: bool) -> Option<f64> {
+        let later = Time::from_seconds(1.0);
+        let body = BodyId(0);
+        let shape = Shape::disc(0.5).expect("a fine radius");
+        let disc = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
+        let clock = Clock { rings: later.seconds() + delay, bodies: [body] };
+        let parts = RigidParts {
+            bodies: vec![(disc, FlightLaw::default(), BodyState::default())],
+            laws: vec![Arc::new(clock)],
+            ..RigidParts::default()
+        };
+        let mut system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it floats");
+        let mut group = system.groups.take(body).expect("the law makes a group");
+        group.start = later;
+        group.made = if is_first { later } else { Time::ZERO };
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.group.span = 1.0;
+            dynamics.find_switch(0, 0)
+        })
+    }
+
+    #[test]
+    fn a_law_that_changes_branch_just_after_a_step_has_begun_is_seen_to() {
+        for delay in [1e-9, 1e-6, 0.5 * SIGN_AT, 0.3] {
+            let offset = rings_at(delay, false).expect("it rings");
+            assert!((offset - delay).abs() < 1e-12, "{offset}");
+        }
+        // Where a group is made because it has just changed branch, rounding may say that it is about to.
+        assert_eq!(rings_at(1e-15, true), None);
+    }
+}

@@ -1,0 +1,523 @@
+//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features or, touched
+//! without force, sinks; stops that close and force laws that change branch are in `switches`.
+//!
+//! Each is a function along the dense output whose first fall below zero is an event. Places are read at once, forces only
+//! when the time comes up to which none can vanish.
+
+use super::crossing::{EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall_before, node};
+use crate::ode::Ode;
+use crate::rigid::step::brief::Stepping;
+use crate::rigid::step::dynamics::Dynamics;
+use crate::rigid::step::group::{Group, SegmentEnd};
+use crate::rigid::step::rows::{HeldRow, RowSource};
+use crate::rigid::step::segment::StepControl;
+
+/// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
+const FORCE_SHARE: f64 = 1e-9;
+
+/// With so many times what counts as no force a contact may seem to pull by rounding when it is held.
+const PULL: f64 = 16.0;
+
+/// Part of what a contact without force may sink by, by which it may vary and stays where it is.
+const STILL_SHARE: f64 = 1e-3;
+
+/// Part of the accuracy by which a held contact may be too near or too far within a step.
+const INNER_SHARE: f64 = 0.5;
+/// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
+/// much more where connectors tell angles by little.
+const INNER_ERRORS: f64 = 50.0;
+/// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
+/// more for contacts.
+const MIDDLE: f64 = 0.5;
+const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
+
+/// A force may begin to fall this many times as fast as it varies along a step.
+const STEEP: f64 = 4.0;
+
+/// Functions of the rows along a segment of which the first to fall below zero is an event.
+pub(super) struct Watch {
+    /// Places the bodies at an offset [s], with all that reading needs.
+    place: fn(&mut Dynamics<'_>, f64),
+    /// The same of those on which a row depends.
+    pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
+    /// The value of a row there.
+    pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
+    /// True if a fall of a row counts, with the bodies in place.
+    counts: fn(&Dynamics<'_>, usize) -> bool,
+    pub(super) end: fn(usize) -> SegmentEnd,
+}
+
+const RELEASES: Watch = Watch {
+    place: |dynamics, offset| dynamics.evaluate_at(offset),
+    place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
+    read: |dynamics, row| dynamics.pressure(row),
+    counts: |_, _| true,
+    end: SegmentEnd::Release,
+};
+const CHANGES: Watch = Watch {
+    place: |dynamics, offset| dynamics.put_watched_at(offset),
+    place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
+    read: |dynamics, row| dynamics.room(row),
+    counts: |_, _| true,
+    end: SegmentEnd::Change,
+};
+const SINKINGS: Watch = Watch {
+    place: |dynamics, offset| dynamics.put_watched_at(offset),
+    place_for: |dynamics, row, offset| dynamics.put_leaning_at(row, offset),
+    read: |dynamics, row| dynamics.height(row),
+    // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
+    counts: |dynamics, row| dynamics.is_within(row),
+    end: SegmentEnd::Sink,
+};
+
+/// Values of watched functions at the nodes, row by row; none of what needs no watch.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Samples {
+    forces: Vec<[f64; NODES]>,
+    rooms: Vec<[f64; NODES]>,
+    heights: Vec<[f64; NODES]>,
+    /// Heights soon after the start.
+    early: Vec<[f64; EARLY]>,
+}
+
+/// Makes room for so many rows.
+fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
+    list.clear();
+    list.resize(rows, [0.0; NODES]);
+}
+
+impl Dynamics<'_> {
+    /// Finds what ends the segment early, whose dense output and end forces are known. Whether a contact loses its force takes
+    /// an evaluation for every place looked at, so that waits until the time up to which none can: mostly something else
+    /// has happened by then.
+    pub(crate) fn find_event(&mut self) {
+        self.group.event = self.find_geometric_event();
+        let firm = self.firm_part().map(|part| part * self.group.span);
+        let earlier = |offset: &f64| self.group.event.is_none_or(|(event, _)| *offset < event);
+        self.group.look = firm.filter(earlier);
+        if self.group.look == Some(0.0) {
+            self.look_for_release();
+        }
+    }
+
+    /// Finds the first contact that loses its force on the segment, if that comes before what ends it otherwise; not before
+    /// the time of the look.
+    pub(crate) fn look_for_release(&mut self) {
+        let from = self.group.look.take().unwrap_or(0.0);
+        self.find_least_forces();
+        let mut forces = std::mem::take(&mut self.stage.samples.forces);
+        fill(&mut forces, self.group.rows.len());
+        for index in 0..NODES {
+            if index > 0 && index + 1 < NODES {
+                self.evaluate_at(node(index, self.group.span));
+            }
+            self.sample_forces(&mut forces, index);
+        }
+        let mut earliest = self.pull_at_start(&forces).or(self.group.event);
+        self.find_first(&mut earliest, &forces, &RELEASES);
+        let mut pulled = std::mem::take(&mut self.group.pulled);
+        self.find_overdue(&mut earliest, (&forces, &mut pulled), &RELEASES, |dynamics, row| {
+            PULL * dynamics.stage.least[row]
+        });
+        self.group.pulled = pulled;
+        self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
+        self.stage.samples.forces = forces;
+    }
+
+    /// The release of a contact that pulls as the group is made, by more than rounding.
+    fn pull_at_start(&self, forces: &[[f64; NODES]]) -> Option<(f64, SegmentEnd)> {
+        let Group { start, made, .. } = *self.group;
+        if self.group.is_patient || start != made {
+            return None;
+        }
+        let pulls = |(values, least): (&[f64; NODES], &f64)| values[0] < -PULL * least;
+        let row = forces.iter().zip(&self.stage.least).position(pulls)?;
+        Some((0.0, SegmentEnd::Release(row)))
+    }
+
+    /// The earliest event that bodies' places tell.
+    fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
+        let mut earliest: Option<(f64, SegmentEnd)> = None;
+        let samples = self.sample_rows();
+        if !self.are_still(&samples.heights) {
+            self.group.steady_step = None;
+        }
+        self.find_early_sinking(&mut earliest, &samples);
+        self.find_early_change(&mut earliest, &samples.rooms);
+        self.find_first(&mut earliest, &samples.rooms, &CHANGES);
+        let margin = self.physics.mechanism.change_margin();
+        let mut overrun = std::mem::take(&mut self.group.overrun);
+        self.find_overdue(&mut earliest, (&samples.rooms, &mut overrun), &CHANGES, |_, _| margin);
+        self.group.overrun = overrun;
+        self.find_first(&mut earliest, &samples.heights, &SINKINGS);
+        self.stage.samples = samples;
+        let mut offer = |found: Option<f64>, end: SegmentEnd| {
+            if let Some(offset) = found.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
+                earliest = Some((offset, end));
+            }
+        };
+        for place in 0..self.group.stops.len() {
+            offer(self.find_stop(self.group.stops[place]), SegmentEnd::Stop);
+        }
+        for place in 0..self.group.laws.len() {
+            let law = self.group.laws[place];
+            for index in 0..self.physics.laws[law].switches() {
+                offer(self.find_switch(law, index), SegmentEnd::Switch);
+            }
+        }
+        earliest
+    }
+
+    /// True if contacts that are touched without force neither closed nor opened along the segment.
+    fn are_still(&self, heights: &[[f64; NODES]]) -> bool {
+        let still = STILL_SHARE * self.physics.mechanism.tolerances.sink();
+        heights.iter().all(|sample| sample.iter().all(|height| (height - sample[0]).abs() <= still))
+    }
+
+    /// Finds for each row the force [N] below which it has none: part of the loads of the less loaded of its bodies, of
+    /// their accelerations and of all their rows.
+    fn find_least_forces(&mut self) {
+        let group = &*self.group;
+        let count = group.bodies.len();
+        let mut gross = std::mem::take(&mut self.stage.gross);
+        gross.clear();
+        gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
+            let at = 3 * (count + place);
+            self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
+        }));
+        for (index, sides) in group.sides.iter().enumerate() {
+            let force = group.forces[index].abs().max(group.end_forces[index].abs());
+            sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
+        }
+        self.stage.least.clear();
+        self.stage.least.extend(group.sides.iter().map(|sides| {
+            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
+            FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
+        }));
+        self.stage.gross = gross;
+    }
+
+    /// By how much held contacts are off between the ends of the segment, where dense output is less exact, in units of what is
+    /// allowed so that nothing overlaps and what touches is seen to, or connectors, in units of what steps may err by. The
+    /// largest error of a connector is noted, and the least gap of a contact.
+    pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
+        (self.group.largest_error, self.group.least_gap) = (0.0, None);
+        let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
+        let mut excess = 0.0f64;
+        if self.group.rows.is_empty() {
+            return excess;
+        }
+        let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
+        for &part in if any_contact { &INNER[..] } else { &INNER[..1] } {
+            self.put_at(part * self.group.span);
+            for row in self.group.rows.iter().filter(|row| matches!(row.source, RowSource::Contact(_))) {
+                let gap = self.physics.mechanism.gap(row, &self.stage.movings);
+                excess = excess.max((gap - row.gap).abs() / least);
+                self.group.least_gap = Some(self.group.least_gap.map_or(gap, |least| least.min(gap)));
+            }
+            self.group.largest_error = self.group.largest_error.max(self.connector_error());
+        }
+        excess.max(self.group.largest_error / most.max(least))
+    }
+
+    /// Forces of the rows at an offset [s] of the segment, left in the stage.
+    pub(crate) fn evaluate_at(&mut self, offset: f64) {
+        self.find_state_at(offset);
+        let trial = std::mem::take(&mut self.stage.trial);
+        let mut rates = std::mem::take(&mut self.stage.trial_rates);
+        rates.resize(trial.len(), 0.0);
+        let Ok(()) = self.derivative(offset, &trial, &mut rates);
+        (self.stage.trial, self.stage.trial_rates) = (trial, rates);
+    }
+
+    /// Up to which part of the step no contact comes near to losing its force, as its stages tell; none if that is so all along.
+    /// A force is firm where its least value at the stages and both ends is more than all of them vary by, and for as long as
+    /// it would take to vanish several times as fast as it varies. Implicit steps have too few stages to tell.
+    fn firm_part(&self) -> Option<f64> {
+        let Group { rows, forces, end_forces, .. } = &*self.group;
+        let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
+        let is_known =
+            self.group.stepping() != Stepping::Stiff && self.stage.force_ranges.len() == rows.len();
+        let part = |(index, _): (usize, &HeldRow)| {
+            let (start, end) = (forces[index], end_forces[index]);
+            let [least, largest] = if is_known { self.stage.force_ranges[index] } else { [start, end] };
+            let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
+            let is_firm = is_known && least > largest - least;
+            let part = if is_known && start > 0.0 { start / (STEEP * (largest - least)) } else { 0.0 };
+            (!is_firm).then_some(part)
+        };
+        contacts.filter_map(part).min_by(f64::total_cmp)
+    }
+
+    /// Samples what places tell of the rows at the nodes.
+    fn sample_rows(&mut self) -> Samples {
+        let mut samples = std::mem::take(&mut self.stage.samples);
+        let Samples { rooms, heights, early, .. } = &mut samples;
+        self.find_who_may_leave(rooms);
+        self.watch_rows(|row| rooms.get(row).is_some_and(|sample| sample[0].is_finite()));
+        fill(heights, self.group.leaning.len());
+        early.clear();
+        early.resize(heights.len(), [0.0; EARLY]);
+        for index in 0..if rooms.is_empty() && heights.is_empty() { 0 } else { NODES } {
+            self.put_watched_at(node(index, self.group.span));
+            for (row, sample) in rooms.iter_mut().enumerate().filter(|(_, sample)| sample[0].is_finite()) {
+                sample[index] = self.room(row);
+            }
+            for (row, sample) in heights.iter_mut().enumerate() {
+                sample[index] = self.height(row);
+            }
+        }
+        for index in 0..if early.is_empty() { 0 } else { EARLY } {
+            self.put_watched_at(early_node(index, self.group.span));
+            for (row, sample) in early.iter_mut().enumerate() {
+                sample[index] = self.height(row);
+            }
+        }
+        samples
+    }
+
+    /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell that all of them
+    /// stay; else the samples of those that do are without end.
+    fn find_who_may_leave(&mut self, rooms: &mut Vec<[f64; NODES]>) {
+        rooms.clear();
+        let mechanism = &self.physics.mechanism;
+        if !self.group.rows.iter().any(|row| mechanism.can_change(row)) {
+            return;
+        }
+        self.find_bounds();
+        self.place_at(MIDDLE * self.group.span);
+        rooms.extend((0..self.group.rows.len()).map(|row| {
+            let sample = if self.stays(row) { f64::INFINITY } else { 0.0 };
+            [sample; NODES]
+        }));
+        if rooms.iter().all(|sample| sample[0].is_infinite()) {
+            rooms.clear();
+        }
+    }
+
+    /// The earliest contact that sinks before the first node.
+    fn find_early_sinking(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, samples: &Samples) {
+        for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
+            let fall = early_fall(heights[0], early, self.group.span, |offset| {
+                self.put_leaning_at(row, offset);
+                self.height(row)
+            });
+            let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) else {
+                continue;
+            };
+            self.put_leaning_at(row, offset);
+            if self.is_within(row) {
+                *earliest = Some((offset, SegmentEnd::Sink(row)));
+            }
+        }
+    }
+
+    /// The earliest contact that comes onto its features and runs off again before the first node: what has just taken over from its
+    /// neighbour starts at the end of its features, or beyond by rounding.
+    fn find_early_change(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, rooms: &[[f64; NODES]]) {
+        for (row, values) in rooms.iter().enumerate() {
+            let fall = fall_after_rise(values, self.group.span, |offset| {
+                self.put_row_at(row, offset);
+                self.room(row)
+            });
+            if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
+                *earliest = Some((offset, SegmentEnd::Change(row)));
+            }
+        }
+    }
+
+    /// The forces of all rows at a node, raised by what counts as none.
+    fn sample_forces(&self, samples: &mut [[f64; NODES]], index: usize) {
+        let forces = match index {
+            0 => &self.group.forces,
+            _ if index + 1 == NODES => &self.group.end_forces,
+            _ => &self.stage.forces,
+        };
+        for (((sample, force), least), row) in
+            samples.iter_mut().zip(forces).zip(&self.stage.least).zip(&self.group.rows)
+        {
+            sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
+        }
+    }
+
+    /// The earliest fall of any row of a watch, if it comes before what was found so far.
+    ///
+    /// To place the bodies costs more than to read a row: once a fall is found, all rows are read there, and those that have
+    /// not fallen by then need no search of their own.
+    fn find_first(
+        &mut self,
+        earliest: &mut Option<(f64, SegmentEnd)>,
+        samples: &[[f64; NODES]],
+        watch: &Watch,
+    ) {
+        if samples.is_empty() {
+            return;
+        }
+        let mut there = std::mem::take(&mut self.stage.there);
+        let mut read_at = None;
+        for (row, values) in samples.iter().enumerate() {
+            let limit = earliest.map(|(offset, _)| offset);
+            if limit != read_at
+                && let Some(offset) = limit
+            {
+                (watch.place)(self, offset);
+                there.clear();
+                let is_sampled = |row: usize| samples[row][0].is_finite();
+                let read = |row| if is_sampled(row) { (watch.read)(self, row) } else { f64::INFINITY };
+                there.extend((0..samples.len()).map(read));
+                read_at = limit;
+            }
+            let limit = limit.map(|offset| (offset, there[row]));
+            let fall = first_fall_before(values, self.group.span, limit, |offset| {
+                (watch.place_for)(self, row, offset);
+                (watch.read)(self, row)
+            });
+            let is_first = |offset: &f64| limit.is_none_or(|(least, _)| *offset < least);
+            let Some(offset) = fall.filter(is_first) else { continue };
+            (watch.place_for)(self, row, offset);
+            let counting = if (watch.counts)(self, row) {
+                Some(offset)
+            } else {
+                self.first_sinking_within(row).filter(is_first)
+            };
+            if let Some(offset) = counting {
+                *earliest = Some((offset, (watch.end)(row)));
+            }
+        }
+        self.stage.there = there;
+    }
+
+    /// When a contact that is touched without force sinks on its features, beyond which it was seen to: what is turned away may
+    /// be turned back, and then sinks at once.
+    fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
+        let span = self.group.span;
+        let mut read = |offset: f64| {
+            self.put_leaning_at(row, offset);
+            self.height(row).max(-self.leaning_room(row))
+        };
+        let values = std::array::from_fn(|index| read(node(index, span)));
+        first_fall_before(&values, span, None, read)
+    }
+
+    /// How far a row is from running off its features, without end for one that cannot.
+    pub(crate) fn room(&self, row: usize) -> f64 {
+        self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
+    }
+
+    /// Distance [m] of a contact that is touched without force from its least gap.
+    fn height(&self, row: usize) -> f64 {
+        let row = &self.group.leaning[row];
+        self.physics.mechanism.gap(row, &self.stage.movings) - row.gap
+    }
+
+    /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
+    /// projection onto the held rows may have moved their bodies, and what starts below its least gap is not seen to sink.
+    pub(crate) fn lower_leaning(&mut self) {
+        let Group { bodies, end_state, leaning, .. } = &mut *self.group;
+        if leaning.is_empty() {
+            return;
+        }
+        self.stage.load(bodies, end_state);
+        let mechanism = &self.physics.mechanism;
+        for row in leaning {
+            let gap = mechanism.gap(row, &self.stage.movings);
+            row.gap = row.gap.min(gap - mechanism.tolerances.sink());
+        }
+    }
+
+    /// Lets contacts stay where they are if lifting some has not brought them to their gaps: where rows contradict each other, each step
+    /// would be thrown off anew.
+    pub(crate) fn leave_lifted(&mut self) {
+        let Group { bodies, end_state, rows, .. } = &mut *self.group;
+        if !rows.iter().any(|row| row.is_lifted) {
+            return;
+        }
+        self.stage.load(bodies, end_state);
+        let mechanism = &self.physics.mechanism;
+        for row in rows.iter_mut().filter(|row| !row.bilateral) {
+            let gap = mechanism.gap(row, &self.stage.movings);
+            if (gap - row.gap).abs() > mechanism.tolerances.sink() {
+                row.gap = gap;
+            }
+        }
+    }
+
+    /// True if a contact that is touched without force lies within its features.
+    fn is_within(&self, row: usize) -> bool {
+        self.leaning_room(row) >= 0.0
+    }
+
+    /// How far [m] a contact that is touched without force is from running off its features, without end if it cannot.
+    fn leaning_room(&self, row: usize) -> f64 {
+        let row = &self.group.leaning[row];
+        self.physics.mechanism.room(row, &self.stage.movings).unwrap_or(f64::INFINITY)
+    }
+
+    /// Force [N] of a row, raised by what counts as none; without end for one of either sign.
+    fn pressure(&self, row: usize) -> f64 {
+        if self.group.rows[row].bilateral {
+            f64::INFINITY
+        } else {
+            self.stage.forces[row] + self.stage.least[row]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::step::group::SegmentEnd;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    /// Part of its step up to which a contact is firm whose force [N] goes from the first number to the second.
+    fn firm_part(start: f64, end: f64) -> Option<f64> {
+        let mut system = resting_discs(&[0.0]);
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        group.forces[0] = start;
+        group.end_forces[0] = end;
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.firm_part()
+        })
+    }
+
+    #[test]
+    fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
+        assert_eq!(firm_part(10.0, 9.0), None);
+        assert_eq!(firm_part(9.0, 10.0), None);
+        // It falls by 8 N along the step, and to begin with no more than four times as fast.
+        assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
+        assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
+        // What starts without force is looked at once.
+        assert_eq!(firm_part(0.0, 5.0), Some(0.0));
+        assert_eq!(firm_part(0.0, 0.0), Some(0.0));
+    }
+
+    #[test]
+    fn what_may_lose_its_force_is_looked_at_when_its_time_comes() {
+        let leader = BodyId(1);
+        let mut system = resting_discs(&[0.0]);
+        let mut group = system.groups.take(leader).expect("it is held");
+        // As if its force fell from twice its weight and were gone at the end.
+        group.forces[0] = 20.0;
+        group.end_forces[0] = -20.0;
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.find_event();
+        });
+        assert!(group.event.is_none());
+        assert_eq!(group.due(), group.start.plus(group.span / 8.0));
+        system.groups.put(group);
+        system.look_further(leader);
+        let group = system.group_of(leader).expect("it goes on");
+        let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
+        assert!(offset > 0.75 * group.span, "{offset} s");
+        assert_eq!(system.queue.time_of(system.group_source(leader)), Some(group.start.plus(offset)));
+        // What is found for a time that has gone by happens now.
+        let mut group = system.groups.take(leader).expect("it goes on");
+        let late = 2.0 * group.span;
+        (group.event, group.look) = (None, Some(late));
+        system.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
+        assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
+    }
+}

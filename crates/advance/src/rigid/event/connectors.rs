@@ -1,0 +1,331 @@
+//! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
+
+use super::region::Region;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::limits::repeats::is_same_time;
+use crate::rigid::motion::path::Path;
+use crate::rigid::search::predictions::LONGEST_SPAN;
+use crate::rigid::step::group::Stop;
+use crate::rigid::step::rows::{RowSource, knot_rooms};
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, Detector, Flight, Motion, MotionBounds,
+    RailHint, Rope, RopeSearch, rope_contact,
+};
+
+/// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
+const LOOKS: u32 = 8;
+/// A point may pass a corner so often in succession, and all but rest there, before it does.
+const MOST_RESTS: u32 = 100;
+
+/// What is known of a connector beside its parts.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ConnectorState {
+    /// Where on a rail the point is.
+    pub(crate) hint: Option<RailHint>,
+    /// A rope does not go taut before this time, other than predicted.
+    clear: Time,
+    /// When it goes taut; `None` if it does not while the motions are known, or the search goes on then.
+    taut: Option<Time>,
+    /// How often, one time after another, the point of a rail has passed a corner more slowly than `velocity_tol`.
+    rests_in_corner: u32,
+    /// By how much longer [m] a rope is taken that has just gone slack.
+    slack: f64,
+    /// The rope is taut and held.
+    held: bool,
+    /// When the rope went taut last, and how often before that without time going by.
+    last_taut: Option<Time>,
+    repeats: u32,
+}
+
+impl ConnectorState {
+    /// How often before a rope has gone taut at the present time: it lies nearer to its length than the search can tell.
+    fn repeats_at(&self, now: Time) -> u32 {
+        if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
+    }
+
+    fn note_taut(&mut self, now: Time) {
+        let is_repeat = self.last_taut.is_some_and(|last| is_same_time(last, now));
+        self.repeats = if is_repeat { self.repeats + 1 } else { 0 };
+        self.last_taut = Some(now);
+    }
+}
+
+impl RigidSystem {
+    pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
+        &self.connectors[id.index()]
+    }
+
+    /// Adds the records of the connectors of a body of the region.
+    pub(crate) fn collect_connectors(&self, region: &mut Region, place: usize, time: Time) {
+        let body = region.bodies[place];
+        for &id in self.connectors_of.of(body) {
+            let connector = self.connector(id);
+            let [a, b] = connector.bodies();
+            let other = if a == body { b } else { a };
+            if region.place(other).is_some_and(|earlier| earlier < place) {
+                continue;
+            }
+            let moving = [a, b].map(|body| self.moving_at(body, time));
+            let hint = self.connector_states[id.index()].hint;
+            let tolerances = &self.settings.tolerances;
+            for row in 0..connector.row_count() {
+                let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
+                if !connector.is_bilateral() && sample.gap > tolerances.accuracy {
+                    continue;
+                }
+                // What neither closes nor opens is held, or may be.
+                let closes = sample.kinematics.rate < -self.rest_speed();
+                if is_rope(connector) && closes && self.rope_grazes(id) {
+                    continue;
+                }
+                let row = u32::try_from(row).unwrap_or(u32::MAX);
+                let bodies = [&moving[0], &moving[1]];
+                region.records.push(Collision::of_connector(
+                    id,
+                    row,
+                    connector,
+                    &sample,
+                    bodies,
+                    tolerances,
+                    time.seconds(),
+                ));
+                if self.is_movable(other) {
+                    region.add(other);
+                }
+            }
+        }
+    }
+
+    /// The record of a connector's row anew, with the response that it has.
+    pub(crate) fn remeasure_connector(&self, record: &mut Collision, id: ConnectorId, row: u32, time: Time) {
+        let connector = self.connector(id);
+        let moving = connector.bodies().map(|body| self.moving_at(body, time));
+        let hint = self.connector_states[id.index()].hint;
+        let sample = connector.measure_near(row as usize, &moving[0], &moving[1], hint.as_ref());
+        let response = record.response;
+        let (bodies, tolerances) = ([&moving[0], &moving[1]], &self.settings.tolerances);
+        *record = Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
+        record.response = response;
+    }
+
+    /// What makes the row of a record.
+    pub(crate) fn source_of(&self, record: &Collision) -> Option<RowSource> {
+        if let Detector::Connector { id, row } = record.parties.detector {
+            return Some(RowSource::Connector(id, row as usize));
+        }
+        Some(RowSource::Contact([record.parties.primary.feature()?, record.parties.normal.feature()?]))
+    }
+
+    /// Notes where on their rails the points of a region's connectors are.
+    pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
+        for &body in &region.bodies {
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
+                let Some(path) = self.connector(id).path() else { continue };
+                let (anchor, _) = self.connector(id).anchors();
+                let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
+                let state = &self.connector_states[id.index()];
+                let hint = path.hint_near(point, state.hint.as_ref());
+                // A stop lies on whatever piece: it must see its point pass the joints before it.
+                let hint = if is_stop(self.connector(id)) { hint } else { hint.staying() };
+                self.connector_states[id.index()].hint = Some(hint);
+            }
+        }
+    }
+
+    /// The point of a rail passes a joint of the path: it goes on along the next piece. True if the joint is a corner.
+    pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
+        let connector = self.connector(id);
+        let (Some(path), (anchor, _)) = (connector.path(), connector.anchors()) else { return false };
+        let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
+        let place = path.nearest(point, self.connector_states[id.index()].hint.as_ref());
+        let ends = path.knots().iter().flat_map(|knot| {
+            let [before, after] = knot_rooms(path, knot, &place);
+            [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
+        });
+        let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
+        let Some((_, knot, forward)) = nearest else { return false };
+        let is_corner = knot.turn.abs() > 0.0;
+        let hint = path.hint_past(knot, forward).staying();
+        self.connector_states[id.index()].hint = Some(hint);
+        is_corner
+    }
+
+    /// Notes that the point of a rail has passed a corner; fails if it all but rests there, again and again.
+    pub(crate) fn note_corner(&mut self, id: ConnectorId) -> Result<(), AdvanceError> {
+        let anchor = *self.connector(id).anchors().0;
+        let moving = self.moving_at(anchor.body, self.now);
+        let speed = moving.velocity_at(moving.pose.vector_to_world(anchor.point)).length();
+        let rests = speed <= self.settings.tolerances.velocity_tol;
+        let state = &mut self.connector_states[id.index()];
+        state.rests_in_corner = if rests { state.rests_in_corner + 1 } else { 0 };
+        if state.rests_in_corner > MOST_RESTS {
+            let (time, body) = (self.now.seconds(), anchor.body);
+            return Err(AdvanceError::InCorner { time, connector: id, body });
+        }
+        Ok(())
+    }
+
+    /// Predicts when the ropes of a region go taut.
+    pub(crate) fn predict_ropes(&mut self, region: &Region, settling: &Settling) {
+        let sink = self.sink();
+        for &body in &region.bodies {
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
+                let Some(rope) = rope_of(self.connector(id)) else { continue };
+                let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, self.now));
+                let sample = self.connector(id).measure(0, &a, &b);
+                let at_rest = sample.kinematics.rate <= self.rest_speed();
+                let touches = sample.gap <= self.settings.tolerances.accuracy;
+                let state = &mut self.connector_states[id.index()];
+                state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                state.slack = if at_rest && touches { sink + (-sample.gap).max(0.0) } else { 0.0 };
+                state.slack += f64::from(state.repeats_at(self.now)) * sink;
+                state.clear = self.now;
+                self.predict_rope(id, &rope);
+            }
+        }
+    }
+
+    /// Searches on for the ropes of some bodies, whose motions are known for longer now.
+    pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
+        for &body in bodies {
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
+                let is_known = self.connector_states[id.index()].taut.is_some();
+                if let (Some(rope), false) = (rope_of(self.connector(id)), is_known) {
+                    self.predict_rope(id, &rope);
+                }
+            }
+        }
+    }
+
+    fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
+        let source = self.connector_source(id);
+        self.connector_states[id.index()].taut = None;
+        if self.connector_states[id.index()].held || self.is_rope_watched(id) {
+            self.queue.clear(source);
+            return;
+        }
+        let [a, b] = self.connector(id).bodies();
+        let known = [a, b].map(|body| self.segment_end(body));
+        let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
+        let mut from = self.connector_states[id.index()].clear.max(self.now);
+        if until <= from {
+            self.queue.clear(source);
+            return;
+        }
+        let mut found = self.search_rope(id, rope, from, until);
+        if let Some(slack) = self.slackens(id, from, found) {
+            // It comes back to where any rope goes taut.
+            self.connector_states[id.index()].slack = 0.0;
+            from = slack;
+            found = self.search_rope(id, rope, from, until);
+        }
+        let (clear, taut) = match found {
+            RopeSearch::Taut(wait) => (from.plus(wait), Some(from.plus(wait))),
+            RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
+        };
+        let searches_on = taut.is_none() && clear < until;
+        let state = &mut self.connector_states[id.index()];
+        (state.clear, state.taut) = (clear, taut);
+        if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
+    }
+
+    /// Searches from a time on for when a rope goes taut, as it is taken now.
+    fn search_rope(&self, id: ConnectorId, rope: &Rope, from: Time, until: Time) -> RopeSearch {
+        let [a, b] = self.connector(id).bodies();
+        let rope = Rope { length: rope.length + self.connector_states[id.index()].slack, ..*rope };
+        let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
+        let path = |body: BodyId| {
+            if body.is_world() {
+                (Path::Flight(&still), 0.0)
+            } else {
+                (self.flyer(body).path(), self.flyer(body).offset(from))
+            }
+        };
+        let ((path_a, offset_a), (path_b, offset_b)) = (path(a), path(b));
+        // Bounds over much longer than the ends need to move by the rope's length would say little.
+        let wait =
+            crossing_time(&rope, &path_a.bounds(offset_a, offset_a), &path_b.bounds(offset_b, offset_b));
+        let span = until.since(from).min(wait);
+        rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search)
+    }
+
+    /// When a rope that is taken longer than it is has gone slack by clearly more than that, on the way to where a search from a time
+    /// on has come.
+    fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
+        let slack = self.connector_states[id.index()].slack;
+        if slack <= 0.0 {
+            return None;
+        }
+        let (RopeSearch::Taut(wait) | RopeSearch::NoneBefore(wait)) = found;
+        let mut times = (0..LOOKS).map(|look| from.plus(wait * f64::from(look) / f64::from(LOOKS)));
+        times.find(|&time| {
+            let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, time));
+            self.connector(id).measure(0, &a, &b).gap > slack + self.sink()
+        })
+    }
+
+    /// A stop as it is watched along a segment that starts now.
+    pub(crate) fn stop(&self, id: ConnectorId) -> Stop {
+        let connector = self.connector(id);
+        let hint = self.connector_states[id.index()].hint;
+        let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
+        let sample = connector.measure_near(0, &a, &b, hint.as_ref());
+        let tolerances = &self.settings.tolerances;
+        let rests = sample.kinematics.rate <= self.rest_speed() && sample.gap <= tolerances.accuracy;
+        let slack = if rests { tolerances.sink() + (-sample.gap).max(0.0) } else { 0.0 };
+        Stop { id, hint, slack }
+    }
+
+    /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
+    pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
+        let now = self.now;
+        let is_taut = self.connector_states[id.index()].taut.is_some();
+        let slack = self.grazing_slack();
+        if is_taut && self.connector_states[id.index()].slack < slack && self.rope_grazes(id) {
+            self.connector_states[id.index()].slack = slack;
+        } else if is_taut {
+            self.connector_states[id.index()].note_taut(now);
+            return true;
+        }
+        if let Some(rope) = rope_of(self.connector(id)) {
+            self.predict_rope(id, &rope);
+        }
+        false
+    }
+}
+
+/// True for the end of a rail.
+pub(crate) fn is_stop(connector: &Connector) -> bool {
+    matches!(connector.kind, ConnectorKind::RailStop { .. })
+}
+
+/// About the time [s] in which the ends of a rope, as they move now, go as far as it is long.
+fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
+    let turning = a.angular_speed * rope.point_a.length() + b.angular_speed * rope.point_b.length();
+    let speed = a.velocity.largest_difference(&b.velocity) + turning;
+    let acceleration = a.acceleration.largest_difference(&b.acceleration);
+    let by_speed = if speed > 0.0 { rope.length / speed } else { LONGEST_SPAN };
+    let by_acceleration = if acceleration > 0.0 { (rope.length / acceleration).sqrt() } else { LONGEST_SPAN };
+    by_speed.min(by_acceleration).min(LONGEST_SPAN)
+}
+
+/// True for a rope.
+pub(crate) fn is_rope(connector: &Connector) -> bool {
+    rope_of(connector).is_some()
+}
+
+/// The rope of a connector, if it is one.
+fn rope_of(connector: &Connector) -> Option<Rope> {
+    match &connector.kind {
+        ConnectorKind::Rope { a, b, length } => {
+            Some(Rope { point_a: a.point, point_b: b.point, length: *length })
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,473 @@
+//! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
+
+use super::impacts::{ImpactReport, Manner};
+use super::region::{Region, Touch};
+use crate::rigid::error::AdvanceError;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::limits::bounces::closes_fast;
+use crate::rigid::limits::repeats::{CALM_REPEATS, is_same_time};
+use crate::rigid::search::pairs::PairId;
+use crate::rigid::step::group::SegmentEnd;
+use crate::rigid::step::rows::{HeldRow, RowSource};
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{
+    Body, BodyId, BodyState, Collision, ConnectorId, Detector, GapKinematics, Tolerances, Zone,
+};
+use halfgap_contact::Impact;
+use halfgap_geometry::{FeatureId, GapSample};
+
+/// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
+const SEAM_ANGLE: f64 = 4e-9;
+/// To stop contacts changes the velocities of their bodies' points by no more than so many times what they closed or opened by.
+const MODEST: f64 = 100.0;
+/// Nor are its impulses greater than so many times what the momentum of some body changes by.
+const MOST_CANCELLING: f64 = 10.0;
+/// Cap on the rounds in which the low hops of one event are stilled.
+const HOP_ROUNDS: u32 = 4;
+
+/// Buffers of the handling of events, kept from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EventWork {
+    pub(crate) region: Region,
+    pub(crate) impact: Impact,
+    pub(crate) settling: Settling,
+    pub(crate) seeds: Vec<BodyId>,
+    /// Impulses that the contacts of the region carry until its low hops have come down [N s].
+    pub(crate) carried: Vec<f64>,
+    /// States of the region's bodies before contacts were stopped as bilateral ones, and what that was.
+    before: Vec<BodyState>,
+    pub(crate) stop: ImpactReport,
+    /// How often the pair that fired has done so without time going by, beyond what is calm.
+    repeats: u32,
+    /// The contact that fired does not close: the search takes its rounding for motion.
+    pub(crate) fired_open: bool,
+}
+
+impl RigidSystem {
+    /// Finds what is held at the start, where nothing has happened yet.
+    pub(crate) fn establish(&mut self) -> Result<(), AdvanceError> {
+        let mut work = self.work.take().unwrap_or_default();
+        work.seeds.clear();
+        work.seeds.extend(self.bodies());
+        work.region.at_start = true;
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        let outcome = if self.closes_slowly(&work.region) {
+            // What closes fast fires in its own time, unless that is now.
+            let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
+            work.region.records.retain(|record| !fast(record));
+            self.collide(&mut work).map(|_| ())
+        } else {
+            self.go_on(&mut work)
+        };
+        work.region.at_start = false;
+        self.work = Some(work);
+        outcome
+    }
+
+    /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more slowly than forces
+    /// can be resolved. What has come to rest elsewhere may come with that much.
+    pub(crate) fn start_rest(&self) -> f64 {
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
+    }
+
+    /// True if any contact of a region closes so slowly that it is to be caught, and is not at rest yet.
+    fn closes_slowly(&self, region: &Region) -> bool {
+        let rest = self.start_rest();
+        let closes = |record: &Collision| record.motion.normal_velocity < -rest && !closes_fast(record);
+        let mut records = region.records.iter().filter(|record| !record.parties.bilateral);
+        self.settings.impulse_step.is_none() && records.any(closes)
+    }
+
+    /// Two bodies come into contact; true if there was an impact.
+    pub(crate) fn handle_contact(
+        &mut self,
+        pair: PairId,
+        features: [FeatureId; 2],
+    ) -> Result<bool, AdvanceError> {
+        let bodies = self.pairs.bodies(pair);
+        if self.sinks(pair, features) || self.passes_over(pair, features) || self.grazes(pair, features) {
+            return Ok(false);
+        }
+        self.note_pressed(Touch::new(bodies, features))?;
+        let repeats = self.note_repeat(pair)?;
+        let mut work = self.work.take().unwrap_or_default();
+        work.repeats = repeats.saturating_sub(CALM_REPEATS);
+        work.seeds.clear();
+        work.seeds.extend(bodies);
+        work.region.fired = Some(Touch { bodies, features });
+        let outcome = self.handle_impact(&mut work);
+        work.region.fired = None;
+        work.repeats = 0;
+        self.work = Some(work);
+        outcome
+    }
+
+    /// A group's segment ends, or something ends it early; true if that is an impact: at a stop or a corner of a rail.
+    pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<bool, AdvanceError> {
+        if self.group_of(leader).is_some_and(|group| group.look.is_some()) {
+            self.look_further(leader);
+            return Ok(false);
+        }
+        if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
+            return self.extend_naturally(leader).map(|()| false);
+        }
+        let mut work = self.work.take().unwrap_or_default();
+        let outcome = self.handle_group_with(leader, &mut work);
+        self.work = Some(work);
+        outcome
+    }
+
+    fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        let Some(group) = self.group_of(leader) else { return Ok(false) };
+        work.seeds.clear();
+        work.seeds.extend(&group.bodies);
+        let Some((_, end)) = group.event else { return Ok(false) };
+        let is_pull = group.made == self.now && matches!(end, SegmentEnd::Release(_));
+        let released = match end {
+            SegmentEnd::Release(row) => group.rows[row].touch(),
+            _ => None,
+        };
+        let changed_row = match end {
+            SegmentEnd::Change(row) => Some(group.rows[row]),
+            SegmentEnd::Sink(row) => {
+                let row = group.leaning[row];
+                return self.handle_sinking(work, &row);
+            }
+            SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
+        };
+        if is_pull {
+            self.last_pull = Some(self.now);
+        }
+        (work.region.run_off, work.region.released) = (None, released);
+        match changed_row.map(|row| (row.bodies, row.source)) {
+            Some((bodies, RowSource::Contact(features))) => {
+                let touch = Touch::new(bodies, features);
+                work.region.run_off = self.leaves(touch).then_some(touch);
+            }
+            Some((_, RowSource::Connector(id, _))) => return self.pass_joint(work, id),
+            None => {}
+        }
+        if end == SegmentEnd::Stop {
+            return self.handle_impact(work);
+        }
+        let outcome = self.handle_change(work);
+        (work.region.run_off, work.region.released) = (None, None);
+        outcome
+    }
+
+    /// True if a contact that has come to the end of its features leaves them.
+    fn leaves(&self, Touch { bodies, features }: Touch) -> bool {
+        let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
+        self.mechanism().has_left(bodies, features, [&moving[0], &moving[1]])
+    }
+
+    /// A contact that was touched without force has sunk.
+    fn handle_sinking(&mut self, work: &mut EventWork, row: &HeldRow) -> Result<bool, AdvanceError> {
+        let RowSource::Contact(features) = row.source else { return Ok(false) };
+        work.region.fired = Some(Touch::new(row.bodies, features));
+        let outcome = self.handle_impact(work);
+        work.region.fired = None;
+        outcome
+    }
+
+    /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
+    fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
+        let is_corner = self.pass_knot(id, self.now);
+        let happened = self.handle_impact(work)?;
+        if is_corner {
+            self.note_corner(id)?;
+        }
+        // At a smooth joint rounding was stopped, unless something else has met at the same moment.
+        let rest = self.rest_speed();
+        let mut rows = self.last_impact.rows.iter();
+        let meets = rows.any(|row| !row.collision.parties.bilateral && row.rate_before < -rest);
+        let is_impact = happened && (is_corner || meets);
+        if happened && !is_impact {
+            self.counts.impacts -= 1;
+            self.has_hit = false;
+        }
+        Ok(is_impact)
+    }
+
+    fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+        self.let_go(leader);
+        self.continue_group(leader)?;
+        let mut bodies = std::mem::take(&mut self.extended);
+        bodies.clear();
+        bodies.extend(self.group_of(leader).into_iter().flat_map(|group| &group.bodies));
+        for &body in &bodies {
+            self.renew_stay(body);
+        }
+        self.predict_all_of(&bodies, false);
+        self.search_ropes_on(&bodies);
+        self.extended = bodies;
+        Ok(())
+    }
+
+    /// A rope goes taut; true if there was an impact.
+    pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
+        let mut work = self.work.take().unwrap_or_default();
+        work.seeds.clear();
+        work.seeds.extend(self.connector(id).bodies());
+        let outcome = self.handle_impact(&mut work);
+        self.work = Some(work);
+        outcome
+    }
+
+    /// What is held changes; true if there was an impact, of something else that closes within its target zone.
+    fn handle_change(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        self.cut_groups(&mut work.region);
+        self.remeasure(&mut work.region, self.now);
+        if self.neighbour_closes(&work.region) {
+            // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again. It takes over only
+            // if it is what is nearest now. The groups that have been cut no longer tell who belongs together.
+            work.seeds.clear();
+            work.seeds.extend(&work.region.bodies);
+            self.collect_region(&mut work.region, &work.seeds, self.now);
+        }
+        self.hand_over(work);
+        // Beside a seam a corner may be as near to the next one, and pass over it.
+        let region = &mut work.region;
+        region.records.retain(|record| !(closes_fast(record) && self.passes_by(record)));
+        let rest = self.rest_speed();
+        if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
+            return self.collide(work);
+        }
+        self.go_on(work).map(|()| false)
+    }
+
+    /// True if two corners pass each other before they come to where their bodies fire.
+    fn passes_by(&self, record: &Collision) -> bool {
+        if record.parties.detector != Detector::CornerCorner {
+            return false;
+        }
+        let halo = |body: BodyId| self.lanes[body.index()].halo;
+        let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
+        let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
+        let nearest = record.geometry.distance * across.abs() / along.hypot(across);
+        nearest > halos.min(record.tolerances.target_gap)
+    }
+
+    /// True if another place closes where the bodies of the contact touch that has run off its features.
+    fn neighbour_closes(&self, region: &Region) -> bool {
+        let Some(run_off) = region.run_off else { return false };
+        let rest = self.rest_speed();
+        let mut closing = region.records.iter().filter(|record| record.motion.normal_velocity < -rest);
+        closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
+    }
+
+    /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour closes or opens
+    /// by is only the angle up to which joints are smooth. What meets at the same moment is an impact, which does without.
+    fn hand_over(&mut self, work: &mut EventWork) {
+        let Some(run_off) = work.region.run_off else { return };
+        let is_neighbour = |record: &Collision| {
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let (rate, speed) = (record.motion.normal_velocity, record.motion.center_velocity.length());
+            Touch::new(bodies, run_off.features).bodies == run_off.bodies && rate.abs() <= SEAM_ANGLE * speed
+        };
+        let records = &mut work.region.records;
+        if records.iter().any(|record| closes_fast(record) && !is_neighbour(record)) {
+            return;
+        }
+        let mut any = false;
+        for record in records.iter_mut().filter(|record| is_neighbour(record)) {
+            record.parties.bilateral = true;
+            any = true;
+        }
+        if any {
+            self.stop_bilaterally(work);
+        }
+    }
+
+    pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        let fired = work.region.fired;
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        if !work.region.groups.is_empty() {
+            self.cut_groups(&mut work.region);
+            self.remeasure(&mut work.region, self.now);
+        }
+        let rest = self.rest_speed();
+        work.fired_open = fired.is_some_and(|fired| self.gap_at(fired, self.now).1 > -rest);
+        if self.at_tick {
+            self.put_back(work);
+        }
+        let outcome = self.collide(work);
+        work.fired_open = false;
+        outcome
+    }
+
+    /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
+    pub(crate) fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        // What was slow when it fired stays inelastic, whatever the speed it has gained since.
+        work.region.in_storm = self.note_events(&work.region);
+        let is_storm = work.region.in_storm || work.repeats > 0;
+        let mut report = std::mem::take(&mut self.last_impact);
+        let now = self.now;
+        let manner = if is_storm || self.at_tick { Manner::Inelastic } else { Manner::Lawful };
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner);
+        if outcome.is_ok() {
+            self.book_impact(&report, is_storm);
+        }
+        self.last_impact = report;
+        let happened = outcome?;
+        if happened {
+            self.has_hit = true;
+            self.counts.impacts += 1;
+            self.forget_paces(&work.region.bodies);
+        }
+        self.remeasure(&mut work.region, self.now);
+        self.go_on(work)?;
+        work.region.in_storm = false;
+        Ok(happened)
+    }
+
+    /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
+    fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        for &body in &work.region.bodies {
+            self.flyers[body.index()].unwind();
+        }
+        self.note_rails(&work.region, self.now);
+        work.region.is_hasty = self.take_haste(&work.region);
+        self.settle_and_still(work)?;
+        self.note_begins(&work.region, &work.settling);
+        self.measure_touches(&mut work.region);
+        work.region.motions.iter().for_each(|&(gap, _)| self.counts.note_gap(gap));
+        self.note_seen(&work.region, work.fired_open);
+        self.regroup(&work.region, &work.settling)?;
+        self.set_rules(work);
+        if self.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
+            self.lower_insistent(&work.region);
+        }
+        for &body in &work.region.bodies {
+            self.renew_stay(body);
+        }
+        self.predict_all_of(&work.region.bodies, true);
+        self.predict_ropes(&work.region, &work.settling);
+        Ok(())
+    }
+
+    /// Finds what is held, and stills what of it hops: to stop some contacts makes others hop.
+    fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let EventWork { region, settling, .. } = &mut *work;
+        settling.expect(region.records.iter().map(|record| self.is_likely(record)));
+        settling.expect_forces(region, &self.changes.end);
+        self.settle_region(work, !work.region.at_start)?;
+        for round in 1..=HOP_ROUNDS {
+            if !self.any_held_hops(work) {
+                break;
+            }
+            let is_stilled = self.still_hops(work);
+            let with_hops = is_stilled && !work.region.at_start && round < HOP_ROUNDS;
+            self.settle_region(work, with_hops)?;
+        }
+        Ok(())
+    }
+
+    fn settle_region(&mut self, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
+        let mut stage = std::mem::take(&mut self.stage);
+        let outcome = self.settle(&mut work.region, &mut work.settling, &mut stage, self.now, with_hops);
+        self.stage = stage;
+        outcome
+    }
+
+    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
+    /// Where such rows contradict each other, nothing is done, and it says false: as unilateral ones they need not.
+    fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
+        let now = self.now;
+        // At the start there may be blows to come, which are not to be stopped along with the rest.
+        if work.region.records.iter().any(closes_fast) {
+            unmark(&mut work.region);
+            return false;
+        }
+        work.before.clear();
+        work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(now)));
+        // What may as well be left is not worth long trying.
+        let manner = Manner::Trial;
+        let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut work.stop, now, manner);
+        if outcome.is_ok() {
+            self.remeasure(&mut work.region, now);
+        }
+        let is_stopped = outcome.is_ok()
+            && self.has_stopped(&work.region)
+            && self.is_modest(&work.stop, &work.region, &work.before);
+        unmark(&mut work.region);
+        if is_stopped {
+            self.book_impact(&work.stop, true);
+        } else if outcome.is_ok() {
+            for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
+                self.flyer_mut(body).fly_from(now, state);
+            }
+            self.remeasure(&mut work.region, now);
+        }
+        is_stopped
+    }
+
+    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped, and by the most
+    /// that its impulses can do. Contacts whose normals hardly differ hold all of a body, and to stop what is left between them by
+    /// their angle would stop it altogether, by large impulses that cancel each other on every body.
+    fn is_modest(&self, report: &ImpactReport, region: &Region, before: &[BodyState]) -> bool {
+        let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
+        let impulse = report.rows.iter().fold(0.0f64, |most, row| most.max(row.impulse.abs()));
+        let (mut fastest, mut largest) = (0.0f64, 0.0f64);
+        for (&body, before) in region.bodies.iter().zip(before) {
+            let flyer = self.flyer(body);
+            let after = flyer.unwound_at(self.now);
+            let moved = after.velocity.distance(before.velocity);
+            let turned = (after.angular_velocity - before.angular_velocity).abs();
+            fastest = fastest.max(moved + turned * flyer.reach());
+            let Body { inverse_mass, inverse_moment, .. } = *flyer.body();
+            largest = largest.max(moved / inverse_mass).max(turned / (inverse_moment * flyer.reach()));
+        }
+        fastest <= MODEST * stopped && impulse <= MOST_CANCELLING * largest
+    }
+
+    /// True if the contacts of a region that are marked as bilateral rest, and no other closes.
+    fn has_stopped(&self, region: &Region) -> bool {
+        let rest = self.rest_speed();
+        let mut contacts = region.records.iter().filter(|record| record.parties.primary.site.is_some());
+        contacts.all(|record| {
+            let rate = record.motion.normal_velocity;
+            rate >= -rest && (rate <= rest || !record.parties.bilateral)
+        })
+    }
+
+    /// Measures the touching features of a region at the present time.
+    pub(crate) fn measure_touches(&self, region: &mut Region) {
+        let Region { touches, motions, .. } = region;
+        motions.clear();
+        motions.extend(touches.iter().map(|&touch| self.gap_at(touch, self.now)));
+    }
+
+    /// Gap [m] and rate [m/s] of two features at a time.
+    pub(crate) fn gap_at(&self, Touch { bodies, features }: Touch, time: Time) -> (f64, f64) {
+        let moving = bodies.map(|body| self.flyer(body).moving_at(time));
+        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
+        let Some(sample) = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose) else {
+            return (f64::INFINITY, 0.0);
+        };
+        let (primary, normal) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
+        (sample.gap, GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
+    }
+
+    pub(crate) fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {
+        // Connectors are stopped whichever way they move: a corner of a rail that turns to either side is an impact.
+        let closing = report.rows.iter().map(|row| {
+            if row.collision.parties.bilateral { row.rate_before.abs() } else { -row.rate_before }
+        });
+        let fastest = closing.fold(0.0, f64::max);
+        let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
+        let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
+        *booked += report.energy_change;
+        self.note_kinetic_energy_before(report);
+    }
+}
+
+/// Takes the marks as bilateral from the contacts of a region.
+fn unmark(region: &mut Region) {
+    for record in &mut region.records {
+        record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
+    }
+}

@@ -1,0 +1,176 @@
+//! Impacts that jam: impulses that cancel each other by far, between contacts that need not be.
+//!
+//! What was held from the start, or since it was caught, is held at the gap at which it formed. Where a body fits between two
+//! others with little room it may so be held on both sides, farther from both than where bodies fire. As it passes their corners
+//! two such contacts come to lie opposite each other: they seem to hold it like a vice, and the least angle between them stops
+//! it for good.
+
+use super::impacts::Manner;
+use super::region::Region;
+use crate::rigid::held::settling::SMALL_CONTRADICTION;
+use crate::rigid::system::RigidSystem;
+use halfgap_collision::{BodyId, Collision};
+use halfgap_contact::{Impact, ImpactError};
+
+/// Impulses this many times larger than what they change of the momentum of any body jam, as do forces that are so much larger than
+/// all loads together.
+pub(crate) const JAM: f64 = 100.0;
+
+impl RigidSystem {
+    /// Leaves out of a region what is farther away than where bodies fire, if the impulses of contacts cancel each other by far;
+    /// true if there is any.
+    pub(super) fn leave_out_jammed(&self, region: &mut Region, impact: &Impact) -> bool {
+        region.left_out.clear();
+        if region.records.iter().all(|record| self.is_close(record)) || !self.jams(region, impact) {
+            return false;
+        }
+        let Region { records, left_out, .. } = region;
+        left_out.extend(records.extract_if(.., |record| !self.is_close(record)));
+        true
+    }
+
+    /// Finds the impulses of a region without what was left out, but for those of it that are pressed all the same: of what fits
+    /// with little room only one side is. Where those jam, too, nothing is left out.
+    pub(super) fn find_impulses_of_pressed(
+        &self,
+        region: &mut Region,
+        impact: &mut Impact,
+        manner: Manner,
+    ) -> Result<(), ImpactError> {
+        loop {
+            let is_sound = self.find_impulses(region, impact, manner).is_ok();
+            if !is_sound || self.jams(region, impact) {
+                region.records.append(&mut region.left_out);
+                return self.find_impulses(region, impact, manner);
+            }
+            if !self.admit_pressed(region, impact) {
+                return Ok(());
+            }
+        }
+    }
+
+    /// True if a record is no farther away than where bodies fire, or holds them anyway.
+    pub(crate) fn is_close(&self, record: &Collision) -> bool {
+        record.parties.bilateral || record.distance_to_target() <= self.sink()
+    }
+
+    /// True if impulses of contacts cancel each other by far.
+    fn jams(&self, region: &mut Region, impact: &Impact) -> bool {
+        let contacts = region.records.iter().zip(impact.impulses());
+        let contacts = contacts.filter(|(record, _)| !record.parties.bilateral);
+        let largest = contacts.fold(0.0f64, |most, (_, impulse)| most.max(impulse.abs()));
+        largest > 0.0 && largest > JAM * self.momentum_changed(region, impact)
+    }
+
+    /// The largest change of momentum [N s] of any body of a region by an impact, with what turns it acting at its reach.
+    fn momentum_changed(&self, region: &mut Region, impact: &Impact) -> f64 {
+        region.sum_changes(impact);
+        let changed = region.bodies.iter().zip(&region.changes);
+        changed.map(|(&body, change)| self.flyer(body).load(change)).fold(0.0, f64::max)
+    }
+
+    /// Lets in again what was left out and is pressed by the impulses found without it; true if there is any.
+    fn admit_pressed(&self, region: &mut Region, impact: &Impact) -> bool {
+        region.sum_changes(impact);
+        let (mut records, mut left_out) =
+            (std::mem::take(&mut region.records), std::mem::take(&mut region.left_out));
+        let rates = records.iter().chain(&left_out).map(|record| -record.motion.normal_velocity);
+        let least = SMALL_CONTRADICTION * rates.fold(0.0, f64::max);
+        let before = records.len();
+        records.extend(left_out.extract_if(.., |record| {
+            let (rate, change) = (record.motion.normal_velocity, region.change_of(record));
+            change.max(rate + change) < -least
+        }));
+        let any = records.len() > before;
+        (region.records, region.left_out) = (records, left_out);
+        any
+    }
+}
+
+impl Region {
+    /// By how much the changes of the bodies' velocities change the rate of a record [m/s].
+    fn change_of(&self, record: &Collision) -> f64 {
+        let j = &record.motion.kinematics.jacobian;
+        let sides = [record.parties.primary.body, record.parties.normal.body];
+        let of_side = |(side, body): (usize, BodyId)| {
+            let change = self.place(body).map_or([0.0; 3], |place| self.changes[place]);
+            (0..3).map(|k| j[3 * side + k] * change[k]).sum::<f64>()
+        };
+        sides.into_iter().enumerate().map(of_side).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::impacts::ImpactReport;
+    use super::*;
+    use crate::rigid::RigidParts;
+    use crate::rigid::motion::flyer::FlightLaw;
+    use crate::rigid::system::RigidSettings;
+    use crate::rigid::test_scene::FINE;
+    use crate::time::Time;
+    use glam::DVec2;
+    use halfgap_collision::{Body, BodyState, Tolerances};
+    use halfgap_geometry::Shape;
+
+    /// Gap [m] at which bodies fire, and gaps in its zone.
+    const GAP: f64 = 5e-3;
+    const FAR: f64 = 7e-3;
+    const NEAR: f64 = 4.9e-3;
+    /// Angle [rad] of the shuttle.
+    const TILT: f64 = -2e-5;
+
+    /// The velocity of a shuttle of a kilogram that goes down between a wall on its left and the end of another on its right,
+    /// a gap [m] away from both and tilted so that its way narrows, after an impact; a disc that lies on its right may go at a
+    /// speed [m/s].
+    fn velocity_after(gap: f64, disc_speed: f64) -> DVec2 {
+        let body = |shape: Result<Shape, _>, inverse_mass: f64, position: DVec2, state: BodyState| {
+            let shape = shape.expect("a fine size");
+            let body = Body { shape, inverse_mass, inverse_moment: inverse_mass, elasticity: 0.0 };
+            (body, FlightLaw::default(), BodyState { position, ..state })
+        };
+        let going = |x: f64, y: f64| BodyState { velocity: DVec2::new(x, y), ..BodyState::default() };
+        let side = 0.5 + gap;
+        let bodies = vec![
+            body(Shape::block(4.0, 20.0), 0.0, DVec2::new(-side - 2.0, 0.0), going(0.0, 0.0)),
+            body(Shape::block(4.0, 4.0), 0.0, DVec2::new(side + 2.0, 2.25), going(0.0, 0.0)),
+            body(Shape::block(1.0, 2.5), 1.0, DVec2::ZERO, BodyState { angle: TILT, ..going(0.0, -1.0) }),
+            body(Shape::disc(0.3), 1.0, DVec2::new(0.8 + GAP, -0.5), going(-disc_speed, 0.0)),
+        ];
+        let tolerances = Tolerances { target_gap: GAP, accuracy: 0.6 * GAP, velocity_tol: 1e-3 };
+        let parts = RigidParts { bodies, ..RigidParts::default() };
+        let settings = RigidSettings { tolerances, ..FINE };
+        let mut system = RigidSystem::new(parts, settings, Time::ZERO).expect("nothing rests");
+        let mut work = system.work.take().expect("the start has made it");
+        for (body, velocity) in
+            [(BodyId(2), DVec2::new(0.0, -1.0)), (BodyId(3), DVec2::new(-disc_speed, 0.0))]
+        {
+            let state = system.flyer(body).state_at(system.now);
+            let state = BodyState { velocity, angular_velocity: 0.0, ..state };
+            system.flyer_mut(body).fly_from(Time::ZERO, state);
+        }
+        work.region.at_start = true;
+        system.collect_region(&mut work.region, &[BodyId(2), BodyId(3)], system.now);
+        let (mut report, manner) = (ImpactReport::default(), Manner::Inelastic);
+        let now = system.now;
+        system
+            .resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner)
+            .expect("it can be resolved");
+        system.flyer(BodyId(2)).state_at(now).velocity
+    }
+
+    #[test]
+    fn what_has_room_is_not_held_by_the_angle_of_its_sides() {
+        assert!((velocity_after(FAR, 0.0).y + 1.0).abs() < 1e-9);
+        // Where it touches both walls, it is a wedge.
+        let velocity = velocity_after(NEAR, 0.0);
+        assert!(velocity.y.abs() < 1e-6, "{velocity}");
+    }
+
+    #[test]
+    fn what_has_room_is_pressed_against_one_side_only() {
+        let velocity = velocity_after(FAR, 1.0);
+        assert!((velocity.y + 1.0).abs() < 1e-4, "{velocity}");
+        assert!(velocity.x.abs() < 1e-4, "the wall stops it: {velocity}");
+    }
+}

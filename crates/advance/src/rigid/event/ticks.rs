@@ -1,0 +1,365 @@
+//! Without contact forces: slow contacts sink, and are put back once a step.
+//!
+//! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was seen last, does not fire.
+//! At the next tick of the step its velocity is stopped by an impulse and it is moved back to its target gap, by the least
+//! displacement in the metric of the masses. What is pressed so hard that it sinks deep meanwhile is stopped there, too.
+//!
+//! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another blow may drive one
+//! on into the other, and what has turned meanwhile touches elsewhere.
+
+use super::events::EventWork;
+use super::region::{Region, Touch};
+use crate::rigid::error::{AdvanceError, Between};
+use crate::rigid::search::pairs::PairId;
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState, Tolerances};
+use halfgap_contact::{BodyId as RowBody, Problem, Row};
+use halfgap_geometry::FeatureId;
+
+/// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a part of the way.
+const ROUNDS: usize = 3;
+const SHORT_ROUNDS: usize = 5;
+/// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
+const LONGEST_WAY: f64 = 0.1;
+/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair may sink, beside what
+/// it slowly closes by in a step.
+const SUNK_SHARE: f64 = 1e-2;
+const THIN_SHARE: f64 = 1e-1;
+/// Part of that room to which it sinks before it fires again.
+const FIRST_SHARE: f64 = 0.6;
+/// Part of it beyond which it sinks no further, but for what others drive it.
+const DEEPEST: f64 = 0.9;
+/// Part of it by which it may sink further whenever it fires again, slowly.
+const FURTHER_SHARE: f64 = 1.0 / 96.0;
+/// So many times that room, what is deeper lies behind.
+const BEHIND: f64 = 1.25;
+/// Part of that room at which a fast pair has sunk, rather than just been seen.
+const DEEP_SHARE: f64 = 0.3;
+
+/// So many collisions of what has sunk, within a step, are too many.
+const MOST_PRESSED: u32 = 100_000;
+
+/// What waits for the next tick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ticks {
+    pub(crate) waiting: Vec<Touch>,
+    /// How far [m] bodies have been moved in being put back, zero but at a tick.
+    pub(crate) moved: f64,
+    /// Ticks that have gone by.
+    count: f64,
+    /// How often what waits has collided since the last.
+    pressed: u32,
+    /// By how much bodies are to be moved apart, and the records of its rows.
+    problem: Problem,
+    rows: Vec<usize>,
+    shifts: Vec<[f64; 3]>,
+    /// The laws of a region's bodies.
+    laws: Vec<usize>,
+}
+
+impl RigidSystem {
+    /// True if a pair that fires is left to sink until the next tick.
+    pub(crate) fn sinks(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
+        let Some(step) = self.settings.impulse_step else { return false };
+        let bodies = self.pairs.bodies(pair);
+        let touch = Touch::new(bodies, features);
+        let (gap, rate) = self.gap_at(touch, self.now);
+        if gap == f64::INFINITY {
+            return false;
+        }
+        let tolerances = &self.settings.tolerances;
+        let room = self.room_to_sink(bodies);
+        let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
+        let is_fast = -rate > tolerances.velocity_tol;
+        let is_deepest = gap < tolerances.target_gap - DEEPEST * room;
+        if is_deepest || is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
+            return false;
+        }
+        let lowest = (tolerances.target_gap - FIRST_SHARE * room).min(gap - FURTHER_SHARE * room);
+        let tick = self.next_tick(step);
+        self.pairs.change_rules(pair, |rules| {
+            rules.retain(|rule| rule.features != features);
+            rules.push(touch.lowered_to(lowest));
+        });
+        if !self.ticks.waiting.contains(&touch) {
+            self.ticks.waiting.push(touch);
+        }
+        // The search goes on for the other features of the two bodies.
+        self.predict(pair);
+        self.queue.set(self.tick_source(), tick);
+        true
+    }
+
+    /// How far [m] a pair of bodies may sink until it is put back; zero where contacts carry forces.
+    #[must_use]
+    pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
+        let Some(step) = self.settings.impulse_step else { return 0.0 };
+        let reach = bodies.map(|body| self.flyer(body).reach());
+        let slow = self.settings.tolerances.velocity_tol * step;
+        (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies)) + slow
+    }
+
+    /// Gap [m] at which a contact without force fires that has a gap now and does not open. What has been stopped below its zone,
+    /// until it is put back, may be pressed on by what acts on its bodies, or by their turning, at once: it goes a part of the way
+    /// that is left to where it may sink no further.
+    pub(crate) fn sinks_to(&self, touch: Touch, gap: f64) -> f64 {
+        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
+        if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
+            return self.sunk(gap);
+        }
+        let left = gap - target_gap + DEEPEST * self.room_to_sink(touch.bodies);
+        gap - self.sink().max(FURTHER_SHARE * left)
+    }
+
+    /// How far [m] one body may lie in another and be told from what has gone through it.
+    pub(crate) fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
+        let shares = bodies.map(|body| {
+            let flyer = self.flyer(body);
+            THIN_SHARE * flyer.body().shape.mass_properties().area / flyer.reach()
+        });
+        shares[0].min(shares[1])
+    }
+
+    /// How deep [m] two bodies, the lesser first, may lie in one another: where they have been left to sink, have been moved, or
+    /// would sink within a step. Where contacts carry forces, because held ones do.
+    pub(crate) fn may_have_sunk_by(&self, bodies: [BodyId; 2]) -> f64 {
+        if self.settings.impulse_step.is_none() {
+            return self.holds_deep(bodies);
+        }
+        // Either may have been moved against the other.
+        let moved = 2.0 * self.ticks.moved;
+        if self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
+            // What is turned as it is put back sinks elsewhere.
+            return BEHIND * self.room_to_sink(bodies) + moved.min(self.thinness(bodies));
+        }
+        self.settings.search.depth.max(moved).min(self.thinness(bodies))
+    }
+
+    /// Counts the collisions of what has sunk within a step.
+    pub(crate) fn note_pressed(&mut self, touch: Touch) -> Result<(), AdvanceError> {
+        let Some(step) = self.settings.impulse_step else { return Ok(()) };
+        let sunk = self.settings.tolerances.target_gap - DEEP_SHARE * self.room_to_sink(touch.bodies);
+        if self.gap_at(touch, self.now).0 >= sunk {
+            return Ok(());
+        }
+        self.ticks.pressed += 1;
+        if self.ticks.pressed <= MOST_PRESSED {
+            return Ok(());
+        }
+        let [primary, normal] = touch.bodies;
+        let (time, events) = (self.now.seconds(), self.ticks.pressed);
+        Err(AdvanceError::Pressed { time, between: Between { primary, normal }, events, step })
+    }
+
+    /// The first tick after the present time.
+    fn next_tick(&mut self, step: f64) -> Time {
+        let passed = (self.now.since(self.start) / step).floor();
+        self.ticks.count = passed.max(self.ticks.count);
+        let tick = self.start.plus((self.ticks.count + 1.0) * step);
+        if tick > self.now { tick } else { self.start.plus((self.ticks.count + 2.0) * step) }
+    }
+
+    /// Stops and puts back what has sunk; true if there was an impact.
+    pub(crate) fn handle_tick(&mut self) -> Result<bool, AdvanceError> {
+        self.queue.clear(self.tick_source());
+        self.ticks.pressed = 0;
+        for index in 0..self.ticks.waiting.len() {
+            let (gap, _) = self.gap_at(self.ticks.waiting[index], self.now);
+            self.counts.note_gap(gap);
+        }
+        let mut work = self.work.take().unwrap_or_default();
+        work.seeds.clear();
+        work.seeds.extend(self.ticks.waiting.iter().flat_map(|touch| touch.bodies));
+        work.seeds.sort_unstable();
+        work.seeds.dedup();
+        self.at_tick = true;
+        let outcome = self.handle_impact(&mut work);
+        self.at_tick = false;
+        self.keep_what_is_sunk();
+        self.work = Some(work);
+        outcome
+    }
+
+    /// What could not be put back altogether is put back further at the next tick.
+    fn keep_what_is_sunk(&mut self) {
+        let mut waiting = std::mem::take(&mut self.ticks.waiting);
+        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
+        waiting.retain(|touch| {
+            let gap = self.gap_at(*touch, self.now).0;
+            gap < target_gap - accuracy && gap >= -BEHIND * self.room_to_sink(touch.bodies)
+        });
+        self.ticks.waiting = waiting;
+        if let Some(step) = self.settings.impulse_step.filter(|_| !self.ticks.waiting.is_empty()) {
+            let tick = self.next_tick(step);
+            self.queue.set(self.tick_source(), tick);
+        }
+    }
+
+    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target, and takes in what they come
+    /// upon.
+    pub(crate) fn put_back(&mut self, work: &mut EventWork) {
+        let (mut full, mut short) = (0, 0);
+        while full < ROUNDS && short < SHORT_ROUNDS {
+            for &body in &work.region.bodies {
+                self.restart_flight(body, self.now);
+            }
+            let before = self.potential_of(&work.region);
+            let Some(share) = self.move_apart(work) else { break };
+            *(if share == 1.0 { &mut full } else { &mut short }) += 1;
+            self.ledger.projections += self.potential_of(&work.region) - before;
+            for &body in &work.region.bodies {
+                self.lanes[body.index()].follow(&self.flyers[body.index()]);
+            }
+            work.seeds.clear();
+            work.seeds.extend(&work.region.bodies);
+            self.collect_region(&mut work.region, &work.seeds, self.now);
+            self.cut_groups(&mut work.region);
+            self.remeasure(&mut work.region, self.now);
+        }
+        self.ticks.moved = 0.0;
+        // Where connectors are put together again afterwards, what touches may yet sink.
+        self.ticks.waiting.extend(&work.region.touches);
+        self.ticks.waiting.sort_unstable();
+        self.ticks.waiting.dedup();
+    }
+
+    /// One round: tells which part of the way it went; `None` if nothing had to move.
+    fn move_apart(&mut self, work: &mut EventWork) -> Option<f64> {
+        let mut ticks = std::mem::take(&mut self.ticks);
+        let moves = self.is_sunk(&work.region, &mut ticks) && work.settling.solve(&ticks.problem).is_ok();
+        let mut moved = None;
+        if moves {
+            let Ticks { shifts, rows, moved: way, .. } = &mut ticks;
+            shifts.clear();
+            shifts.resize(work.region.bodies.len(), [0.0; 3]);
+            work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
+            let longest = self.longest_way(&work.region, shifts);
+            let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
+            *way += share * longest.0;
+            moved = Some(share);
+            for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
+                let state = self.flyer(body).unwound_at(self.now);
+                let position = state.position + share * DVec2::new(x, y);
+                let moved = BodyState { position, angle: state.angle + share * turn, ..state };
+                self.flyers[body.index()].fly_from(self.now, moved);
+            }
+        }
+        self.ticks = ticks;
+        moved
+    }
+
+    /// The longest way [m] of a point of a region's bodies along a displacement (x, y, angle) of each, and the longest in parts of
+    /// its body's reach.
+    fn longest_way(&self, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
+        let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
+            let reach = self.flyer(body).reach();
+            let way = x.hypot(*y) + turn.abs() * reach;
+            (way, way / reach)
+        });
+        ways.fold((0.0, 0.0), |most, way| (most.0.max(way.0), most.1.max(way.1)))
+    }
+
+    /// Sets up the least displacement of a region's bodies that leaves no gap less than its target; false if none is.
+    fn is_sunk(&self, region: &Region, Ticks { problem, rows, .. }: &mut Ticks) -> bool {
+        problem.clear();
+        rows.clear();
+        for &body in &region.bodies {
+            problem.add_body(self.inertia(body)).expect("inertias were checked when the body was made");
+        }
+        let place_of = |body: BodyId| Some(RowBody(u32::try_from(region.place(body)?).ok()?));
+        let mut any_sunk = false;
+        for (index, record) in region.records.iter().enumerate() {
+            let bilateral = record.parties.bilateral;
+            let target =
+                if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
+            let offset = record.geometry.distance - target;
+            any_sunk |= offset < 0.0 && !bilateral;
+            let j = &record.motion.kinematics.jacobian;
+            let sides = [
+                (place_of(record.parties.primary.body), [j[0], j[1], j[2]]),
+                (place_of(record.parties.normal.body), [j[3], j[4], j[5]]),
+            ];
+            let mut movable = sides.into_iter().filter_map(|(place, j)| Some((place?, j)));
+            let Some((first, coefficients)) = movable.next() else { continue };
+            let mut row = Row::new(first, coefficients, offset);
+            if let Some((second, coefficients)) = movable.next() {
+                row = row.against(second, coefficients);
+            }
+            let row = if bilateral { row.bilateral() } else { row };
+            problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+            rows.push(index);
+        }
+        any_sunk
+    }
+
+    /// Potential energy [J] of the bodies of a region, as far as it has one.
+    fn potential_of(&mut self, region: &Region) -> f64 {
+        let mut energy = 0.0;
+        for &body in &region.bodies {
+            self.stage.movings[body.index()] = self.flyer(body).moving_at(self.now);
+            let flyer = self.flyer(body);
+            let position = self.stage.movings[body.index()].pose.position;
+            energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
+        }
+        let mut laws = std::mem::take(&mut self.ticks.laws);
+        laws.clear();
+        laws.extend(region.bodies.iter().flat_map(|&body| self.laws_of(body)));
+        laws.sort_unstable();
+        laws.dedup();
+        let now = crate::rigid::Snapshot::new(self.now.seconds(), &self.stage.movings);
+        let of_laws = laws.iter().filter_map(|&law| self.laws[law].potential(&now)).sum::<f64>();
+        self.ticks.laws = laws;
+        energy + of_laws
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::test_scene::resting_discs;
+
+    #[test]
+    fn what_was_stopped_deep_sinks_a_part_of_what_is_left() {
+        let mut system = resting_discs(&[0.0]);
+        let Tolerances { target_gap, .. } = system.settings.tolerances;
+        let bodies = [BodyId(0), BodyId(1)];
+        let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
+        // With contact forces it sinks by no more than can be told.
+        assert_eq!(system.sinks_to(touch, -1e-3), -1e-3 - system.sink());
+        system.settings.impulse_step = Some(1e-3);
+        let room = system.room_to_sink(bodies);
+        let sinks_by = |depth: f64| {
+            let gap = target_gap - depth * room;
+            (gap - system.sinks_to(touch, gap)) / room
+        };
+        assert!((sinks_by(0.0) * room / system.sink() - 1.0).abs() < 1e-9, "it has not sunk yet");
+        for depth in [0.5, 0.75] {
+            assert!((sinks_by(depth) - (DEEPEST - depth) * FURTHER_SHARE).abs() < 1e-9);
+        }
+        assert!((sinks_by(DEEPEST) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
+    }
+    #[test]
+    fn what_is_pressed_collides_only_so_often_in_a_step() {
+        let mut system = resting_discs(&[0.0]);
+        let bodies = [BodyId(0), BodyId(1)];
+        let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
+        let step = 1e-3;
+        system.settings.impulse_step = Some(step);
+        let notes =
+            |system: &mut RigidSystem, times: u32| (0..times).find_map(|_| system.note_pressed(touch).err());
+        assert_eq!(notes(&mut system, 2 * MOST_PRESSED), None, "nothing has sunk");
+        system.dissolve(bodies[1]);
+        let mut state = system.flyer(bodies[1]).state_at(system.now);
+        state.position.y -= 0.5 * system.room_to_sink(bodies);
+        system.flyers[1].fly_from(system.now, state);
+        assert_eq!(notes(&mut system, MOST_PRESSED), None);
+        let between = Between { primary: bodies[0], normal: bodies[1] };
+        let (time, events) = (system.now.seconds(), MOST_PRESSED + 1);
+        let expected = AdvanceError::Pressed { time, between, events, step };
+        assert_eq!(notes(&mut system, 1), Some(expected));
+        system.handle_tick().expect("it can be put back");
+        assert_eq!(system.ticks.pressed, 0);
+    }
+}

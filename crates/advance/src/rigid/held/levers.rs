@@ -1,0 +1,84 @@
+//! Levers: what connectors leave of a row.
+//!
+//! A contact beside the hinge of a lid acts on the lid by a lever that vanishes as it falls shut: its row is then nearly a sum of those
+//! of the pin. What is left of a row, in the metric of the masses, is found by orthogonalising it against theirs, twice, which is
+//! exact to rounding of the row (W. Kahan and B. Parlett, in B. Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
+
+use super::settling::Settling;
+use crate::rigid::event::region::{Region, Touch};
+use crate::rigid::system::RigidSystem;
+use halfgap_collision::{BodyId, Collision};
+use halfgap_contact::Inertia;
+
+/// A bilateral row of which others leave less than this part depends on them.
+const DEPENDENT: f64 = 1e-12;
+/// A lever that is less than this part of what it would be without the connectors is next to none.
+const LEVER: f64 = 1e-3;
+
+/// The rows of a region's connectors, orthonormal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Levers {
+    /// Row after row, with three numbers for each body.
+    basis: Vec<f64>,
+    row: Vec<f64>,
+}
+
+impl Levers {
+    /// Takes in the connectors of a region.
+    fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> Inertia) {
+        self.basis.clear();
+        for record in region.records.iter().filter(|record| record.parties.bilateral) {
+            if self.left_of(region, record, &inertia) > DEPENDENT {
+                let square: f64 = self.row.iter().map(|entry| entry * entry).sum();
+                self.basis.extend(self.row.iter().map(|entry| entry / square.sqrt()));
+            }
+        }
+    }
+
+    /// The part of a record's square that the connectors leave, which is the square of its lever in parts of what it would be without
+    /// them; 0 if nothing moves it.
+    fn left_of(&mut self, region: &Region, record: &Collision, inertia: impl Fn(BodyId) -> Inertia) -> f64 {
+        let Self { basis, row } = self;
+        row.clear();
+        row.resize(3 * region.bodies.len(), 0.0);
+        let j = &record.motion.kinematics.jacobian;
+        for (side, body) in [record.parties.primary.body, record.parties.normal.body].into_iter().enumerate()
+        {
+            let Some(place) = region.place(body) else { continue };
+            let Inertia { inverse_mass, inverse_moment } = inertia(body);
+            for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
+                row[3 * place + k] += weight.sqrt() * j[3 * side + k];
+            }
+        }
+        let square = |row: &[f64]| row.iter().map(|entry| entry * entry).sum::<f64>();
+        let whole = square(row);
+        for _ in 0..2 {
+            for other in basis.chunks_exact(row.len().max(1)) {
+                let share: f64 = row.iter().zip(other).map(|(p, q)| p * q).sum();
+                row.iter_mut().zip(other).for_each(|(entry, q)| *entry -= share * q);
+            }
+        }
+        if whole > 0.0 { square(row) / whole } else { 0.0 }
+    }
+}
+
+impl RigidSystem {
+    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point they would take forces
+    /// far larger than all loads, while the rest of the body has not come to where it lies. True if there are any.
+    pub(super) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
+        let Settling { candidates, passing, levers, .. } = settling;
+        levers.load(region, |body| self.inertia(body));
+        candidates.retain(|&index| {
+            let record = &region.records[index];
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let passes = !record.parties.bilateral
+                && record.geometry.distance > self.grazing_gap(bodies)
+                && bodies.iter().any(|&body| self.is_tied(body))
+                && levers.left_of(region, record, |body| self.inertia(body)) < LEVER * LEVER;
+            let touch = Touch::of(record).filter(|_| passes);
+            passing.extend(touch);
+            touch.is_none()
+        });
+        !settling.passing.is_empty()
+    }
+}

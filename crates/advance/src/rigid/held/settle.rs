@@ -1,0 +1,523 @@
+//! Which rows are held after an event: those that carry a force.
+//!
+//! All touching rows that neither close nor open enter one problem a = A f + b. A row that carries a force is held as an
+//! equation from then on; one that does not is left to the search for contacts, which watches its gap. Forces of redundant
+//! rows are not unique: those that the solution leaves without force follow from the others.
+
+use super::settling::{SMALL_CONTRADICTION, Settling};
+use crate::rigid::error::AdvanceError;
+use crate::rigid::event::jams::JAM;
+use crate::rigid::event::region::{Region, Touch};
+use crate::rigid::step::dynamics::{LEVEL, Physics, Stage};
+use crate::rigid::step::rows::{HeldRow, RowSource};
+use crate::rigid::step::segment::LONGEST_STEP;
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
+use halfgap_contact::{Row, SolveError};
+
+/// Part of the reach of a body from which the half-width of its zone can be seen.
+const SEEN: f64 = 1e-4;
+/// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been lifted may sink once.
+const SUNK: f64 = 1.5;
+/// Depth of an overlap, in target gaps, from which a contact is lifted.
+pub(crate) const DEEPEST: f64 = 0.5;
+/// Part of its accuracy by which a rope or a stop that is lifted stays beyond its end.
+const ROPE_SHARE: f64 = 0.5;
+
+/// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its force. With less it
+/// sinks so slowly that it may as well be touched again.
+const RELEASED_SHARE: f64 = 1e-3;
+
+/// Part of the loads of its bodies that a contact carries by rounding only, and need not be held. More than that may be what keeps a
+/// body in balance: one that stands on corners next to each other, as a brick on the joint of two others, falls over without.
+const IDLE_SHARE: f64 = 1e-13;
+
+/// Part of what counts as rest by which a contact may open, and be held, where such contacts take turns.
+const HASTY_SHARE: f64 = 1e-3;
+
+/// How the forces of the candidates were found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Solved {
+    /// There are none: nothing accelerates.
+    Nothing,
+    /// As asked.
+    Soundly,
+    /// With fewer candidates, or to a lesser accuracy.
+    Somehow,
+}
+
+impl RigidSystem {
+    /// Finds the rows of a region to hold, `with_hops` those too that open in no more than a low hop. Records must be up to
+    /// date; their forces are written into them.
+    pub(crate) fn settle(
+        &self,
+        region: &mut Region,
+        settling: &mut Settling,
+        stage: &mut Stage,
+        time: Time,
+        with_hops: bool,
+    ) -> Result<(), AdvanceError> {
+        settling.held.clear();
+        settling.touches.clear();
+        settling.passing.clear();
+        settling.candidates.clear();
+        let rest = match region {
+            Region { at_start: true, .. } => self.start_rest(),
+            Region { in_storm: true, .. } => self.storm_rest(),
+            _ => self.rest_speed(),
+        };
+        let most = if region.is_hasty { HASTY_SHARE * rest } else { rest };
+        let is_candidate = |record: &Collision| {
+            let is_slow = (-rest..=most).contains(&record.motion.normal_velocity);
+            record.parties.bilateral || (self.holds(record) && is_slow)
+        };
+        let records = || region.records.iter().enumerate();
+        settling
+            .candidates
+            .extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
+        let may_hop = |settling: &Settling| records().any(|record| self.could_hop(region, settling, record));
+        if settling.candidates.is_empty() && !(with_hops && may_hop(settling)) {
+            return Ok(());
+        }
+        self.accelerate_region(region, settling, stage, time);
+        let mut solved = self.solve_candidates(region, settling, stage, (time, rest))?;
+        // What is held presses others back, or keeps what opens from coming back.
+        while with_hops && solved != Solved::Somehow && self.add_hops(region, settling, stage) {
+            solved = self.solve_candidates(region, settling, stage, (time, rest))?;
+        }
+        if solved == Solved::Nothing {
+            return Ok(());
+        }
+        // What carries too little to be held carries nothing: the others do without it.
+        while self.drop_idle(region, settling, stage) {
+            self.solve_candidates(region, settling, stage, (time, rest))?;
+        }
+        self.choose_rows(region, settling, time);
+        Ok(())
+    }
+
+    /// Finds the forces of the candidates; those that jam are thinned out.
+    fn solve_candidates(
+        &self,
+        region: &Region,
+        settling: &mut Settling,
+        stage: &Stage,
+        (time, rest): (Time, f64),
+    ) -> Result<Solved, AdvanceError> {
+        self.pose_problem(region, settling, stage);
+        let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        if scale == 0.0 && !settling.problem.bilateral().contains(&true) {
+            settling.solution.force.clear();
+            settling.solution.force.resize(settling.candidates.len(), 0.0);
+            return Ok(Solved::Nothing);
+        }
+        let mut is_sound = settling.solve_strictly().is_ok();
+        if is_sound && !self.is_jammed(region, settling, stage) {
+            return Ok(Solved::Soundly);
+        }
+        if is_sound && self.let_pass(region, settling) {
+            self.pose_problem(region, settling, stage);
+            is_sound = settling.solve_strictly().is_ok();
+            if is_sound && !self.is_jammed(region, settling, stage) {
+                return Ok(Solved::Soundly);
+            }
+        }
+        self.drop_distant(region, settling, stage);
+        let mut found = settling.solve_strictly();
+        while is_sound && found.is_ok() && self.take_back_pressed(region, settling, stage) {
+            self.pose_problem(region, settling, stage);
+            found = settling.solve_strictly();
+        }
+        if found.is_err() && self.drop_leaving(region, settling, stage) {
+            self.pose_problem(region, settling, stage);
+            found = settling.solve_strictly();
+        }
+        let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
+        if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
+            // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
+            if scale > rest * rest / self.settings.steps.length {
+                return Err(self.settle_error(region, settling, time, source));
+            }
+            settling.solution.force.clear();
+            settling.solution.force.resize(settling.candidates.len(), 0.0);
+        }
+        Ok(solved)
+    }
+
+    /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if
+    /// there are any.
+    fn add_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+        let mut records = region.records.iter().enumerate();
+        if !records.any(|record| self.could_hop(region, settling, record)) {
+            return false;
+        }
+        self.push_bodies(region, settling, stage);
+        let before = settling.candidates.len();
+        for (index, record) in region.records.iter().enumerate() {
+            if !self.could_hop(region, settling, (index, record)) {
+                continue;
+            }
+            let is_new = settling.candidates[..before].binary_search(&index).is_err();
+            let offset = offset_under(region, record, &settling.pushed);
+            if is_new && self.is_low_hop(record, offset) {
+                settling.candidates.push(index);
+            }
+        }
+        settling.candidates.sort_unstable();
+        settling.candidates.len() > before
+    }
+
+    /// True if a record of a region, given with its place, may hop, and is not let go.
+    fn could_hop(&self, region: &Region, settling: &Settling, (index, record): (usize, &Collision)) -> bool {
+        let passes = || Touch::of(record).is_some_and(|touch| settling.lets_pass(touch));
+        !settling.leaves(index) && self.holds(record) && self.may_hop(region, record) && !passes()
+    }
+
+    /// Finds the accelerations of a region's bodies under the forces of the candidates.
+    fn push_bodies(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let mut pushed = std::mem::take(&mut settling.pushed);
+        pushed.clear();
+        pushed.extend_from_slice(&stage.accelerations);
+        settling.add_responses(region, &settling.candidates, |body| self.inertia(body), &mut pushed);
+        settling.pushed = pushed;
+    }
+
+    /// True if a unilateral row may carry a force: connectors always do.
+    fn holds(&self, record: &Collision) -> bool {
+        self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
+    }
+
+    /// True if forces of contacts are so much larger than what acts on the bodies that rows seem to work against each other,
+    /// as those on both sides of a body that just fits. Connectors with long arms have such forces by themselves.
+    fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
+        let forces = settling.candidates.iter().zip(&settling.solution.force);
+        let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
+        let largest = of_contacts.fold(0.0f64, |most, (_, force)| most.max(force.abs()));
+        let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.flyer(body).load(a));
+        largest > JAM * loads.sum::<f64>()
+    }
+
+    /// Leaves out what is farther away than its target gap, and need not be in contact: where a body fits between two
+    /// others with little room, it touches at most one of them.
+    fn drop_distant(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let Settling { candidates, dropped, .. } = settling;
+        let may_stay = |index: &usize| self.is_close(&region.records[*index]);
+        dropped.clear();
+        dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
+        candidates.retain(may_stay);
+        self.pose_problem(region, settling, stage);
+    }
+
+    /// Lets in again what is pressed all the same by the forces found without it; true if there is any. Of what fits with little
+    /// room only one side is: it goes the way of what it touches. In an arch that is nearly straight all contacts carry forces that
+    /// are far larger than all loads, and where those that were let in again jam, so does the rest.
+    fn take_back_pressed(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+        if settling.dropped.is_empty() {
+            return false;
+        }
+        if self.is_jammed(region, settling, stage) {
+            settling.take_back(|_| true);
+            return true;
+        }
+        self.push_bodies(region, settling, stage);
+        let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        let pushed = std::mem::take(&mut settling.pushed);
+        let is_pressed = |index: usize| {
+            offset_under(region, &region.records[index], &pushed) < -SMALL_CONTRADICTION * scale
+        };
+        let any = settling.take_back(is_pressed);
+        settling.pushed = pushed;
+        any
+    }
+
+    fn accelerate_region(&self, region: &Region, settling: &mut Settling, stage: &mut Stage, time: Time) {
+        for &body in &region.bodies {
+            stage.movings[body.index()] = self.flyer(body).moving_at(time);
+        }
+        settling.laws.clear();
+        settling.laws.extend(region.bodies.iter().flat_map(|&body| self.laws_of(body)));
+        settling.laws.sort_unstable();
+        settling.laws.dedup();
+        let physics = self.physics();
+        let of_region = (region.bodies.as_slice(), settling.laws.as_slice());
+        stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
+    }
+
+    fn pose_problem(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
+        let (problem, bodies) = (&mut settling.problem, &mut settling.bodies);
+        let least = f64::EPSILON * self.settings.tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
+        problem.clear();
+        bodies.clear();
+        bodies.extend(region.bodies.iter().map(|&body| {
+            problem.add_body(self.inertia(body)).expect("inertias were checked when the body was made")
+        }));
+        for &index in &settling.candidates {
+            let record = &region.records[index];
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            let places = sides.map(|body| region.place(body));
+            // What moves nothing in the longest time is rounding, and what is left of accelerations across the normal.
+            let offset = free_offset(region, record, stage);
+            let least = least.max(LEVEL * largest_acceleration(region, record, stage));
+            let offset = if offset.abs() > least { offset } else { 0.0 };
+            let j = &record.motion.kinematics.jacobian;
+            let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
+            let row = match places {
+                [Some(a), Some(b)] => {
+                    Row::new(bodies[a], coefficients[0], offset).against(bodies[b], coefficients[1])
+                }
+                [Some(a), None] => Row::new(bodies[a], coefficients[0], offset),
+                [None, Some(b)] => Row::new(bodies[b], coefficients[1], offset),
+                [None, None] => continue,
+            };
+            let row = if record.parties.bilateral { row.bilateral() } else { row };
+            problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+        }
+    }
+
+    /// Drops the candidates that carry no force to speak of; true if some of them carry any at all.
+    fn drop_idle(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) -> bool {
+        let Settling { candidates, solution, gross, .. } = settling;
+        // Loads [N] of each body: its own and those of its rows.
+        gross.clear();
+        let bodies = region.bodies.iter().zip(&stage.accelerations);
+        gross.extend(bodies.map(|(&body, acceleration)| self.flyer(body).load(acceleration)));
+        for (&index, force) in candidates.iter().zip(&solution.force) {
+            for place in places_of(region, &region.records[index]) {
+                gross[place] += force.abs();
+            }
+        }
+        let mut any = false;
+        let mut forces = solution.force.iter();
+        candidates.retain(|&index| {
+            let force = forces.next().copied().unwrap_or_default();
+            let record = region.records[index];
+            let loads = places_of(region, &record).map(|place| gross[place]);
+            let is_released = region.released.is_some() && Touch::of(&record) == region.released;
+            let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
+            let least = share * loads.fold(f64::INFINITY, f64::min);
+            let lies_deep = self.lifted(&record).is_some();
+            let stays = record.parties.bilateral || force > least || lies_deep;
+            region.records[index].response.force = Some(if stays { force } else { 0.0 });
+            any |= !stays && force > 0.0;
+            stays
+        });
+        any
+    }
+
+    /// Holds the candidates that are left.
+    fn choose_rows(&self, region: &Region, settling: &mut Settling, time: Time) {
+        for &index in &settling.candidates {
+            settling.held.extend(self.held_row(&region.records[index], time).map(|row| (index, row)));
+        }
+        settling.list_touches();
+    }
+
+    /// A row that knows whether it leans at a time.
+    pub(crate) fn leaning(&self, row: HeldRow, time: Time) -> HeldRow {
+        let movings = row.bodies.map(|body| self.moving_at(body, time));
+        HeldRow { leans: self.mechanism().leans(&row, [&movings[0], &movings[1]]), ..row }
+    }
+
+    fn held_row(&self, record: &Collision, time: Time) -> Option<HeldRow> {
+        let source = self.source_of(record)?;
+        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let hint = match source {
+            RowSource::Connector(id, _) => self.connector_states[id.index()].hint,
+            RowSource::Contact(_) => None,
+        };
+        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to move a rope to its
+        // length would move what hangs on it by a long arm by much more.
+        let bilateral = record.parties.bilateral;
+        let lifted = self.lifted(record);
+        let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
+        let is_lifted = lifted.is_some() && self.is_seen(record);
+        let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted };
+        Some(self.leaning(row, time))
+    }
+
+    /// The gap [m] to which a row is lifted that has sunk too deep; `None` of others. What touches without force sinks a little each
+    /// time it is touched. A contact is lifted before the search takes it for the far side of a body; where zones can be seen, it is
+    /// lifted into its zone, lest bodies overlap, unless it formed lower.
+    #[inline]
+    fn lifted(&self, record: &Collision) -> Option<f64> {
+        let is_contact = record.connector().is_none();
+        let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest;
+        let (lowest, sunk) = (lower_end(record), SUNK * record.tolerances.sink());
+        if !lies_deep(lowest - sunk) {
+            return None;
+        }
+        let deepest = -DEEPEST * record.tolerances.target_gap;
+        if !self.is_seen(record) {
+            return (is_contact && lies_deep(deepest)).then_some(deepest);
+        }
+        let formed = if is_contact { self.formed_at(record).max(deepest) } else { lowest };
+        let lowest = lowest.min(formed);
+        lies_deep(lowest - sunk).then_some(lowest)
+    }
+
+    /// True if the zone of a record is so wide, beside its bodies, that one sees where in it they are.
+    fn is_seen(&self, record: &Collision) -> bool {
+        self.is_zone_seen([record.parties.primary.body, record.parties.normal.body])
+    }
+
+    /// The same of two bodies.
+    pub(crate) fn is_zone_seen(&self, bodies: [BodyId; 2]) -> bool {
+        self.settings.tolerances.accuracy > SEEN * self.largest_reach(bodies)
+    }
+
+    fn settle_error(
+        &self,
+        region: &Region,
+        settling: &Settling,
+        time: Time,
+        source: SolveError,
+    ) -> AdvanceError {
+        let sides = |record: &Collision| [record.parties.primary.body, record.parties.normal.body];
+        let mut bodies: Vec<BodyId> =
+            settling.candidates.iter().flat_map(|&index| sides(&region.records[index])).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        AdvanceError::Contacts { time: time.seconds(), bodies, source: Box::new(source) }
+    }
+
+    /// What the motion of groups is computed from.
+    pub(crate) fn physics(&self) -> Physics<'_> {
+        Physics::of(&self.flyers, &self.connectors, &self.laws, &self.settings)
+    }
+}
+
+/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, are not to be longer than their
+/// accuracy, however they sink.
+fn lower_end(record: &Collision) -> f64 {
+    let Tolerances { target_gap, accuracy, .. } = record.tolerances;
+    if record.connector().is_some() { -ROPE_SHARE * accuracy } else { target_gap - accuracy }
+}
+
+/// Acceleration [m/s^2] of a record's gap without the forces of rows.
+pub(crate) fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    offset_under(region, record, &stage.accelerations)
+}
+
+/// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
+fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
+    let sides = [record.parties.primary.body, record.parties.normal.body];
+    let spins =
+        sides.map(|body| region.place(body).map_or(Spin::default(), |place| spin(accelerations[place])));
+    record.motion.kinematics.acceleration(&spins[0], &spins[1])
+}
+
+/// Largest acceleration [m/s^2] of the centre of a record's bodies without the forces of rows.
+fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    let linear = places_of(region, record).map(|place| spin(stage.accelerations[place]).linear.length());
+    linear.fold(0.0, f64::max)
+}
+
+/// Places of the movable bodies of a record.
+fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item = usize> + use<'a> {
+    let bodies = [record.parties.primary.body, record.parties.normal.body];
+    bodies.into_iter().filter_map(|body| region.place(body))
+}
+
+fn spin([x, y, angular]: [f64; 3]) -> Spin {
+    Spin { linear: DVec2::new(x, y), angular }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::RigidParts;
+    use crate::rigid::event::events::EventWork;
+    use crate::rigid::motion::flyer::FlightLaw;
+    use crate::rigid::test_scene::{FINE, resting_discs};
+    use halfgap_collision::{Body, BodyState};
+    use halfgap_geometry::Shape;
+
+    /// Whether a beam on two posts holds a disc, too, that lies against it from below, comes away at 1e-8 m/s, and is pushed up with
+    /// an acceleration [m/s^2].
+    fn beam_holds_disc_below(push: f64) -> bool {
+        const GAP: f64 = FINE.tolerances.target_gap;
+        let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
+        let post = |x: f64| {
+            let tall = shape(Shape::block(0.2, 1.0));
+            let post = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
+            let position = DVec2::new(x, -0.5 - GAP);
+            (post, FlightLaw::default(), BodyState { position, ..BodyState::default() })
+        };
+        let mover = |shape: Shape, y: f64, acceleration: f64| {
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 3.0, elasticity: 0.0 };
+            let law = FlightLaw { acceleration: DVec2::new(0.0, acceleration), ..FlightLaw::default() };
+            (body, law, BodyState { position: DVec2::new(0.0, y), ..BodyState::default() })
+        };
+        let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
+        let disc = mover(shape(Shape::disc(0.1)), -0.1 - GAP, push);
+        let bodies = vec![post(-1.0), post(1.0), beam, disc];
+        let parts = RigidParts { bodies, ..RigidParts::default() };
+        let mut system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it rests");
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(2));
+        let position = system.flyer(BodyId(3)).state_at(system.now).position;
+        let leaving = BodyState { position, velocity: DVec2::new(0.0, -1e-8), ..BodyState::default() };
+        system.flyer_mut(BodyId(3)).fly_from(Time::ZERO, leaving);
+        let EventWork { region, settling, .. } = &mut *work;
+        region.at_start = true;
+        system.collect_region(region, &[BodyId(2), BodyId(3)], system.now);
+        region.at_start = false;
+        let touch = |record: &&Collision| record.involves_body(BodyId(3));
+        let touch = region.records.iter().find(touch).and_then(Touch::of).expect("they touch");
+        settling.expect(region.records.iter().map(|_| None));
+        let mut stage = std::mem::take(&mut system.stage);
+        system.settle(region, settling, &mut stage, system.now, true).expect("it rests");
+        assert!(settling.held.len() >= 2, "the posts hold the beam");
+        settling.holds_touch(touch)
+    }
+
+    #[test]
+    fn what_is_left_of_a_pull_across_the_normal_presses_nothing() {
+        // A block falls along two walls that it just fits between, and that narrow by rounding.
+        let body = |shape: Result<Shape, _>, inverse: f64| Body {
+            shape: shape.expect("a fine size"),
+            inverse_mass: inverse,
+            inverse_moment: inverse,
+            elasticity: 0.0,
+        };
+        let at = |x: f64, angle: f64| {
+            let position = DVec2::new(x, 0.0);
+            BodyState { position, angle, ..BodyState::default() }
+        };
+        let wall = |side: f64| {
+            let apart = 1.0 + FINE.tolerances.target_gap;
+            (body(Shape::block(1.0, 8.0), 0.0), FlightLaw::default(), at(side * apart, -1e-14 * side))
+        };
+        let fall = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
+        let block = (body(Shape::block(1.0, 1.0), 1.0), fall, at(0.0, 0.0));
+        let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
+        let system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it falls");
+        assert!(system.group_of(BodyId(2)).is_none(), "nothing holds it");
+    }
+
+    #[test]
+    fn what_opens_as_slowly_as_what_rests_is_let_go_where_contacts_take_turns() {
+        let mut system = resting_discs(&[0.0]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(1));
+        let EventWork { region, settling, .. } = &mut *work;
+        system.collect_region(region, &[BodyId(1)], system.now);
+        let mut stage = std::mem::take(&mut system.stage);
+        for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
+            region.is_hasty = is_hasty;
+            region.records[0].motion.normal_velocity = share * system.rest_speed();
+            settling.expect([None].into_iter());
+            system.settle(region, settling, &mut stage, system.now, false).expect("it rests");
+            assert_eq!(settling.held.len(), rows, "{share} of what counts as rest, hasty: {is_hasty}");
+        }
+    }
+
+    #[test]
+    fn what_others_keep_from_coming_back_does_not_hop() {
+        assert!(beam_holds_disc_below(1.0));
+        // The beam would come down on it at once, but for the posts.
+        assert!(!beam_holds_disc_below(1e-7));
+    }
+}

@@ -1,0 +1,272 @@
+//! The problem of an event's candidates: its solvers and buffers, what is expected of it, and which rows come out of it.
+//!
+//! Which rows are candidates, and which of them are held, is decided in `settle`.
+
+use super::levers::Levers;
+use crate::rigid::event::region::{Region, Touch};
+use crate::rigid::report::RowForce;
+use crate::rigid::step::rows::HeldRow;
+use halfgap_collision::BodyId;
+use halfgap_contact::{Auto, Inertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
+
+/// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares: that of rows which
+/// move by what counts as rest. What crushes a body is of the order of 1.
+pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
+
+/// Residual that is then accepted, in units of the largest acceleration: the answer only says which rows to hold.
+const LENIENT_RESIDUAL: f64 = 1e-6;
+
+/// Solves for contact forces, with its buffers.
+#[derive(Debug)]
+pub(crate) struct Settling {
+    pub(super) problem: Problem,
+    pub(super) solution: Solution,
+    solver: Auto,
+    /// For contacts that contradict each other by more than rounding, but by little.
+    lenient: Auto,
+    /// Records that enter the problem.
+    pub(super) candidates: Vec<usize>,
+    /// Records left out of it because rows seemed to work against each other.
+    pub(super) dropped: Vec<usize>,
+    /// Contacts left out of it because they hold by next to no lever: they may come as near as what grazes.
+    pub(super) passing: Vec<Touch>,
+    pub(super) levers: Levers,
+    /// Whether each record of the region is likely to carry a force, if that is known.
+    likely: Vec<Option<bool>>,
+    /// Records that opened in spite of all that presses on them when their low hops were stilled: they leave.
+    leaving: Vec<bool>,
+    /// Force [N] of each in the last solve of the event, if it was in it; before the first that at which its contact was cut.
+    forces: Vec<Option<f64>>,
+    /// Contacts that were cut in the event, sorted, with their forces [N].
+    ended: Vec<(Touch, f64)>,
+    /// What is known of the candidates, as the solver is told.
+    guess: WarmStart,
+    /// The rows to be held, with the record of each.
+    pub(crate) held: Vec<(usize, HeldRow)>,
+    /// The contacts among them, sorted.
+    pub(super) touches: Vec<Touch>,
+    pub(super) laws: Vec<usize>,
+    /// Loads of the region's bodies [N].
+    pub(super) gross: Vec<f64>,
+    /// Accelerations of the region's bodies under the forces of the candidates.
+    pub(super) pushed: Vec<[f64; 3]>,
+    /// Bodies as the problem numbers them.
+    pub(super) bodies: Vec<halfgap_contact::BodyId>,
+}
+
+impl Default for Settling {
+    fn default() -> Self {
+        let settings = Settings {
+            // Nearly redundant contacts that contradict each other get modest forces.
+            contradiction: halfgap_contact::Contradiction::LeastSquares,
+            // The rows that carry force are held, and had better not depend on each other.
+            selection: halfgap_contact::ForceSelection::Vertex,
+            ..Settings::default()
+        };
+        let solver = |settings| Auto::new(settings).expect("the settings are valid");
+        let lenient =
+            Settings { inconsistency: SMALL_CONTRADICTION, natural_residual: LENIENT_RESIDUAL, ..settings };
+        Self {
+            problem: Problem::new(),
+            solution: Solution::new(),
+            solver: solver(settings),
+            lenient: solver(lenient),
+            candidates: Vec::new(),
+            dropped: Vec::new(),
+            passing: Vec::new(),
+            levers: Levers::default(),
+            likely: Vec::new(),
+            leaving: Vec::new(),
+            forces: Vec::new(),
+            ended: Vec::new(),
+            guess: WarmStart::new(),
+            held: Vec::new(),
+            touches: Vec::new(),
+            laws: Vec::new(),
+            gross: Vec::new(),
+            pushed: Vec::new(),
+            bodies: Vec::new(),
+        }
+    }
+}
+
+impl Clone for Settling {
+    /// Buffers hold nothing worth copying.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Settling {
+    /// Solves for the forces of the candidates, beginning with those that are likely to carry some, and notes which do.
+    pub(super) fn solve_strictly(&mut self) -> Result<(), SolveError> {
+        if self.forces.is_empty() {
+            self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
+        } else {
+            self.guess.guess_forces(self.candidates.iter().map(|&index| self.forces[index]));
+        }
+        self.solver
+            .solve_from(&self.problem, &self.guess, &mut self.solution)
+            .or_else(|_| self.solver.solve(&self.problem, &mut self.solution))?;
+        self.forces.resize(self.likely.len(), None);
+        for (place, &index) in self.candidates.iter().enumerate() {
+            self.forces[index] = Some(self.solution.force[place]);
+        }
+        Ok(())
+    }
+
+    /// Expects those records of a region to carry a force that do so already.
+    pub(crate) fn expect(&mut self, likely: impl Iterator<Item = Option<bool>>) {
+        self.likely.clear();
+        self.likely.extend(likely);
+        self.leaving.clear();
+        self.leaving.resize(self.likely.len(), false);
+        self.forces.clear();
+    }
+
+    /// Lets those held records open from now on that do so, however low they hop.
+    pub(crate) fn let_leave(&mut self, opens: impl Fn(usize) -> bool) {
+        for &(record, _) in &self.held {
+            self.leaving[record] |= opens(record);
+        }
+    }
+
+    pub(super) fn leaves(&self, record: usize) -> bool {
+        self.leaving.get(record).is_some_and(|leaves| *leaves)
+    }
+
+    /// Expects the records of a region to carry the forces at which their contacts were cut, if there were any.
+    pub(crate) fn expect_forces(&mut self, region: &Region, ended: &[RowForce]) {
+        self.ended.clear();
+        self.ended
+            .extend(ended.iter().filter_map(|row| Some((Touch::new(row.bodies, row.features?), row.force))));
+        if self.ended.is_empty() {
+            return;
+        }
+        self.ended.sort_unstable_by_key(|(touch, _)| *touch);
+        self.forces.extend(region.records.iter().map(|record| {
+            let touch = Touch::of(record)?;
+            let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
+            Some(self.ended[place].1)
+        }));
+    }
+
+    /// Lets in again some of what was left out; true if there is any.
+    pub(super) fn take_back(&mut self, is_wanted: impl Fn(usize) -> bool) -> bool {
+        let before = self.dropped.len();
+        let Self { candidates, dropped, .. } = self;
+        dropped.retain(|&index| {
+            let is_wanted = is_wanted(index);
+            candidates.extend(is_wanted.then_some(index));
+            !is_wanted
+        });
+        candidates.sort_unstable();
+        dropped.len() < before
+    }
+
+    pub(super) fn solve_leniently(&mut self) -> Result<(), SolveError> {
+        self.lenient.solve(&self.problem, &mut self.solution)
+    }
+
+    /// True if a contact was left out because it holds by next to no lever.
+    pub(crate) fn lets_pass(&self, touch: Touch) -> bool {
+        self.passing.contains(&touch)
+    }
+
+    /// True if a contact is held from now on.
+    pub(crate) fn holds_touch(&self, touch: Touch) -> bool {
+        self.touches.binary_search(&touch).is_ok()
+    }
+
+    pub(super) fn list_touches(&mut self) {
+        self.touches.clear();
+        self.touches.extend(self.held.iter().filter_map(|(_, row)| row.touch()));
+        self.touches.sort_unstable();
+    }
+
+    /// Solves another problem with the same solver.
+    pub(crate) fn solve(&mut self, problem: &Problem) -> Result<(), SolveError> {
+        self.solver
+            .solve(problem, &mut self.solution)
+            .or_else(|_| self.lenient.solve(problem, &mut self.solution))
+    }
+
+    /// Acceleration [m/s^2] with which the only candidate would close without a force.
+    pub(crate) fn closing_acceleration(&self) -> Option<f64> {
+        match self.problem.offset() {
+            [offset] if *offset < 0.0 => Some(-offset),
+            _ => None,
+        }
+    }
+
+    /// Adds what the forces of the last solve, those of some records of a region, move its bodies by: M^-1 J^T f.
+    pub(crate) fn add_responses(
+        &self,
+        region: &Region,
+        records: &[usize],
+        inertia: impl Fn(BodyId) -> Inertia,
+        sums: &mut [[f64; 3]],
+    ) {
+        for (&index, force) in records.iter().zip(&self.solution.force) {
+            let record = &region.records[index];
+            let j = &record.motion.kinematics.jacobian;
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            for (side, body) in sides.into_iter().enumerate() {
+                let Some(place) = region.place(body) else { continue };
+                let Inertia { inverse_mass, inverse_moment } = inertia(body);
+                for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
+                    sums[place][k] += weight * j[3 * side + k] * force;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_contact::Row;
+
+    #[test]
+    fn what_is_cut_is_expected_to_carry_its_force_again() {
+        let mut system = resting_discs(&[0.0, 1.5]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.dissolve(BodyId(1));
+        system.collect_region(&mut work.region, &[BodyId(2), BodyId(1)], system.now);
+        work.settling.expect([None, None].into_iter());
+        work.settling.expect_forces(&work.region, &system.changes.end);
+        let [None, Some(force)] = work.settling.forces[..] else { panic!("{:?}", work.settling.forces) };
+        assert!((force - 9.81).abs() < 1e-9, "{force} N");
+    }
+
+    #[test]
+    fn the_solver_begins_with_what_is_held() {
+        let mut system = resting_discs(&[0.0, 1.5]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [record] = work.region.records[..] else { panic!("one disc, one contact") };
+        assert_eq!(system.is_likely(&record), Some(true));
+        // Another contact, of which nothing is known, carries a force too.
+        let settling = &mut work.settling;
+        settling.problem.clear();
+        settling.candidates.clear();
+        settling.expect([system.is_likely(&record), None].into_iter());
+        for index in 0..2 {
+            let body = settling.problem.add_body(system.inertia(BodyId(1))).expect("a fine inertia");
+            let row = Row::new(body, [0.0, 1.0, 0.0], -9.81);
+            settling.problem.add_row(&row).expect("a row of finite numbers");
+            settling.candidates.push(index);
+        }
+        let mut guess = WarmStart::new();
+        settling.solve_strictly().expect("independent rows");
+        guess.guess([Some(true), None]);
+        assert_eq!(settling.guess, guess);
+        // The next solve of the event goes on from the forces found.
+        let found = settling.forces.clone();
+        assert!(found.iter().all(|force| force.is_some_and(|force| force > 0.0)));
+        settling.solve_strictly().expect("independent rows");
+        guess.guess_forces(found);
+        assert_eq!(settling.guess, guess);
+    }
+}

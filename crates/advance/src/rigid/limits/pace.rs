@@ -1,0 +1,130 @@
+//! Pace: how far a group comes with its steps. One that all but stands still, and of which nothing is heard, must not go on
+//! for days.
+//!
+//! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres pass each other
+//! closely. So only steps without an impact count, many of them, and only if the time that is to be simulated would take a
+//! hopeless number of such.
+//!
+//! A group may also be hasty because contacts that count as resting take turns: to hold one brings what it opens by to rest, and
+//! another, moved along, pulls or closes. Then those that open are let go.
+
+use crate::rigid::event::region::Region;
+use crate::rigid::step::group::Group;
+use crate::rigid::step::segment::StepFailure;
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::BodyId;
+
+/// Steps in succession over which the pace is taken.
+const STEPS: u32 = 10_000;
+/// No run is waited for that would take so many steps.
+const HOPELESS: f64 = 1e10;
+
+/// Steps in succession over which a group is found to be hasty.
+const FEW_STEPS: u32 = 64;
+/// It is, if they are shorter in the mean than such a part of the resolution time.
+const HASTE: f64 = 1e-4;
+
+/// The steps that a group has made lately, noted for its leader.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pace {
+    all: Count<STEPS>,
+    few: Count<FEW_STEPS>,
+    is_hasty: bool,
+}
+
+/// Counts steps up to a number of them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count<const STEPS: u32> {
+    /// When counting began, if it has.
+    since: Option<Time>,
+    steps: u32,
+}
+
+impl<const STEPS: u32> Count<STEPS> {
+    /// Notes a step that begins at a time; every so often the mean length [s] of the last ones.
+    fn note(&mut self, start: Time) -> Option<f64> {
+        let since = *self.since.get_or_insert(start);
+        if self.steps < STEPS {
+            self.steps += 1;
+            return None;
+        }
+        *self = Self { since: Some(start), steps: 1 };
+        Some(start.since(since) / f64::from(STEPS))
+    }
+}
+
+impl RigidSystem {
+    /// Tells for how long [s] the system will be advanced in all. With that, steps are told that will never come to an end
+    /// ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for ever.
+    pub fn expect(&mut self, duration: f64) {
+        self.horizon = duration;
+    }
+
+    /// Notes the step that a group has begun, and fails if such steps have become hopeless.
+    pub(crate) fn note_pace(&mut self, group: &Group) -> Result<(), StepFailure> {
+        let pace = &mut self.paces[group.leader().index()];
+        if let Some(mean) = pace.few.note(group.start) {
+            pace.is_hasty = mean < HASTE * self.settings.resolution_time;
+        }
+        match pace.all.note(group.start).filter(|mean| mean * HOPELESS < self.horizon) {
+            Some(mean) => Err(StepFailure::Crawls(mean)),
+            None => Ok(()),
+        }
+    }
+
+    /// Bodies have taken part in an impact: something happens.
+    pub(crate) fn forget_paces(&mut self, bodies: &[BodyId]) {
+        bodies.iter().for_each(|body| self.paces[body.index()] = Pace::default());
+    }
+
+    /// True if some body of a region has led a hasty group; it is then forgotten.
+    pub(crate) fn take_haste(&mut self, region: &Region) -> bool {
+        let mut any = false;
+        for body in &region.bodies {
+            any |= std::mem::take(&mut self.paces[body.index()].is_hasty);
+        }
+        any
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::test_scene::resting_discs;
+
+    /// Whether a disc that makes 64 steps in succession of a length [s] is hasty, and whether it still is when that is asked anew.
+    fn haste(step: f64) -> [bool; 2] {
+        let mut system = resting_discs(&[0.0]);
+        let mut work = system.work.take().expect("the start has made it");
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        for _ in 0..=FEW_STEPS {
+            system.note_pace(&group).expect("not hopeless yet");
+            group.start = group.start.plus(step);
+        }
+        [system.take_haste(&work.region), system.take_haste(&work.region)]
+    }
+
+    #[test]
+    fn a_group_is_hasty_whose_steps_are_short_beside_the_resolution_time() {
+        let soon = resting_discs(&[0.0]).settings.resolution_time;
+        assert_eq!(haste(0.5 * HASTE * soon), [true, false]);
+        assert_eq!(haste(2.0 * HASTE * soon), [false, false]);
+    }
+
+    #[test]
+    fn the_mean_is_that_of_the_steps_since_it_was_last_told() {
+        let mut pace = Count::<STEPS>::default();
+        let mut told = Vec::new();
+        for step in 0..=2 * STEPS {
+            // The second half at a tenth of the pace.
+            let tenths = if step < STEPS { 10 * step } else { 9 * STEPS + step };
+            told.extend(pace.note(Time::from_seconds(0.1 * f64::from(tenths))));
+        }
+        assert!(
+            matches!(told[..], [first, second] if (first - 1.0).abs() < 1e-12 && (second - 0.1).abs() < 1e-12),
+            "{told:?}"
+        );
+    }
+}

@@ -1,0 +1,113 @@
+//! Contacts that fire again and again without time going by: they are counted, stopped without elasticity, lowered (see
+//! `rules`), and in the end the advance is stuck.
+
+use crate::rigid::error::{AdvanceError, Between};
+use crate::rigid::search::pairs::PairId;
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+
+/// A pair that collides more often than this without time going by is stopped without elasticity.
+pub(crate) const CALM_REPEATS: u32 = 20;
+/// A pair may collide so many times without time going by before the advance is stuck.
+const MOST_REPEATS: u32 = 100;
+/// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
+const SAME_TIME: f64 = 4.0;
+
+impl RigidSystem {
+    /// How often more than is calm a pair has fired at the present time.
+    pub(crate) fn repeats_beyond_calm(&self, pair: PairId) -> u32 {
+        let past = self.pairs.past(pair);
+        let is_now = past.last_contact.is_some_and(|last| is_same_time(last, self.now));
+        if is_now { past.repeats.saturating_sub(CALM_REPEATS) } else { 0 }
+    }
+
+    /// How often the contacts of a pair have been handled at the present time.
+    pub(crate) fn note_repeat(&mut self, pair: PairId) -> Result<u32, AdvanceError> {
+        let now = self.now;
+        let bodies = self.pairs.bodies(pair);
+        let entry = self.pairs.past_mut(pair);
+        let is_repeat = entry.last_contact.is_some_and(|last| is_same_time(last, now));
+        entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
+        entry.last_contact = Some(now);
+        let (events, [primary, normal]) = (entry.repeats, bodies);
+        if events > CALM_REPEATS {
+            self.last_insistent = Some(now);
+        }
+        if events > MOST_REPEATS {
+            let between = Between { primary, normal };
+            return Err(AdvanceError::Stuck { time: now.seconds(), between, events });
+        }
+        Ok(events)
+    }
+}
+
+/// True if no time has gone by from one event to the next.
+pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
+    later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::test_scene::FINE;
+    use crate::rigid::{FlightLaw, RigidParts};
+    use glam::DVec2;
+    use halfgap_collision::{Body, BodyId, BodyState};
+    use halfgap_geometry::{FeatureId, Shape};
+
+    /// Two elastic discs at their target gap that close with 2 m/s, and their pair.
+    fn meeting() -> (RigidSystem, PairId, [FeatureId; 2]) {
+        let disc = |side: f64| {
+            let shape = Shape::disc(0.5).expect("a fine radius");
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+            let position = DVec2::new(side * (0.5 + 0.5e-10), 0.0);
+            let state = BodyState { position, velocity: DVec2::new(-side, 0.0), ..BodyState::default() };
+            (body, FlightLaw::default(), state)
+        };
+        let parts = RigidParts { bodies: vec![disc(-1.0), disc(1.0)], ..RigidParts::default() };
+        let system = RigidSystem::new(parts, FINE, Time::from_seconds(1.0)).expect("nothing rests");
+        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
+        let features = [FeatureId(0), FeatureId(0)];
+        (system, pair, features)
+    }
+
+    #[test]
+    fn a_pair_that_fires_for_the_first_time_bounces() {
+        let (mut system, pair, features) = meeting();
+        // The start has seen it at its target: a moment later it has been elsewhere.
+        system.pairs.seen_mut(pair).clear();
+        assert!(system.handle_contact(pair, features).expect("one row"));
+        assert_eq!(system.last_impact.rows[0].rate_after, 2.0);
+    }
+
+    #[test]
+    fn a_pair_that_fires_again_and_again_without_time_going_by_is_stopped() {
+        let (mut system, pair, features) = meeting();
+        for _ in 0..=CALM_REPEATS {
+            system.note_repeat(pair).expect("not stuck yet");
+        }
+        assert!(system.handle_contact(pair, features).expect("one row"));
+        assert_eq!(system.last_impact.rows[0].rate_after, 0.0);
+        assert_eq!(system.ledger.captures, -1.0);
+    }
+
+    #[test]
+    fn a_pair_that_does_not_stop_then_is_stuck() {
+        let (mut system, pair, _) = meeting();
+        for count in 0..=MOST_REPEATS {
+            assert_eq!(system.note_repeat(pair), Ok(count));
+        }
+        let between = Between { primary: BodyId(0), normal: BodyId(1) };
+        let stuck = AdvanceError::Stuck { time: 1.0, between, events: MOST_REPEATS + 1 };
+        assert_eq!(system.note_repeat(pair), Err(stuck));
+    }
+
+    #[test]
+    fn time_that_goes_by_ends_the_count() {
+        let (mut system, pair, _) = meeting();
+        for _ in 0..3 * MOST_REPEATS {
+            system.now = system.now.plus(1e-12);
+            assert_eq!(system.note_repeat(pair), Ok(0));
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Storms: more events in a short time than forces can resolve. They are ended by an impact without elasticity.
+//!
+//! The resolution time is what acceleration takes to make `velocity_tol`; without acceleration, what the fastest body takes
+//! to cross the target gap. Events between which bodies go far beyond the target gap are resolved in space all the same: many
+//! more of them are no storm, and more still where much energy would be lost. A light body that heavy ones close on takes up
+//! all their energy before it turns them back, and to do so it must hit them about as often as the root of the masses' ratio.
+
+use crate::rigid::event::region::Region;
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{BodyId, Tolerances};
+
+/// Events of a body within the resolution time that are always allowed, and those for each row beyond them.
+const CALM_EVENTS: usize = 20;
+const CALM_EVENTS_PER_ROW: usize = 10;
+/// An event is wide if its bodies came towards each other by more than so many target gaps since the one before: a light body between
+/// heavy ones that close on it rattles ever faster until it has turned them back. Of wide ones so many times as many are allowed.
+const WIDE: f64 = 10.0;
+const CALM_WIDE_EVENTS: usize = 50;
+/// Events between which bodies come towards each other by less than such a part of the target zone, and which follow each other in
+/// less than such a part of the time in which what is usually fast crosses the smallest body, are counted on, however long they go
+/// on: forces that nothing at the start foretold press contacts together, of which now the one, now the other gives way.
+const STILL: f64 = 1e-6;
+const AT_ONCE: f64 = 1e-8;
+/// An event is costly if what closes would lose more than such a part of the energy of all that takes part. Of wide and costly
+/// ones so many times as many again are allowed.
+const COSTLY: f64 = 1e-3;
+const CALM_COSTLY_EVENTS: usize = 100;
+/// What counts for so many wide and costly ones.
+const NARROW: usize = CALM_WIDE_EVENTS * CALM_COSTLY_EVENTS;
+/// So many wide events are not looked at for what they would cost.
+const MANY: usize = 10 * CALM_COSTLY_EVENTS;
+
+/// What does not go farther in the resolution time than such a part of the target zone, and is not faster than so many times
+/// `velocity_tol`, is at rest in a storm.
+const STORM_WAY: f64 = 1e-3;
+const STORM_SLOW: f64 = 10.0;
+
+/// Recent events of one body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Recent {
+    /// When counting began, if it has.
+    since: Option<Time>,
+    /// Events since then: wide and costly ones as one, others as so many of them.
+    events: usize,
+    /// The last event, if there was any.
+    last: Option<Time>,
+}
+
+impl RigidSystem {
+    /// Rates [m/s] up to which a row is at rest in a storm: contacts of which now the one, now the other is left to open by rounding,
+    /// though they are pressed, go on for ever. With such a rate nothing gets out of the target zone before the storm is over.
+    pub(crate) fn storm_rest(&self) -> f64 {
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        let slow = (STORM_WAY * accuracy / self.settings.resolution_time).min(STORM_SLOW * velocity_tol);
+        slow.max(self.rest_speed())
+    }
+
+    /// Counts an event for the bodies of a region; true if it is one too many.
+    pub(crate) fn note_events(&mut self, region: &Region) -> bool {
+        let (now, window) = (self.now, self.settings.resolution_time);
+        let speed = region.records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
+        let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
+        let (wide, still) = (WIDE * target_gap, STILL * accuracy);
+        let at_once = AT_ONCE * self.settings.steps.length / self.settings.steps.speed;
+        // Of few events it does not matter.
+        let is_often = region.bodies.iter().any(|body| self.recent[body.index()].events > MANY);
+        let weight = if is_often && self.is_costly(region) { 1 } else { CALM_COSTLY_EVENTS };
+        let mut most = 0;
+        for &body in &region.bodies {
+            let recent = &mut self.recent[body.index()];
+            let wait = recent.last.map(|last| now.since(last));
+            let way = wait.map(|wait| wait * speed);
+            let is_still = way.is_some_and(|way| way < still) && wait.is_some_and(|wait| wait < at_once);
+            if !is_still && recent.since.is_none_or(|since| now.since(since) > window) {
+                *recent = Recent { since: Some(now), events: 0, ..*recent };
+            }
+            let is_wide = way.is_none_or(|way| way > wide);
+            recent.events += if is_wide { weight } else { NARROW };
+            recent.last = Some(now);
+            most = most.max(recent.events);
+        }
+        let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * region.records.len();
+        let is_storm = most > NARROW * calm;
+        if is_storm {
+            self.counts.storms += 1;
+            for &body in &region.bodies {
+                self.recent[body.index()].events = 0;
+            }
+        }
+        is_storm
+    }
+
+    /// True if what closes in a region has a good part of the kinetic energy of its bodies.
+    fn is_costly(&self, region: &Region) -> bool {
+        let inertia = |body: BodyId| (!body.is_world()).then(|| self.flyer(body).body());
+        let closing = region.records.iter().map(|record| {
+            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let inverse_mass: f64 =
+                bodies.into_iter().filter_map(inertia).map(|body| body.inverse_mass).sum();
+            let rate = record.motion.normal_velocity.min(0.0);
+            if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
+        });
+        let moving = region.bodies.iter().filter(|&&body| self.is_movable(body)).map(|&body| {
+            let velocity = self.flyer(body).state_at(self.now).velocity;
+            0.5 * velocity.length_squared() / self.flyer(body).body().inverse_mass
+        });
+        closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
+    }
+}

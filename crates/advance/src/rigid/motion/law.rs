@@ -1,0 +1,117 @@
+//! What a force law is: forces and torques on bodies as a function of time and state.
+//!
+//! Uniform acceleration and linear damping are not laws of this kind: they belong to the [`FlightLaw`] of a body, whose
+//! motion they leave in closed form. A body on which a [`ForceLaw`] acts is integrated.
+//!
+//! [`FlightLaw`]: crate::rigid::FlightLaw
+
+use glam::DVec2;
+use halfgap_collision::{Anchor, BodyId, Moving};
+use std::fmt::Debug;
+
+/// Where all bodies are and how they move at one moment, for a law to read.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapshot<'a> {
+    /// Time [s].
+    pub time: f64,
+    /// Every body of the system; only those that the law names are sure to be up to date.
+    bodies: &'a [Moving],
+}
+
+impl<'a> Snapshot<'a> {
+    /// The bodies at a time [s], in the order of their ids.
+    #[must_use]
+    pub fn new(time: f64, bodies: &'a [Moving]) -> Self {
+        Self { time, bodies }
+    }
+
+    /// A body; the background rests at the origin.
+    #[must_use]
+    #[inline]
+    pub fn body(&self, body: BodyId) -> Moving {
+        if body.is_world() { Moving::BACKGROUND } else { self.bodies[body.index()] }
+    }
+}
+
+/// Force and torque on a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force at the centre of mass [N].
+    pub force: DVec2,
+    /// Torque about the centre of mass [N m].
+    pub torque: f64,
+}
+
+/// The sums of forces and torques, one for each body; what is added to a fixed body or the background has no effect.
+#[derive(Debug)]
+pub struct Wrenches<'a>(&'a mut [Wrench]);
+
+impl<'a> Wrenches<'a> {
+    /// To add to these sums, in the order of the bodies' ids.
+    pub fn new(sums: &'a mut [Wrench]) -> Self {
+        Self(sums)
+    }
+
+    /// Adds a force [N] that acts at an arm [m] from the body's centre of mass, both in world directions.
+    #[inline]
+    pub fn add_force(&mut self, body: BodyId, force: DVec2, arm: DVec2) {
+        if let Some(sum) = self.0.get_mut(body.index()) {
+            sum.force += force;
+            sum.torque += arm.perp_dot(force);
+        }
+    }
+
+    /// Adds a torque [N m].
+    #[inline]
+    pub fn add_torque(&mut self, body: BodyId, torque: f64) {
+        if let Some(sum) = self.0.get_mut(body.index()) {
+            sum.torque += torque;
+        }
+    }
+}
+
+/// A force law.
+///
+/// A law must not change branch inside a step: where it does, it says so by a switching function, whose sign changes are
+/// located like impacts.
+pub trait ForceLaw: Debug + Send + Sync {
+    /// What the law is called in messages and in the energy ledger.
+    fn name(&self) -> &str;
+
+    /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps; what is added to a
+    /// body that is not named is ignored, and refused where a world is built.
+    fn bodies(&self) -> &[BodyId];
+
+    /// Adds the forces and torques of this moment: a function of the snapshot alone, which is asked for as often as it takes, and not
+    /// in the order of time.
+    fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
+
+    /// Potential energy [J] of which the forces are the gradient; `None` if there is none: its work is then integrated.
+    fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
+        let _ = now;
+        None
+    }
+
+    /// The two points between which the law acts, for whoever shows it; `None` if there are no such.
+    fn ends(&self) -> Option<[Anchor; 2]> {
+        None
+    }
+
+    /// Length [m] over which the forces vary by as much as they are, where that may be less than bodies are large; `None`
+    /// if it may not.
+    fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
+        let _ = now;
+        None
+    }
+
+    /// How many switching functions the law has.
+    fn switches(&self) -> usize {
+        0
+    }
+
+    /// The value of a switching function; the forces are smooth while its sign does not change.
+    fn switch(&self, index: usize, now: &Snapshot<'_>) -> f64 {
+        let _ = (index, now);
+        1.0
+    }
+}

@@ -1,0 +1,209 @@
+//! A body's room to move: a fat box in the broad phase, and when the body could leave it.
+//!
+//! While a body stays in its box, only bodies whose boxes overlap can meet it. How fat a box is follows what it finds:
+//! many neighbours make it shrink, few make it grow, between bounds that depend on the body's size. A body in flight has most of
+//! its room ahead.
+
+use crate::rigid::motion::flyer::Flyer;
+use crate::rigid::motion::lane::Lane;
+use crate::rigid::motion::path::Path;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
+use halfgap_geometry::Aabb;
+
+/// More neighbours than this make a box shrink. Fewer cost more moves of boxes in a gas, more cost more predictions: from 8
+/// to 14 there is little between them.
+const MANY: usize = 10;
+/// Fewer neighbours than this make a box grow.
+const FEW: usize = 5;
+/// By how much a box grows or shrinks at a time.
+const FACTOR: f64 = 1.5;
+/// A box is set ahead of a body in flight by this part of its margin: a gas has a seventh fewer moves of boxes for it.
+const AHEAD: f64 = 0.6;
+/// A margin is at least this part of the body's reach, and at most so many times, beyond all coordinates: what flies off, or is small
+/// and far from all else, as a moon, would leave its boxes without end.
+const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
+const LARGEST_MARGIN: f64 = 1e80;
+
+/// The room a body has around the circle of its reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Room {
+    /// Distance [m] that the centre of mass may move from where the box was set, along either axis.
+    margin: f64,
+    reach: f64,
+    /// Bodies nearer than this [m] are neighbours.
+    skin: f64,
+}
+
+impl Room {
+    pub(crate) fn new(reach: f64, skin: f64) -> Self {
+        Self { margin: reach, reach, skin }
+    }
+
+    /// The box around the body at a time, with the room that it has.
+    pub(crate) fn fat_box(&self, lane: &Lane, flyer: &Flyer, time: Time) -> Aabb {
+        if lane.is_at_rest {
+            return flyer.body().shape.bounds_at(&flyer.moving_at(time).pose).grown(self.skin);
+        }
+        let center = match lane.flight_from(time) {
+            Some(path) => path.position + self.ahead(path.velocity),
+            None => {
+                let state = flyer.state_at(time);
+                // Of what does not fly only a bound on the speed is known: it has as much room on all sides.
+                let ahead = flyer.flight().map_or(DVec2::ZERO, |_| self.ahead(state.velocity));
+                state.position + ahead
+            }
+        };
+        Aabb::around_disc(center, self.reach + self.margin + self.skin)
+    }
+
+    /// By how much [m] the box of what flies is set ahead of the body.
+    fn ahead(&self, velocity: DVec2) -> DVec2 {
+        velocity.try_normalize().map_or(DVec2::ZERO, |direction| direction * (AHEAD * self.margin))
+    }
+
+    /// Fits the margin to the number of neighbours found.
+    pub(crate) fn adapt(&mut self, neighbours: usize) {
+        if neighbours > MANY {
+            self.margin = (self.margin / FACTOR).max(self.reach * SMALLEST_MARGIN);
+        } else if neighbours < FEW {
+            self.margin = (self.margin * FACTOR).min(self.reach * LARGEST_MARGIN);
+        }
+    }
+
+    /// A time before which the body surely stays in the given box; `None` if it stays for ever.
+    pub(crate) fn stays_until(&self, lane: &Lane, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
+        if lane.is_at_rest {
+            return None;
+        }
+        let core = fat_box.grown(-(self.reach + self.skin));
+        if core.min.cmpgt(core.max).any() {
+            // The tight box of a body that was at rest: it has no room to move in, not even to turn.
+            return Some(time);
+        }
+        if let Some(path) = lane.flight_from(time) {
+            return leaving_time(&path, &core).map(|wait| time.plus(wait));
+        }
+        let offset = flyer.offset(time);
+        let slack = || {
+            let position = flyer.path().state_at(offset).position;
+            (position - core.min).min(core.max - position).min_element().max(0.0)
+        };
+        match flyer.path() {
+            Path::Flight(flight) => {
+                let by_axes = damped_leaving_time(flight, offset, &core)?;
+                Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))
+            }
+            // What comes after the segment is another question.
+            Path::Dense(dense) if core.contains(&dense.center_box()) => None,
+            Path::Dense(dense) => {
+                let speed = dense.top_speed();
+                // What does not move stays, also where rounding puts it just outside.
+                (speed > 0.0).then(|| time.plus(slack() / speed))
+            }
+        }
+    }
+}
+
+/// When a point on a parabola first leaves a box, in seconds from its start.
+fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
+    let (x, v, a) = (path.position, path.velocity, path.acceleration);
+    if a == DVec2::ZERO {
+        // Straight on: along each axis towards one of two sides. What stands still along one goes to none.
+        let wait =
+            |low: f64, high: f64, v: f64| if v == 0.0 { f64::INFINITY } else { (low / v).max(high / v) };
+        let [along_x, along_y] =
+            [wait(core.min.x - x.x, core.max.x - x.x, v.x), wait(core.min.y - x.y, core.max.y - x.y, v.y)];
+        let wait = along_x.min(along_y).max(0.0);
+        return wait.is_finite().then_some(wait);
+    }
+    leaving_time_within(path, [a, a], core)
+}
+
+/// A time [s] before which a damped flight from an offset [s] surely stays in a box: its acceleration keeps its direction
+/// and dies away, so that along each axis the flight is between a straight line and a parabola.
+fn damped_leaving_time(flight: &Flight, offset: f64, core: &Aabb) -> Option<f64> {
+    let state = flight.state_at(offset);
+    let acceleration = flight.acceleration_at(offset);
+    let path = Polynomial { position: state.position, velocity: state.velocity, acceleration };
+    leaving_time_within(&path, [acceleration.min(DVec2::ZERO), acceleration.max(DVec2::ZERO)], core)
+}
+
+/// When a point first leaves a box at the earliest, if its accelerations [m/s^2] lie between a least and a greatest along
+/// each axis.
+fn leaving_time_within(path: &Polynomial, [least, greatest]: [DVec2; 2], core: &Aabb) -> Option<f64> {
+    let (x, v) = (path.position, path.velocity);
+    [
+        first_closing_time(core.max.x - x.x, -v.x, -greatest.x),
+        first_closing_time(x.x - core.min.x, v.x, least.x),
+        first_closing_time(core.max.y - x.y, -v.y, -greatest.y),
+        first_closing_time(x.y - core.min.y, v.y, least.y),
+    ]
+    .into_iter()
+    .flatten()
+    .min_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use halfgap_collision::BodyState;
+
+    const CORE: Aabb = Aabb { min: DVec2::new(-1.0, -2.0), max: DVec2::new(2.0, 5.0) };
+
+    fn leaves(velocity: DVec2, acceleration: DVec2) -> Option<f64> {
+        leaving_time(&Polynomial { position: DVec2::ZERO, velocity, acceleration }, &CORE)
+    }
+
+    #[test]
+    fn what_flies_off_leaves_few_boxes_however_fast_it_is() {
+        for distance in [1e6, 1e20, 1e50] {
+            let mut room = Room::new(0.5, 1e-9);
+            let (mut way, mut boxes) = (0.0, 0);
+            while way < distance && boxes < 1000 {
+                way += room.margin;
+                room.adapt(0);
+                boxes += 1;
+            }
+            assert!(boxes < 300, "{boxes} boxes on {distance} m");
+        }
+    }
+
+    #[test]
+    fn a_straight_path_leaves_by_the_side_it_comes_to_first() {
+        assert_eq!(leaves(DVec2::new(3.0, -4.0), DVec2::ZERO), Some(0.5));
+        assert_eq!(leaves(DVec2::new(-4.0, 4.0), DVec2::ZERO), Some(0.25));
+        assert_eq!(leaves(DVec2::new(0.0, 2.0), DVec2::ZERO), Some(2.5));
+        assert_eq!(leaves(DVec2::ZERO, DVec2::ZERO), None);
+    }
+
+    #[test]
+    fn a_damped_flight_stays_as_long_as_it_is_said_to() {
+        for (velocity, acceleration) in
+            [(DVec2::new(3.0, 4.0), DVec2::new(0.0, -9.81)), (DVec2::new(-0.5, 0.0), DVec2::new(2.0, -1.0))]
+        {
+            for rate in [1e-9, 0.05, 1.0, 30.0] {
+                let start = BodyState { velocity, ..BodyState::default() };
+                let flight = Flight::new(start, acceleration, rate, 0.0);
+                let leaving = damped_leaving_time(&flight, 0.0, &CORE).expect("it falls out");
+                let is_inside = |part: f64| {
+                    CORE.contains(&Aabb::around_disc(flight.state_at(part * leaving).position, 0.0))
+                };
+                assert!(leaving > 0.0 && (0..100).all(|step| is_inside(f64::from(step) / 100.0)));
+                // Where damping hardly bends the path, the time is that of the parabola.
+                let undamped = leaves(velocity, acceleration).expect("it falls out");
+                assert!(rate > 1e-6 || (leaving / undamped - 1.0).abs() < 1e-6, "{leaving} {undamped}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_path_that_is_all_but_straight_leaves_at_the_same_time() {
+        for velocity in [DVec2::new(3.0, -4.0), DVec2::new(-0.5, 2.0), DVec2::new(0.0, -1.0)] {
+            let straight = leaves(velocity, DVec2::ZERO).expect("it moves");
+            let bent = leaves(velocity, DVec2::new(1e-20, -1e-20)).expect("it moves");
+            assert!((straight - bent).abs() < 1e-15 * 4.0, "{straight} {bent}");
+        }
+    }
+}

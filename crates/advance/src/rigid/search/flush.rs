@@ -1,0 +1,137 @@
+//! Corners that pass over each other where two surfaces are flush.
+//!
+//! What rests has its target gap under it. A block on a fixed table and a cart beside it are both lifted by that, so that the
+//! block, as it slides from the table onto the cart, has its corner at the very height of the cart's: whether it runs against it
+//! is for the last digit to say. Where the two edges that lead away from the corners are parallel, and the one is to slide along
+//! the other, it does not.
+
+use super::pairs::PairId;
+use crate::rigid::event::region::Touch;
+use crate::rigid::system::RigidSystem;
+use glam::DVec2;
+use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
+use halfgap_geometry::{Edge, Feature, FeatureId};
+
+/// Angle [rad] between edges that are flush.
+const PARALLEL: f64 = 1e-6;
+/// Corners that meet are no farther from each other than so many target gaps.
+const NEAR: f64 = 4.0;
+/// What passes rises or sinks by less than this part of its way.
+const LEVEL: f64 = 1e-3;
+
+/// Pairs of features, of the lesser body first.
+type Passing = [Option<[FeatureId; 2]>; 4];
+
+/// A corner of a body in motion.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    id: FeatureId,
+    /// The edges that end and start there.
+    sides: [FeatureId; 2],
+    /// Their directions at the corner, along the outline, if they are straight.
+    directions: [Option<DVec2>; 2],
+    place: DVec2,
+    velocity: DVec2,
+}
+
+impl RigidSystem {
+    /// True if two features that fire are those of corners that pass over each other: the search leaves these alone from now
+    /// on.
+    pub(crate) fn passes_over(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
+        let is_left_alone = |rule: &FeatureRule| rule.features == features && rule.target.is_none();
+        if self.pairs.rules(pair).iter().any(is_left_alone) {
+            return false;
+        }
+        let bodies = self.pairs.bodies(pair);
+        let Some(passing) = self.passing_features(bodies, features) else { return false };
+        self.pairs.change_rules(pair, |rules| {
+            for features in passing.into_iter().flatten() {
+                // Of several rules for the same features the first counts.
+                rules.retain(|rule| rule.features != features);
+                rules.push(FeatureRule { features, target: None });
+            }
+        });
+        self.predict(pair);
+        true
+    }
+
+    /// True if a record is of corners that pass over each other.
+    pub(crate) fn is_passed_over(&self, record: &Collision) -> bool {
+        record.motion.normal_velocity < -self.rest_speed()
+            && Touch::of(record)
+                .is_some_and(|touch| self.passing_features(touch.bodies, touch.features).is_some())
+    }
+
+    /// The pairs of features that do not run against each other where two features meet, these among them: those of corners that
+    /// pass over each other.
+    fn passing_features(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<Passing> {
+        if bodies.iter().any(|&body| self.flyer(body).disc().is_some()) {
+            return None;
+        }
+        let corners = [0, 1].map(|side: usize| {
+            let moving = self.flyer(bodies[side]).moving_at(self.now);
+            self.corners_at(bodies[side], &moving, features[side])
+        });
+        let firsts = corners[0].iter().flatten();
+        let mut meetings =
+            firsts.flat_map(|first| corners[1].iter().flatten().map(move |second| [first, second]));
+        meetings.find_map(|[a, b]| {
+            let flush = self.flush_sides([a, b])?;
+            // Where one body lies over the other already, only the corners are in each other's way.
+            let is_ahead = flush[0] == flush[1];
+            let [side_a, side_b] = [a.sides[1 - flush[0]], b.sides[1 - flush[1]]];
+            let with_sides = [[a.id, side_b], [side_a, b.id], [side_a, side_b]];
+            let with_sides = with_sides.map(|features| is_ahead.then_some(features));
+            let passing = [Some([a.id, b.id]), with_sides[0], with_sides[1], with_sides[2]];
+            passing.contains(&Some(features)).then_some(passing)
+        })
+    }
+
+    /// The corner that a feature is, or those at the ends of the edge that it is.
+    fn corners_at(&self, body: BodyId, moving: &Moving, feature: FeatureId) -> [Option<Corner>; 2] {
+        let shape = &self.flyer(body).body().shape;
+        let corner = |id: FeatureId| {
+            let sides = shape.sides_of(id)?;
+            let Feature::Round(round) = shape.feature(id) else { return None };
+            let place = moving.pose.point_to_world(round.center);
+            let velocity = moving.velocity_at(place - moving.pose.position);
+            let direction = |side: FeatureId| match shape.edge_of(side) {
+                Edge::Line(line) => Some(moving.pose.vector_to_world(line.direction())),
+                Edge::Arc(_) => None,
+            };
+            Some(Corner { id, sides, directions: sides.map(direction), place, velocity })
+        };
+        match corner(feature) {
+            Some(corner) => [Some(corner), None],
+            None => shape.ends_of(feature).map(|end| end.and_then(corner)),
+        }
+    }
+
+    /// Which side of each of two corners that meet is flush with that of the other, if they are to pass over each other: that
+    /// which ends there or that which starts there.
+    fn flush_sides(&self, [first, second]: [&Corner; 2]) -> Option<[usize; 2]> {
+        let (gap, accuracy) = (self.settings.tolerances.target_gap, self.settings.tolerances.accuracy);
+        let (offset, velocity) = (first.place - second.place, first.velocity - second.velocity);
+        if offset.length_squared() > (NEAR * gap).powi(2) {
+            return None;
+        }
+        let sides = [[0, 0], [1, 1], [0, 1], [1, 0]];
+        sides.into_iter().find(|&[of_first, of_second]| {
+            let [Some(along_first), Some(along_second)] =
+                [first.directions[of_first], second.directions[of_second]]
+            else {
+                return false;
+            };
+            let is_parallel =
+                along_first.dot(along_second) < 0.0 && along_first.perp_dot(along_second).abs() <= PARALLEL;
+            // The inside of a body is on the left of its outline.
+            let outward = -along_second.perp();
+            let (height, rise) = (outward.dot(offset), outward.dot(velocity));
+            // From a corner where the edge ends, the way along it is back.
+            let inward = if of_second == 0 { -along_second } else { along_second };
+            let way = inward.dot(velocity);
+            let way = if of_first == of_second { way } else { way.abs() };
+            is_parallel && rise.abs() <= LEVEL * way && (-accuracy..=gap).contains(&height)
+        })
+    }
+}

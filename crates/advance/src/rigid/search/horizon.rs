@@ -1,0 +1,99 @@
+//! How far ahead of its bodies a pair is searched: what comes first changes their motions, and what would come later is looked
+//! for when it has not.
+
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::BodyId;
+
+/// A search goes beyond the first contact by this part of the time until it: where that is corrected, what comes close after is known.
+const BEYOND: f64 = 1.0 / 8.0;
+/// What ends no sooner than after this part of what is known of the motions is searched to the end: bounds on all of a step are at hand.
+const WORTHWHILE: f64 = 0.5;
+
+impl RigidSystem {
+    /// Until when, of the time up to `until`, two bodies are searched from a time on.
+    pub(super) fn searched_until(&self, bodies: [BodyId; 2], from: Time, until: Time) -> Time {
+        let [a, b] = bodies.map(|body| self.first_contacts[self.slot(body)]);
+        let ahead = |contact: Time| if contact > from { contact } else { Time::NEVER };
+        let wait = ahead(a).min(ahead(b)).since(from) * (1.0 + BEYOND);
+        if wait < WORTHWHILE * until.since(from) { from.plus(wait) } else { until }
+    }
+
+    /// Notes a contact of two bodies that was found by a search from a time on.
+    pub(super) fn note_contact_ahead(&mut self, bodies: [BodyId; 2], from: Time, contact: Time) {
+        for body in bodies.into_iter().filter(|&body| !self.pairs.is_fixed(body)) {
+            let slot = self.slot(body);
+            let first = &mut self.first_contacts[slot];
+            // One that has gone by without a change of the motion is none.
+            *first = if *first > from { contact.min(*first) } else { contact };
+        }
+    }
+
+    /// Forgets the contacts of a body, whose motion is another.
+    pub(super) fn forget_contacts_ahead(&mut self, body: BodyId) {
+        self.first_contacts[body.index()] = Time::NEVER;
+    }
+
+    /// Bodies of a group share an entry: what changes the motion of one changes that of all.
+    fn slot(&self, body: BodyId) -> usize {
+        self.groups.leader_of[body.index()].unwrap_or(body).index()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pairs::Prediction;
+    use super::*;
+    use crate::rigid::test_scene::FINE;
+    use crate::rigid::{FlightLaw, RigidParts, VelocityChange};
+    use crate::system::EventDriven;
+    use glam::DVec2;
+    use halfgap_collision::{Body, BodyState};
+    use halfgap_geometry::Shape;
+
+    const MOVING: BodyId = BodyId(0);
+    const NEAR: BodyId = BodyId(1);
+    const FAR: BodyId = BodyId(2);
+    /// When the moving square meets the near one and, without it, the far one [s].
+    const MEETS_NEAR: f64 = 0.05;
+    const MEETS_FAR: f64 = 0.2;
+
+    /// A square that moves at 1 m/s towards a small one, behind which there is a large one.
+    fn squares_in_a_row() -> RigidSystem {
+        let bodies = [(0.5, 0.0, 1.0), (0.05, 0.325, 0.0), (1.0, 0.95, 0.0)].map(|(side, x, speed)| {
+            let shape = Shape::block(side, side).expect("a fine size");
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+            let (position, velocity) = (DVec2::new(x, 0.0), DVec2::new(speed, 0.0));
+            (body, FlightLaw::default(), BodyState { position, velocity, ..BodyState::default() })
+        });
+        let parts = RigidParts { bodies: Vec::from(bodies), ..RigidParts::default() };
+        RigidSystem::new(parts, FINE, Time::ZERO).expect("nothing rests")
+    }
+
+    #[test]
+    fn what_would_come_after_the_first_contact_is_not_looked_for() {
+        let system = squares_in_a_row();
+        let known = |a, b| {
+            let pair = system.pairs.get(system.pairs.between(a, b).expect("they are near each other"));
+            (pair.prediction, pair.clear.seconds())
+        };
+        let (prediction, time) = known(MOVING, NEAR);
+        assert!(matches!(prediction, Prediction::Contact(_)) && (time - MEETS_NEAR).abs() < 1e-6);
+        let (prediction, clear) = known(MOVING, FAR);
+        assert!(prediction == Prediction::SearchOn && clear > MEETS_NEAR && clear < MEETS_FAR, "{clear}");
+    }
+
+    #[test]
+    fn where_the_first_contact_does_not_come_the_next_is_found() {
+        let mut system = squares_in_a_row();
+        let away = VelocityChange { body: NEAR, velocity: DVec2::new(0.0, 100.0), angular_velocity: 0.0 };
+        system.intervene(Time::ZERO, &[away]).expect("nothing touches");
+        let impact = loop {
+            let handled = system.handle_next().expect("nothing is in the way");
+            if let Some(handled) = handled.filter(|handled| handled.impact) {
+                break handled.time.seconds();
+            }
+        };
+        assert!((impact - MEETS_FAR).abs() < 1e-6, "{impact} s");
+    }
+}

@@ -1,0 +1,348 @@
+//! What may happen next: which bodies are near each other, and when pairs of them come into contact.
+
+use super::pairs::{Link, PairId, Prediction};
+use crate::queue::SourceId;
+use crate::rigid::motion::lane::{Lane, LaneKind};
+use crate::rigid::motion::path::Path;
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use halfgap_collision::{
+    BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, SearchSettings, Tolerances,
+    disc_contact,
+};
+use halfgap_geometry::GapSample;
+
+/// One search looks at most this far ahead [s]: bounds over the span stay finite.
+pub(crate) const LONGEST_SPAN: f64 = 1e6;
+
+impl RigidSystem {
+    pub(crate) fn set_up_boxes(&mut self) {
+        for body in self.bodies() {
+            if !self.loners[body.index()] {
+                self.place_box(body);
+            }
+        }
+        for body in self.bodies() {
+            if !self.loners[body.index()] && self.is_movable(body) {
+                self.find_neighbours(body);
+            }
+        }
+    }
+
+    /// Gives a body that goes on as before a box of its own.
+    fn place_box(&mut self, body: BodyId) {
+        let (lane, flyer) = (&self.lanes[body.index()], &self.flyers[body.index()]);
+        let fat_box = self.rooms[body.index()].fat_box(lane, flyer, self.now);
+        self.broad.set(body, fat_box);
+        self.predict_leaving(body);
+    }
+
+    /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
+    pub(crate) fn renew_stay(&mut self, body: BodyId) {
+        self.lanes[body.index()].follow(&self.flyers[body.index()]);
+        self.forget_contacts_ahead(body);
+        self.predict_leaving(body);
+    }
+
+    fn predict_leaving(&mut self, body: BodyId) {
+        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
+        let lane = &mut self.lanes[body.index()];
+        let fat_box = self.broad.bounds(body);
+        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.now));
+        lane.stay = stay.unwrap_or(Time::NEVER);
+        match stay {
+            Some(time) => self.queue.set(SourceId(body.0), time),
+            None => self.queue.clear(SourceId(body.0)),
+        }
+    }
+
+    /// Pairs the body with all whose boxes overlap its own, and with no others.
+    fn find_neighbours(&mut self, body: BodyId) {
+        let Some(fat_box) = self.broad.bounds(body).copied() else { return };
+        let mut near = std::mem::take(&mut self.neighbours);
+        self.broad.find_overlapping(&fat_box, &mut near);
+        self.marks.begin(self.flyers.len());
+        near.iter().for_each(|&other| self.marks.set(other));
+        self.links.clear();
+        self.links.extend_from_slice(self.pairs.of_body(body));
+        for index in 0..self.links.len() {
+            let Link { pair, other } = self.links[index];
+            // What is left marked is new.
+            if !self.marks.take(other) {
+                self.note_prediction(pair, (Prediction::Quiet, self.now));
+                self.pairs.remove(pair);
+            }
+        }
+        near.retain(|&other| self.marks.take(other));
+        near.retain(|&other| other != body && self.may_collide(body, other));
+        near.sort_unstable();
+        for &other in &near {
+            self.pairs.add(body, other, self.now);
+        }
+        self.rooms[body.index()].adapt(self.pairs.of_body(body).len());
+        self.neighbours = near;
+    }
+
+    fn may_collide(&self, a: BodyId, b: BodyId) -> bool {
+        let any_movable = self.is_movable(a) || self.is_movable(b);
+        any_movable && self.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
+    }
+
+    /// When the present segment of a body ends; `None` for a flight.
+    pub(crate) fn segment_end(&self, body: BodyId) -> Option<Time> {
+        if body.is_world() { None } else { self.group_of(body).map(|group| group.end()) }
+    }
+
+    /// Until when the present motion of a body is known and near.
+    fn known_until(&self, body: BodyId) -> Time {
+        let stay = self.lanes[body.index()].stay;
+        self.segment_end(body).map_or(stay, |end| stay.min(end))
+    }
+
+    /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
+    pub(crate) fn predict(&mut self, pair: PairId) {
+        let [a, b] = self.pairs.bodies(pair);
+        let from = self.pairs.get(pair).clear.max(self.now);
+        let disc = self.disc_at(a, from);
+        self.predict_from(from, disc.as_ref(), Link { pair, other: b });
+    }
+
+    /// Searches from a time on for the next contact of a pair, of whose one body is known how it flies if it is a disc.
+    #[inline]
+    fn predict_from(&mut self, from: Time, disc: Option<&DiscAt>, link: Link) {
+        match disc.and_then(|disc| self.look_at_discs(from, disc, link)) {
+            Some(outlook) => self.note_prediction(link.pair, outlook),
+            None => self.predict_any(link.pair, from),
+        }
+    }
+
+    /// A body from a time on, if it is a disc in flight.
+    #[inline]
+    fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
+        let lane = &self.lanes[body.index()];
+        let is_plain = lane.kind == LaneKind::Disc && self.settings.search.depth == 0.0;
+        let Lane { radius, halo, stay, .. } = *lane;
+        is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
+    }
+
+    /// The outlook of a pair of free discs; `None` of all else.
+    #[inline]
+    fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
+        let lane = &self.lanes[link.other.index()];
+        let tolerances = &self.settings.tolerances;
+        let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
+        if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
+            return None;
+        }
+        // What is in flight has no end but its box.
+        look_ahead(from, own.stay.min(lane.stay), |span| {
+            let other = (lane.parabola_from(from), lane.radius);
+            disc_contact((own.parabola, own.radius), other, span, tolerances)
+        })
+    }
+
+    /// Kept apart: most pairs do not come here.
+    #[inline(never)]
+    fn predict_any(&mut self, pair: PairId, from: Time) {
+        let [a, b] = self.pairs.bodies(pair);
+        let until = self.known_until(a).min(self.known_until(b));
+        if self.stays_apart(pair, from, until) {
+            self.note_prediction(pair, (Prediction::Quiet, until));
+            return;
+        }
+        self.drop_rules(pair, from);
+        let horizon = self.searched_until([a, b], from, until);
+        let search = |span| Some(self.search(pair, from, span));
+        let Some((prediction, clear)) = look_ahead(from, horizon, search) else { return };
+        match prediction {
+            Prediction::Contact(_) => self.note_contact_ahead([a, b], from, clear),
+            Prediction::Quiet if clear < until => {
+                return self.note_prediction(pair, (Prediction::SearchOn, clear));
+            }
+            Prediction::Quiet | Prediction::SearchOn => {}
+        }
+        self.note_prediction(pair, (prediction, clear));
+    }
+
+    /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near each other: in a
+    /// heap, where steps are short, few of those that are neighbours do.
+    fn stays_apart(&self, pair: PairId, from: Time, until: Time) -> bool {
+        let [a, b] = self.pairs.bodies(pair).map(|body| &self.lanes[body.index()]);
+        let span = until.since(from);
+        let any_integrated = a.kind == LaneKind::Other || b.kind == LaneKind::Other;
+        if self.pairs.get(pair).has_rules || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
+            return false;
+        }
+        let (p, q) = (a.course_from(from, span), b.course_from(from, span));
+        let far = p.radius + q.radius + a.reach + b.reach + self.settings.tolerances.target_gap;
+        (p.center - q.center).length_squared() > far * far
+    }
+
+    #[inline]
+    pub(crate) fn note_prediction(&mut self, pair: PairId, (prediction, clear): (Prediction, Time)) {
+        let entry = self.pairs.get_mut(pair);
+        let was_quiet = entry.prediction == Prediction::Quiet;
+        (entry.prediction, entry.clear) = (prediction, clear);
+        if prediction != Prediction::Quiet {
+            self.queue.set(self.pair_source(pair), clear);
+        } else if !was_quiet {
+            self.queue.clear(self.pair_source(pair));
+        }
+    }
+
+    /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
+    fn drop_rules(&mut self, pair: PairId, time: Time) {
+        let may_open = |rule: &FeatureRule| rule.target.is_some();
+        if !self.pairs.get(pair).has_rules || !self.pairs.rules(pair).iter().any(may_open) {
+            return;
+        }
+        let [a, b] = self.pairs.bodies(pair);
+        let (pose_a, pose_b) = (self.flyer(a).moving_at(time).pose, self.flyer(b).moving_at(time).pose);
+        let (shape_a, shape_b) = (&self.flyers[a.index()].body().shape, &self.flyers[b.index()].body().shape);
+        let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
+        let is_closed = |rule: &FeatureRule| {
+            let [feature_a, feature_b] = rule.features;
+            let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
+            let sample = GapSample::measure_unbounded(features[0], &pose_a, features[1], &pose_b);
+            rule.target.is_none() || sample.is_some_and(|sample| sample.gap < opened)
+        };
+        self.pairs.change_rules(pair, |rules| rules.retain(is_closed));
+    }
+
+    /// Searches for a contact of two bodies in the given span [s] from a time on.
+    fn search(&self, pair: PairId, from: Time, span: f64) -> Search {
+        let [a, b] = self.pairs.bodies(pair);
+        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
+        let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
+        let rules = self.pairs.rules(pair);
+        let target_gap = self.lanes[a.index()].halo.min(self.lanes[b.index()].halo);
+        let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
+        let sunk = self.may_have_sunk_by([a, b]);
+        let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
+        let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
+            let path_a: Path<'_> = flyer_a.path();
+            let path_b: Path<'_> = flyer_b.path();
+            let side_a = MovingShape { shape: shapes[0], motion: &path_a, offset: offset_a };
+            let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
+            return self.search_shapes(&side_a, &side_b, (rules, &tolerances), sunk, span);
+        };
+        let side_a = MovingShape { shape: shapes[0], motion: flight_a, offset: offset_a };
+        let side_b = MovingShape { shape: shapes[1], motion: flight_b, offset: offset_b };
+        self.search_shapes(&side_a, &side_b, (rules, &tolerances), sunk, span)
+    }
+
+    fn search_shapes<A: Motion, B: Motion>(
+        &self,
+        a: &MovingShape<'_, A>,
+        b: &MovingShape<'_, B>,
+        (rules, tolerances): (&[FeatureRule], &Tolerances),
+        sunk: f64,
+        span: f64,
+    ) -> Search {
+        // A lowered target makes nothing lie on the far side of its body.
+        let depth = tolerances.target_gap.max(0.0) + self.settings.tolerances.target_gap + sunk;
+        let search = self.settings.search;
+        let settings = &SearchSettings { depth, ..search };
+        PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
+    }
+
+    pub(crate) fn leave_box(&mut self, body: BodyId) {
+        self.place_box(body);
+        self.find_neighbours(body);
+        self.predict_all_of(&[body], false);
+    }
+
+    /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
+    pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
+        self.pairs.begin_batch();
+        let now = self.now;
+        for &body in bodies {
+            let disc = self.disc_at(body, now);
+            self.pairs.enter_batch(body, !changed, &mut self.links);
+            for index in 0..self.links.len() {
+                let link = self.links[index];
+                if changed {
+                    self.predict_from(now, disc.as_ref(), link);
+                } else {
+                    self.predict(link.pair);
+                }
+            }
+        }
+    }
+}
+
+/// A disc in flight, at the time from which its pairs are searched.
+struct DiscAt {
+    parabola: Polynomial,
+    /// Radius and gap at which it fires [m].
+    radius: f64,
+    halo: f64,
+    /// Until when it surely stays in its box.
+    stay: Time,
+}
+
+/// What is known of a pair from a time on while its motions are known, and until when it is clear; `None` if the search
+/// finds no answer.
+#[inline]
+fn look_ahead(
+    from: Time,
+    until: Time,
+    search: impl FnOnce(f64) -> Option<Search>,
+) -> Option<(Prediction, Time)> {
+    if until <= from {
+        return Some((Prediction::Quiet, from));
+    }
+    let span = until.since(from).min(LONGEST_SPAN);
+    Some(match search(span)? {
+        Search::Contact(contact) => {
+            (Prediction::Contact([contact.feature_a, contact.feature_b]), from.plus(contact.time))
+        }
+        Search::NoneBefore(time) if time >= span && span < LONGEST_SPAN => (Prediction::Quiet, until),
+        Search::NoneBefore(time) => (Prediction::SearchOn, from.plus(time)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pairs::Pair;
+    use super::*;
+    use crate::rigid::test_scene::{FINE, resting_discs};
+    use crate::rigid::{FlightLaw, RigidParts};
+    use glam::DVec2;
+    use halfgap_collision::{Body, BodyState};
+    use halfgap_geometry::Shape;
+
+    #[test]
+    fn bodies_that_follow_an_integrator_far_from_each_other_stay_apart() {
+        let system = resting_discs(&[0.0, 1.5, 2.5 + 1e-9]);
+        let apart = |a, b| {
+            let pair = system.pairs.between(BodyId(a), BodyId(b)).expect("they are near each other");
+            assert!(system.group_of(BodyId(a)).is_some(), "it is held by the floor");
+            system.stays_apart(pair, system.now, system.now.plus(1e-3))
+        };
+        assert!(apart(1, 2));
+        assert!(!apart(2, 3), "the gap is less than the target");
+    }
+
+    #[test]
+    fn bodies_that_fire_deep_within_each_other_still_meet() {
+        let block = |side: f64, spin: f64| {
+            let shape = Shape::block(1.0, 1.0).expect("a fine size");
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+            let (position, velocity) = (DVec2::new(side, 0.1 * side), DVec2::new(-side, 0.0));
+            let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
+            (body, FlightLaw::default(), state)
+        };
+        let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
+        let mut system = RigidSystem::new(parts, FINE, Time::from_seconds(10.0)).expect("nothing rests");
+        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
+        let expected = system.pairs.get(pair).clear;
+        for lowered in [0.4, 0.0, -1.0, -4.4] {
+            system.lanes[0].halo = lowered * FINE.tolerances.target_gap;
+            system.predict_all_of(&[BodyId(0)], true);
+            let Pair { prediction, clear, .. } = *system.pairs.get(pair);
+            assert!(matches!(prediction, Prediction::Contact(_)), "{lowered}: {prediction:?}");
+            assert!((clear.since(expected)).abs() < 1e-9, "{lowered}");
+        }
+    }
+}

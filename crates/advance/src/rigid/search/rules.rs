@@ -1,0 +1,247 @@
+//! What the search is told about features that touch: which to leave alone, and how far others may sink before they fire.
+
+use super::pairs::PairId;
+use crate::rigid::event::events::EventWork;
+use crate::rigid::event::region::{Region, Touch};
+use crate::rigid::held::settle::DEEPEST;
+use crate::rigid::system::RigidSystem;
+use halfgap_collision::{FeatureRule, pair_tolerances};
+
+/// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
+const SEAM_SHARE: f64 = 1.0 / 32.0;
+
+/// What is told to fire where it lies does not get so many times deeper.
+const MUCH_DEEPER: f64 = 2.0;
+
+impl RigidSystem {
+    /// Distance [m] by which a contact without force may sink before it fires again.
+    pub(crate) fn sink(&self) -> f64 {
+        self.settings.tolerances.sink()
+    }
+
+    /// Gap [m] at which a contact without force fires that has a gap now.
+    pub(crate) fn sunk(&self, gap: f64) -> f64 {
+        (gap - self.sink()).min(self.settings.tolerances.target_gap)
+    }
+
+    /// Gap [m] at which a contact fires that opens: where any pair does, however low the halos of its bodies. When others are
+    /// brought to where they are held it may be moved so deep that the search would take it for the far side of a body, and
+    /// it may come back before it is out: such a one fires where it lies.
+    fn returns_to(&self, touch: Touch) -> f64 {
+        let [a, b] = [0, 1]
+            .map(|side: usize| self.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
+        // In a hollow barely larger it never gets as far as others have to.
+        let target = pair_tolerances(a, b, &self.settings.tolerances).target_gap;
+        let (gap, _) = self.gap_at(touch, self.now);
+        if gap < -DEEPEST * target { gap } else { target }
+    }
+
+    /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
+    /// that touch without force.
+    pub(crate) fn set_rules(&mut self, EventWork { region, settling, .. }: &EventWork) {
+        let rest = self.rest_speed();
+        self.take_rules(region);
+        let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
+        self.set_halos(region);
+        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+            let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
+            let is_held = settling.holds_touch(*touch);
+            let rule: FeatureRule = if is_held || self.is_watched(*touch) {
+                touch.skipped()
+            } else if settling.lets_pass(*touch) {
+                touch.lowered_to(self.grazing_gap(touch.bodies))
+            } else {
+                // What fires although it does not close would do so again at once. It may sink no farther than its zone.
+                let stays = rate <= rest || (gap > least && self.fires_open(pair, touch.features));
+                touch.lowered_to(if stays { self.sinks_to(*touch, gap) } else { self.returns_to(*touch) })
+            };
+            if is_held {
+                self.leave_ends_alone(pair, touch);
+            }
+            if !self.is_idle(touch, &rule) {
+                self.pairs.change_rules(pair, |rules| rules.push(rule));
+            }
+        }
+        self.give_back_deep();
+    }
+
+    /// Drops what the search was told of the bodies of a region, and puts aside what it was told of contacts that lie deep.
+    fn take_rules(&mut self, region: &Region) {
+        let deepest = self.deepest();
+        self.deep.clear();
+        for &body in &region.bodies {
+            let pairs = self.pairs.of_body(body).iter().map(|link| link.pair);
+            for pair in pairs.filter(|&pair| self.pairs.get(pair).has_rules) {
+                let targets =
+                    self.pairs.rules(pair).iter().filter_map(|rule| Some((rule.features, rule.target?)));
+                let deep = targets.filter(|(_, target)| *target < deepest);
+                self.deep.extend(deep.map(|(features, target)| (pair, features, target)));
+            }
+            self.pairs.clear_rules_of(body);
+        }
+    }
+
+    /// A contact that was moved so deep that it fires where it lies is not seen by an event of other bodies, but goes on to do so
+    /// until it is out.
+    fn give_back_deep(&mut self) {
+        let deepest = self.deepest();
+        for index in 0..self.deep.len() {
+            let (pair, features, told) = self.deep[index];
+            let touch = Touch { bodies: self.pairs.bodies(pair), features };
+            let (gap, rate) = self.gap_at(touch, self.now);
+            // What lies deeper by far has gone round its body.
+            if gap < deepest && gap > MUCH_DEEPER * told {
+                let target = if rate.abs() <= self.rest_speed() { self.sunk(gap) } else { gap };
+                // What was told of the same features in this event comes first, and counts.
+                self.pairs.change_rules(pair, |rules| rules.push(touch.lowered_to(target)));
+            }
+        }
+    }
+
+    /// The gap [m] below which the search would take a contact for the far side of a body. Where contacts carry impulses only, it
+    /// looks as deep as they may sink.
+    fn deepest(&self) -> f64 {
+        let with_forces = self.settings.impulse_step.is_none();
+        if with_forces { -DEEPEST * self.settings.tolerances.target_gap } else { f64::NEG_INFINITY }
+    }
+
+    /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they would meet the other
+    /// of its features: they are no nearer than the contact, until that has run off its features and they take over.
+    fn leave_ends_alone(&mut self, pair: PairId, touch: &Touch) {
+        let ends = [0, 1].map(|side: usize| {
+            self.flyers[touch.bodies[side].index()].body().shape.ends_of(touch.features[side])
+        });
+        let [a, b] = touch.features;
+        let firsts = ends[0].into_iter().flatten().map(|end| [end, b]);
+        let seconds = ends[1].into_iter().flatten().map(|end| [a, end]);
+        self.pairs.change_rules(pair, |rules| {
+            // What is said of a pair of features first counts.
+            rules.extend(firsts.chain(seconds).map(|features| FeatureRule { features, target: None }));
+        });
+    }
+
+    /// Lowers the contacts that fired again and again without time going by, and their neighbours, by so much more each
+    /// time: they lie nearer to where they fire than the search can tell.
+    pub(crate) fn lower_insistent(&mut self, region: &Region) {
+        let mut insistent = std::mem::take(&mut self.touched);
+        insistent.clear();
+        let pairs =
+            region.touches.iter().filter_map(|touch| self.pairs.between(touch.bodies[0], touch.bodies[1]));
+        insistent.extend(pairs);
+        insistent.sort_unstable();
+        insistent.dedup();
+        for &pair in &insistent {
+            let lower = f64::from(self.repeats_beyond_calm(pair)) * self.sink();
+            if lower == 0.0 {
+                continue;
+            }
+            self.pairs.change_rules(pair, |rules| {
+                for rule in rules {
+                    rule.target = rule.target.map(|target| target - lower);
+                }
+            });
+            // What cannot move is in no region that would raise it again.
+            for body in self.pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
+                self.lanes[body.index()].halo -= lower;
+            }
+        }
+        self.touched = insistent;
+    }
+
+    /// True if a rule says of two discs what holds of them without it.
+    fn is_idle(&self, touch: &Touch, rule: &FeatureRule) -> bool {
+        let target = self.settings.tolerances.target_gap;
+        let mut lanes = touch.bodies.iter().map(|body| &self.lanes[body.index()]);
+        rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
+    }
+
+    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
+    ///
+    /// So a body that slides along at less than its target does not run against the seam of the next floor.
+    fn set_halos(&mut self, region: &Region) {
+        let target = self.settings.tolerances.target_gap;
+        for &body in &region.bodies {
+            self.lanes[body.index()].halo = target;
+        }
+        let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
+        let least = target - self.settings.tolerances.accuracy;
+        for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+            if rate > self.rest_speed() {
+                continue;
+            }
+            for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
+                let halo = &mut self.lanes[body.index()].halo;
+                *halo = halo.min((gap - seam).max(least));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::limits::repeats::CALM_REPEATS;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn what_opens_from_where_the_search_does_not_look_fires_where_it_lies() {
+        let mut system = resting_discs(&[0.0]);
+        let target = system.settings.tolerances.target_gap;
+        let mut work = EventWork::default();
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
+        system.dissolve(BodyId(1));
+        for (depth, returns_to) in [(-1.0, target), (0.4, target), (0.9, -0.9 * target)] {
+            let mut state = system.flyer(BodyId(1)).state_at(system.now);
+            state.position.y = 0.5 - depth * target;
+            system.flyers[1].fly_from(system.now, state);
+            assert!((system.returns_to(touch) - returns_to).abs() < 1e-9 * target, "{depth} target gaps");
+        }
+    }
+
+    #[test]
+    fn what_fires_where_it_lies_goes_on_to_do_so_when_others_collide() {
+        let mut system = resting_discs(&[0.0]);
+        let target = system.settings.tolerances.target_gap;
+        let mut work = EventWork::default();
+        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
+        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they touch");
+        system.dissolve(BodyId(1));
+        // An event that does not see the contact.
+        work.region.touches.clear();
+        let told = [target, -0.9 * target].map(|target| touch.lowered_to(target));
+        for (rule, gap, is_kept) in [(0, -0.9, false), (1, -0.8, true), (1, -0.1, false), (1, -2.0, false)] {
+            let mut state = system.flyer(BodyId(1)).state_at(system.now);
+            (state.position.y, state.velocity.y) = (0.5 + gap * target, 1e-3);
+            system.flyers[1].fly_from(system.now, state);
+            system.pairs.clear_rules_of(BodyId(1));
+            system.pairs.change_rules(pair, |rules| rules.push(told[rule]));
+            system.set_rules(&work);
+            let rules = system.pairs.rules(pair);
+            assert_eq!(rules.len(), usize::from(is_kept), "{rules:?}");
+            let lies_at =
+                |rule: &FeatureRule| rule.target.is_some_and(|at| (at - gap * target).abs() < 1e-9 * target);
+            assert!(rules.iter().all(lies_at), "{rules:?}");
+        }
+    }
+
+    #[test]
+    fn a_floor_on_which_a_contact_insists_fires_elsewhere_as_before() {
+        let mut system = resting_discs(&[0.0]);
+        let [floor, disc] = [BodyId(0), BodyId(1)];
+        let before = system.lanes[floor.index()].halo;
+        let pair = system.pairs.between(floor, disc).expect("they touch");
+        for _ in 0..CALM_REPEATS + 5 {
+            system.note_repeat(pair).expect("not stuck yet");
+        }
+        let mut work = EventWork::default();
+        system.collect_region(&mut work.region, &[disc], system.now);
+        system.remeasure(&mut work.region, system.now);
+        system.measure_touches(&mut work.region);
+        system.lower_insistent(&work.region);
+        assert!(system.lanes[disc.index()].halo < before);
+        assert_eq!(system.lanes[floor.index()].halo, before);
+    }
+}

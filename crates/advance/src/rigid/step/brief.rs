@@ -1,0 +1,144 @@
+//! How the steps of a group are made: by the method that is asked for, or, in place of the default one, by the method of
+//! order 5, which has half as many stages. That serves where a higher order gains nothing: between events that come fast
+//! one after another, and over the kinks of a spline. Implicit steps are in `stiff`.
+
+use super::group::Group;
+use super::rows::RowSource;
+use super::stiff::Stiffness;
+use crate::ode::{Method, Stepper};
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+
+/// A group whose bodies' last lasted less than a step by this factor is expected to be brief, too.
+const BRIEF: f64 = 4.0;
+
+/// A brief step is at least this part of a full one: to be cut short later costs less than to go on too often.
+const BRIEFEST: f64 = 1.0 / 32.0;
+
+/// Where a step is expected to be cut short, it is made shorter by this factor: its error is then so small that it can be cut
+/// by its dense output, and need not be repeated up to the event.
+const CUT_SHARE: f64 = 0.6;
+
+/// A group stays brief while its steps may grow by this factor.
+const BRIEF_GROWTH: f64 = 1.9;
+
+/// The method of few stages.
+const BRIEF_METHOD: Method = Method::DormandPrince5;
+
+/// By which stepper the steps of a group are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stepping {
+    /// Of the method that is asked for.
+    Asked,
+    /// Of few stages.
+    Brief,
+    /// Implicit.
+    Stiff,
+}
+
+/// The steppers of a system.
+#[derive(Clone, Debug)]
+pub(crate) struct Steppers {
+    asked: Stepper,
+    brief: Stepper,
+    stiff: Stepper,
+}
+
+impl Steppers {
+    pub(crate) fn new(method: Method) -> Self {
+        Self {
+            asked: Stepper::new(method),
+            brief: Stepper::new(BRIEF_METHOD),
+            stiff: Stepper::new(Method::RadauIia5),
+        }
+    }
+
+    pub(crate) fn of(&mut self, stepping: Stepping) -> &mut Stepper {
+        match stepping {
+            Stepping::Asked => &mut self.asked,
+            Stepping::Brief => &mut self.brief,
+            Stepping::Stiff => &mut self.stiff,
+        }
+    }
+}
+
+/// What the next group of a body may learn from its last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Past {
+    /// Step [s] that was right.
+    step: Option<f64>,
+    /// How long [s] the group lasted.
+    lasted: f64,
+    stiffness: Stiffness,
+    /// How deep [m] one of its contacts lay below where bodies touch, and when it ended.
+    sunk: f64,
+    ended: Time,
+}
+
+impl Past {
+    /// Of a group that ends now.
+    pub(crate) fn of(group: &Group, now: Time) -> Self {
+        let step = if group.is_brief { group.full_step } else { group.next_step };
+        let (lasted, stiffness, sunk) = (now.since(group.made), group.stiffness, group.sunk());
+        Self { step, lasted, stiffness, sunk, ended: now }
+    }
+
+    /// How deep [m] a contact of the group lay that ends now; zero if it ended before.
+    pub(crate) fn sunk_until(&self, now: Time) -> f64 {
+        if self.ended == now { self.sunk } else { 0.0 }
+    }
+}
+
+impl Group {
+    /// By which stepper its steps are made.
+    pub(crate) fn stepping(&self) -> Stepping {
+        if self.is_brief {
+            Stepping::Brief
+        } else if self.stiffness.is_stiff {
+            Stepping::Stiff
+        } else if self.has_kinks {
+            Stepping::Brief
+        } else {
+            Stepping::Asked
+        }
+    }
+
+    /// Goes back to the method that is asked for, if brief steps are held up by their errors or by what is fast.
+    pub(crate) fn end_brief(&mut self) {
+        if !self.is_brief {
+            return;
+        }
+        let grows = self.accepted.is_some_and(|step| BRIEF_METHOD.step_factor(step.error) >= BRIEF_GROWTH);
+        let is_allowed = self.next_step.is_none_or(|step| self.stiffness.allows(step));
+        if !(grows && is_allowed) {
+            self.is_brief = false;
+            self.next_step = self.full_step;
+            self.accepted = None;
+        }
+    }
+}
+
+impl RigidSystem {
+    /// Chooses the first step of a group, and whether its steps have few stages, by what its bodies did last.
+    pub(crate) fn foresee(&self, group: &mut Group) {
+        let pasts = group.bodies.iter().map(|body| self.groups.past_of[body.index()]);
+        group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);
+        group.stiffness = pasts.clone().map(|past| past.stiffness).fold(Stiffness::default(), Stiffness::or);
+        if self.settings.method != Method::default() {
+            return;
+        }
+        group.has_kinks = group.rows.iter().any(|row| match row.source {
+            RowSource::Connector(id, _) => self.connector(id).path().is_some_and(|path| path.is_spline()),
+            RowSource::Contact(_) => false,
+        });
+        let lasted = pasts.map(|past| past.lasted).fold(0.0, f64::max);
+        let soon = BRIEF * lasted;
+        let is_brief = |step: f64| !group.has_kinks && BRIEF * soon < step && group.stiffness.allows(soon);
+        if let Some(step) = group.next_step.filter(|&step| is_brief(step)) {
+            group.is_brief = true;
+            (group.next_step, group.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));
+        } else if let Some(step) = group.next_step.filter(|&step| lasted < step) {
+            group.next_step = Some(CUT_SHARE * step);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! The energy of a group: of a state, what a projection changes of it, and what a step loses.
+
+use super::dynamics::{Dynamics, body_state};
+use super::extending::Tools;
+use super::group::Group;
+use super::segment::StepControl;
+use crate::rigid::event::impacts::ImpactReport;
+use crate::rigid::motion::law::Snapshot;
+use crate::rigid::system::RigidSystem;
+use halfgap_collision::{BodyId, BodyState};
+use halfgap_contact::Inertia;
+
+/// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it. Where rows all
+/// but depend on each other, or near a centre of attraction, what is rounding elsewhere does work, and no error estimate
+/// tells.
+const LOST_ERRORS: f64 = 1e2;
+const LOST_ROUNDINGS: f64 = 1e3;
+
+/// Energy [J] of a group's bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Energy {
+    /// All of it, as far as it has a potential.
+    total: f64,
+    /// Of the motion alone.
+    kinetic: f64,
+}
+
+impl RigidSystem {
+    /// Notes the kinetic energy of a group's bodies at the end of its segment, which nobody may look at else.
+    pub(crate) fn note_kinetic_energy(&mut self, group: &Group) {
+        let count = group.bodies.len();
+        let of_bodies = group
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(place, &body)| self.kinetic_energy(body, &body_state(&group.end_state, count, place)));
+        let kinetic = of_bodies.sum::<f64>();
+        self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(kinetic);
+    }
+
+    /// Notes the kinetic energy that the bodies of an impact came with.
+    pub(crate) fn note_kinetic_energy_before(&mut self, impact: &ImpactReport) {
+        let after = impact.states.iter().map(|(body, state)| self.kinetic_energy(*body, state)).sum::<f64>();
+        let kinetic = after - impact.energy_change;
+        self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(kinetic);
+    }
+
+    /// Kinetic energy [J] of a movable body in a state.
+    fn kinetic_energy(&self, body: BodyId, state: &BodyState) -> f64 {
+        let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
+        let (square, spin) = (state.velocity.length_squared(), state.angular_velocity.powi(2));
+        0.5 * (square / inverse_mass + spin / inverse_moment)
+    }
+}
+
+impl Dynamics<'_> {
+    /// Projects the end onto the held rows and notes what energy that took. Returns the energy there, if anybody had to look.
+    pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) -> Option<Energy> {
+        let settings = tools.settings;
+        self.group.projected = 0.0;
+        let needs_none = self.group.rows.is_empty() || self.group.tree.holds_all();
+        if needs_none || !(settings.projection || settings.joint_small_impacts) {
+            return None;
+        }
+        let before = self.end_energy();
+        if settings.projection {
+            self.project_end(&settings.steps);
+        } else {
+            self.fit_joint_velocities();
+        }
+        let after = self.end_energy();
+        self.group.projected = after.total - before.total;
+        Some(after)
+    }
+
+    fn end_energy(&mut self) -> Energy {
+        let end = std::mem::take(&mut self.group.end_state);
+        let energy = self.energy(&end);
+        self.group.end_state = end;
+        energy
+    }
+
+    /// Energy that the last step has lost or made, in units of what it may; 0 where errors of steps are all there is. The energy
+    /// at its end, where it is known.
+    pub(crate) fn lost_energy(&mut self, control: &StepControl, end: Option<Energy>) -> f64 {
+        let holds = !self.group.rows.is_empty() && !self.group.tree.holds_all();
+        if !holds && self.group.force_length >= control.length {
+            return 0.0;
+        }
+        let start = std::mem::take(&mut self.group.state);
+        let before = self.energy(&start);
+        self.group.state = start;
+        let end = end.unwrap_or_else(|| self.end_energy());
+        let after = end.total - self.group.projected;
+        let works: f64 = self.group.end_state[2 * self.group.velocities()..].iter().sum();
+        let lost = (after - before.total - works).abs();
+        if lost == 0.0 {
+            return 0.0;
+        }
+        let masses = self.group.bodies.iter().map(|&body| self.mass(body));
+        let usual = control.speed * control.speed * masses.sum::<f64>();
+        let moving = usual + before.kinetic + end.kinetic;
+        let rounding = f64::EPSILON * (before.total.abs() + after.abs());
+        lost / (LOST_ERRORS * control.local_error * moving + LOST_ROUNDINGS * rounding)
+    }
+
+    /// Energy of the group's bodies in a state.
+    fn energy(&mut self, state: &[f64]) -> Energy {
+        let count = self.group.bodies.len();
+        let kinetic = self.kinetic_energy(state);
+        let mut total = kinetic;
+        for (place, &body) in self.group.bodies.iter().enumerate() {
+            let pull = self.physics.mechanism.flyers[body.index()].law().acceleration;
+            total -= self.mass(body) * pull.dot(body_state(state, count, place).position);
+        }
+        if self.group.laws.is_empty() {
+            return Energy { total, kinetic };
+        }
+        self.stage.load(&self.group.bodies, state);
+        let now = Snapshot::new(self.start.seconds(), &self.stage.movings);
+        let laws = self.group.laws.iter().map(|&law| &self.physics.laws[law]);
+        total += laws.filter_map(|law| law.potential(&now)).sum::<f64>();
+        Energy { total, kinetic }
+    }
+
+    fn kinetic_energy(&self, state: &[f64]) -> f64 {
+        let count = self.group.bodies.len();
+        let of_body = |(place, &body): (usize, &BodyId)| {
+            let inertia = self.physics.mechanism.flyers[body.index()].body();
+            let state = body_state(state, count, place);
+            0.5 * state.velocity.length_squared() / inertia.inverse_mass
+                + 0.5 * state.angular_velocity * state.angular_velocity / inertia.inverse_moment
+        };
+        self.group.bodies.iter().enumerate().map(of_body).sum()
+    }
+
+    /// Mass [kg] of a body.
+    pub(crate) fn mass(&self, body: BodyId) -> f64 {
+        self.physics.mechanism.flyers[body.index()].body().inverse_mass.recip()
+    }
+}

@@ -1,0 +1,224 @@
+//! A group's next segment as it is used: a step that keeps to the held rows, projected, with what ends it early.
+
+use super::dynamics::Dynamics;
+use super::segment::StepFailure;
+use crate::ode::{Stepper, Stiffness as Told};
+use crate::rigid::system::RigidSettings;
+
+/// Shorter steps that are tried for one that keeps to its rows.
+const SHORTENINGS: usize = 2;
+/// More of them where the dense output errs by more than so many times what is allowed, so that bodies would overlap; and more
+/// still as long as each leaves less than so much of the error.
+const DEEP_SHORTENINGS: usize = 5;
+const MOST_SHORTENINGS: usize = 8;
+const DEEP: f64 = 4.0;
+const WORTHWHILE: f64 = 0.5;
+
+/// What a group's stepping uses beside its dynamics.
+pub(crate) struct Tools<'a> {
+    pub(crate) stepper: &'a mut Stepper,
+    pub(crate) scales: &'a mut Vec<f64>,
+    pub(crate) settings: &'a RigidSettings,
+}
+
+impl Dynamics<'_> {
+    /// Extends the group by a step, with what ends it early.
+    pub(crate) fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+        if !self.group.is_unwatched {
+            let told = self.extend_on_rows(tools)?;
+            self.note_stiffness(tools, told);
+            self.find_event();
+            return Ok(());
+        }
+        let told = self.extend_unwatched(tools)?;
+        self.note_stiffness(tools, told);
+        self.limit_next_step(tools.stepper.method().step_factor(0.0));
+        (self.group.event, self.group.look) = (None, None);
+        // Where ends are projected, what is left there is rounding.
+        let is_projected = tools.settings.projection;
+        self.group.largest_error = if is_projected { self.stage.gap_error } else { self.connector_error() };
+        Ok(())
+    }
+
+    /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go on otherwise, it keeps to
+    /// its rows and its energy, too.
+    fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
+        for tries in 0.. {
+            let energy = self.extend(tools)?;
+            let told = self.tell_stiffness(tools);
+            let mut excess = told.map_or(0.0, |told| told.dense_error);
+            if self.group.kept.nears_singular() {
+                let at_end = self.stage.gap_error;
+                self.make_dense(tools.stepper);
+                self.stage.gap_error = at_end;
+                let off = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+                excess = excess.max(off).max(self.lost_energy(&tools.settings.steps, energy));
+            }
+            if excess <= 1.0 || tries >= DEEP_SHORTENINGS {
+                return Ok(told);
+            }
+            self.limit_next_step(tools.stepper.method().step_factor(excess));
+        }
+        Ok(None)
+    }
+
+    /// Makes the dense output of the last step.
+    pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
+        self.make_dense(tools.stepper);
+        self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+    }
+
+    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not swing:
+    /// shorter ones are tried until it does. Tells how fast the fastest part is, if somebody has looked.
+    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
+        let steps = tools.settings.steps;
+        let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
+        let (mut proposed, mut before) = (None, f64::INFINITY);
+        for tries in 0.. {
+            let energy = self.extend(tools)?;
+            self.make_dense(tools.stepper);
+            let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+            let proposed = *proposed.get_or_insert(self.group.next_step);
+            let told = self.tell_stiffness(tools);
+            if is_free {
+                return Ok(told);
+            }
+            let swing = told.map_or(0.0, |told| told.dense_error);
+            let excess = excess.max(swing).max(self.lost_energy(&steps, energy));
+            let most = if excess < WORTHWHILE * before { MOST_SHORTENINGS } else { DEEP_SHORTENINGS };
+            let is_worthwhile = excess > DEEP && tries < most;
+            before = excess;
+            if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
+                // What shorter steps do not mend is rounding, or rows that contradict each other.
+                self.group.next_step = proposed;
+                return Ok(told);
+            }
+            self.limit_next_step(tools.stepper.method().step_factor(excess));
+            if excess <= 1.0 {
+                return Ok(told);
+            }
+        }
+        Ok(None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::test_scene::FINE;
+    use crate::rigid::{FlightLaw, RigidParts, RigidSystem};
+    use crate::time::Time;
+    use glam::DVec2;
+    use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorKind};
+    use halfgap_geometry::Shape;
+
+    /// A disc at the end of a rod of 1 m, which moves at 2 m/s.
+    fn pendulum() -> RigidSystem {
+        disc_on_rods(&[DVec2::ZERO])
+    }
+
+    /// The same on rods that end at several points.
+    fn disc_on_rods(ends: &[DVec2]) -> RigidSystem {
+        turning_disc_on_rods(ends, 2.0, 0.0)
+    }
+
+    /// The same with a spin [rad/s] that decays at a rate [1/s].
+    fn turning_disc_on_rods(ends: &[DVec2], spin: f64, angular_rate: f64) -> RigidSystem {
+        let disc = Shape::disc(0.5).expect("a fine radius");
+        let body = Body { shape: disc, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
+        let law = FlightLaw { acceleration: DVec2::new(0.0, -10.0), angular_rate, ..FlightLaw::default() };
+        let (position, velocity) = (DVec2::new(1.0, 0.0), DVec2::new(0.0, 2.0));
+        let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
+        let b = Anchor { body: BodyId(0), point: DVec2::ZERO };
+        let rods = ends.iter().map(|&point| {
+            let a = Anchor { body: BodyId::WORLD, point };
+            let rod = ConnectorKind::Rod { a, b, length: point.distance(position) };
+            Connector::new(rod, 0.0).expect("a fine rod")
+        });
+        let connectors = rods.collect();
+        let parts = RigidParts { bodies: vec![(body, law, state)], connectors, ..RigidParts::default() };
+        RigidSystem::new(parts, FINE, Time::ZERO).expect("it hangs")
+    }
+
+    #[test]
+    fn what_a_projection_takes_is_noted_once() {
+        let mut system = pendulum();
+        let mut group = system.groups.take(BodyId(0)).expect("it is held");
+        let taken = system.with_group(&mut group, |dynamics, tools| {
+            dynamics.group.end_state[1] -= 0.1;
+            [0, 1].map(|_| {
+                dynamics.end_on_rows(tools);
+                dynamics.group.projected
+            })
+        });
+        // Once it is there, another projection takes nothing.
+        assert!(taken[0].abs() > 1e-4 && taken[1].abs() < 1e-9, "{taken:?}");
+    }
+
+    #[test]
+    fn rows_that_all_but_depend_on_each_other_do_not_throw_their_bodies_about() {
+        /// Angle between the rods [rad], an error of the second [m], and how far the disc may move for it [m].
+        const ANGLE: f64 = 1e-5;
+        const ERROR: f64 = 1e-7;
+        const WAY: f64 = 1e-5;
+        let mut system = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, ANGLE)]);
+        let mut group = system.groups.take(BodyId(0)).expect("it is held");
+        let moved = system.with_group(&mut group, |dynamics, tools| {
+            dynamics.group.rows[1].gap += ERROR;
+            let before = dynamics.group.end_state.clone();
+            dynamics.end_on_rows(tools);
+            (dynamics.group.end_state[1] - before[1]).abs()
+        });
+        // To make both rods as long as they say takes a centimetre along the other direction.
+        assert!(moved < WAY, "{moved} m");
+    }
+
+    #[test]
+    fn what_moves_the_end_of_a_short_step_is_no_velocity() {
+        let mut system = pendulum();
+        let mut group = system.groups.take(BodyId(0)).expect("it is held");
+        group.next_step = Some(1e-9);
+        let velocity = system.with_group(&mut group, |dynamics, tools| {
+            dynamics.extend(tools).expect("it falls");
+            // As a projection might: over this step it would be 1 m/s.
+            dynamics.group.end_state[1] += 1e-9;
+            dynamics.evaluate_end();
+            dynamics.make_dense(tools.stepper);
+            dynamics.end_by_dense(0.5e-9);
+            dynamics.group.end_state[4]
+        });
+        assert!((velocity - 2.0).abs() < 1e-7, "{velocity} m/s");
+    }
+
+    #[test]
+    fn what_swings_between_the_ends_of_a_step_makes_it_shorter() {
+        /// The spin decays at so many 1/s, and by so much in a step whose error estimate does not tell it.
+        const RATE: f64 = 1e6;
+        const UNTOLD: f64 = 5.75;
+        // Ten times what may err: the disc moves at 2 m/s and is 0.5 m large.
+        let spin = 10.0 * FINE.steps.local_error * 2.0 / 0.5;
+        let mut system = turning_disc_on_rods(&[DVec2::ZERO], spin, RATE);
+        let mut group = system.groups.take(BodyId(0)).expect("it is held");
+        group.next_step = Some(UNTOLD / RATE);
+        system.with_group(&mut group, |dynamics, tools| {
+            dynamics.extend(tools).expect("it decays");
+            assert_eq!(dynamics.group.span, UNTOLD / RATE);
+            dynamics.group.next_step = Some(UNTOLD / RATE);
+            dynamics.extend_on_rows(tools).expect("it decays");
+        });
+        assert!(group.span < 0.8 * UNTOLD / RATE, "{} s", group.span);
+    }
+
+    #[test]
+    fn energy_that_a_step_loses_counts() {
+        let mut system = pendulum();
+        let mut group = system.groups.take(BodyId(0)).expect("it is held");
+        let [kept, lost] = system.with_group(&mut group, |dynamics, tools| {
+            let energy = dynamics.extend(tools).expect("it swings");
+            let kept = dynamics.lost_energy(&tools.settings.steps, energy);
+            // As what does work where rows all but depend on each other.
+            dynamics.group.end_state[4] *= 1.0 - 1e-6;
+            [kept, dynamics.lost_energy(&tools.settings.steps, None)]
+        });
+        assert!(kept < 1.0 && lost > 1.0, "{kept}, {lost}");
+    }
+}

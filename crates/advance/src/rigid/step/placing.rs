@@ -1,0 +1,124 @@
+//! Where a group's bodies are along its segment: all of them with their velocities, or, as far as gaps depend on it, those
+//! that somebody watches.
+
+use super::dynamics::Dynamics;
+use super::group::Group;
+use super::rows::HeldRow;
+use glam::DVec2;
+use halfgap_geometry::Pose;
+
+impl Dynamics<'_> {
+    /// Places the group's bodies where they are at an offset [s] of the segment.
+    pub(crate) fn place_at(&mut self, offset: f64) {
+        self.find_state_at(offset);
+        let trial = std::mem::take(&mut self.stage.trial);
+        self.stage.load(&self.group.bodies, &trial);
+        self.stage.trial = trial;
+    }
+
+    /// The state of the group at an offset [s] of the segment, left in the stage.
+    pub(crate) fn find_state_at(&mut self, offset: f64) {
+        let trial = &mut self.stage.trial;
+        trial.clear();
+        let paths = self.group.paths.iter().flatten();
+        trial.extend(paths.map(|path| path.value_at(offset)));
+        let velocities = &self.group.rate_paths[..self.group.velocities()];
+        trial.extend(velocities.iter().map(|path| path.value_at(offset)));
+        trial.resize(self.group.dimension(), 0.0);
+    }
+
+    /// Chooses the bodies of some rows as those that are watched.
+    pub(crate) fn watch_rows(&mut self, watches: impl Fn(usize) -> bool) {
+        let Group { bodies, sides, leaning, .. } = &*self.group;
+        let of_rows = (0..sides.len()).filter(|&row| watches(row)).flat_map(|row| sides[row]).flatten();
+        let place_of = |body| bodies.binary_search(body).ok().and_then(|place| u32::try_from(place).ok());
+        let of_leaning = leaning.iter().flat_map(|HeldRow { bodies, .. }| bodies).filter_map(place_of);
+        let watched = &mut self.stage.watched;
+        watched.clear();
+        watched.extend(of_rows.chain(of_leaning));
+        watched.sort_unstable();
+        watched.dedup();
+    }
+
+    /// Puts the watched bodies where they are at an offset [s] of the segment; their velocities stay what they were.
+    pub(crate) fn put_watched_at(&mut self, offset: f64) {
+        for index in 0..self.stage.watched.len() {
+            self.put(self.stage.watched[index] as usize, offset);
+        }
+    }
+
+    /// The same of the bodies of a row.
+    pub(crate) fn put_row_at(&mut self, row: usize, offset: f64) {
+        for place in self.group.sides[row].into_iter().flatten() {
+            self.put(place as usize, offset);
+        }
+    }
+
+    /// The same of the bodies of a contact that is touched without force.
+    pub(crate) fn put_leaning_at(&mut self, row: usize, offset: f64) {
+        for body in self.group.leaning[row].bodies {
+            if let Ok(place) = self.group.bodies.binary_search(&body) {
+                self.put(place, offset);
+            }
+        }
+    }
+
+    /// The same of all of the group's bodies.
+    pub(crate) fn put_at(&mut self, offset: f64) {
+        (0..self.group.bodies.len()).for_each(|place| self.put(place, offset));
+    }
+
+    fn put(&mut self, place: usize, offset: f64) {
+        let [x, y, angle] = &self.group.paths[place];
+        let position = DVec2::new(x.value_at(offset), y.value_at(offset));
+        let body = self.group.bodies[place];
+        self.stage.movings[body.index()].pose = Pose::new(position, angle.value_at(offset));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::RigidSystem;
+    use crate::rigid::test_scene::{block_on_its_corner, resting_discs};
+    use glam::DVec2;
+    use halfgap_collision::{BodyId, Moving};
+
+    /// The bodies of the group of a body that slides and turns, in the middle of its segment, as all are placed and as the
+    /// watched ones are put.
+    fn placed_and_put(mut system: RigidSystem, body: BodyId) -> [Vec<Moving>; 2] {
+        let mut group = system.groups.take(body).expect("it is held");
+        system.with_group(&mut group, |dynamics, tools| {
+            let at = dynamics.group.velocities();
+            (dynamics.group.state[at], dynamics.group.state[at + 2]) = (0.7, 0.3);
+            dynamics.set_out();
+            dynamics.extend_watched(tools).expect("it slides");
+            let middle = 0.5 * dynamics.group.span;
+            dynamics.place_at(middle);
+            let placed = dynamics.stage.movings.clone();
+            dynamics.watch_rows(|row| row == 0);
+            let puts: [fn(&mut super::Dynamics<'_>, f64); 3] = [
+                |dynamics, offset| dynamics.put_watched_at(offset),
+                |dynamics, offset| dynamics.put_row_at(0, offset),
+                |dynamics, offset| dynamics.put_at(offset),
+            ];
+            let mut put = Vec::new();
+            for act in puts {
+                dynamics.put_at(0.0);
+                assert!(dynamics.stage.movings[body.index()] != placed[body.index()]);
+                act(dynamics, middle);
+                put = dynamics.stage.movings.clone();
+                assert_eq!(put[body.index()].pose, placed[body.index()].pose);
+            }
+            [placed, put]
+        })
+    }
+
+    #[test]
+    fn what_is_put_is_where_it_is_placed() {
+        for system in [resting_discs(&[0.0]), block_on_its_corner()] {
+            let [placed, put] = placed_and_put(system, BodyId(1));
+            assert!(placed[1].velocity.distance(DVec2::ZERO) > 0.0);
+            assert_eq!(placed, put, "velocities stay what they were");
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! The rows that hold bodies together or apart during a segment: contacts and connectors, measured at any moment.
+
+use crate::rigid::motion::flyer::Flyer;
+use glam::DVec2;
+use halfgap_collision::{
+    BodyId, Connector, ConnectorId, GapKinematics, Moving, RailHint, RailKnot, RailPath, RailPlace,
+    Tolerances, contact_levers,
+};
+use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
+
+/// Part of the accuracy by which a contact may run off its features before it is said to have changed: more than the
+/// rounding by which one that has run off is still detected, far less than what forces can feel.
+const CHANGE_SHARE: f64 = 1.0 / 64.0;
+
+/// Part of the accuracy by which a corner leans off its line that is said to: less than `CHANGE_SHARE`, at which it is
+/// told, so that it is told once.
+const LEAN_SHARE: f64 = 0.5 * CHANGE_SHARE;
+
+/// What makes a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowSource {
+    /// A feature of the primary and one of the normal body.
+    Contact([FeatureId; 2]),
+    /// A row of a connector.
+    Connector(ConnectorId, usize),
+}
+
+/// A row that is held: its gap is to stay as it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeldRow {
+    pub(crate) source: RowSource,
+    /// The primary and the normal body.
+    pub(crate) bodies: [BodyId; 2],
+    pub(crate) bilateral: bool,
+    /// Gap [m] at which it is held: the one at which it formed, but for rows that are lifted.
+    pub(crate) gap: f64,
+    /// Piece of the rail, of a connector that has one.
+    pub(crate) hint: Option<RailHint>,
+    /// A corner, sharp or round, that leans off its line.
+    pub(crate) leans: bool,
+    /// It is lifted into its zone, which is wide enough to be seen.
+    pub(crate) is_lifted: bool,
+}
+
+/// A row at one moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowMoment {
+    /// Gap [m].
+    pub(crate) gap: f64,
+    pub(crate) kinematics: GapKinematics,
+}
+
+/// What rows are measured on: bodies and connectors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mechanism<'a> {
+    pub(crate) flyers: &'a [Flyer],
+    pub(crate) connectors: &'a [Connector],
+    pub(crate) tolerances: &'a Tolerances,
+}
+
+/// A body among those that move, or the background.
+#[inline]
+pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> &Moving {
+    if body.is_world() { &Moving::BACKGROUND } else { &movings[body.index()] }
+}
+
+impl Mechanism<'_> {
+    fn shape(&self, body: BodyId) -> &Shape {
+        &self.flyers[body.index()].body().shape
+    }
+
+    /// A feature of a body.
+    #[inline]
+    pub(crate) fn feature(&self, body: BodyId, feature: FeatureId) -> &Feature {
+        self.shape(body).feature(feature)
+    }
+
+    /// Gap and kinematics of a row.
+    #[inline]
+    pub(crate) fn measure(&self, row: &HeldRow, movings: &[Moving]) -> RowMoment {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, index) => {
+                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
+                RowMoment { gap: sample.gap, kinematics: sample.kinematics }
+            }
+            RowSource::Contact(features) => self.measure_contact(row.bodies, features, [a, b]),
+        }
+    }
+
+    /// Gap [m] of a row; of the bodies only the placements matter.
+    pub(crate) fn gap(&self, row: &HeldRow, movings: &[Moving]) -> f64 {
+        let RowSource::Contact(features) = row.source else { return self.measure(row, movings).gap };
+        self.sample_here(row.bodies, features, row.bodies.map(|body| moving_of(movings, body))).gap
+    }
+
+    /// Gap and kinematics of a contact; inlined with all that it calls, so that what is not asked for is not computed and what
+    /// is does not go through memory.
+    #[inline(always)]
+    pub(crate) fn measure_contact(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> RowMoment {
+        let sample = self.sample_here(bodies, features, movings);
+        RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, movings[0], movings[1]) }
+    }
+
+    /// As [`Mechanism::measure`], of rows in turn: the second row of a pin is measured with the first.
+    #[inline]
+    pub(crate) fn measure_next(
+        &self,
+        row: &HeldRow,
+        movings: &[Moving],
+        twin: &mut Option<(ConnectorId, RowMoment)>,
+    ) -> RowMoment {
+        let RowSource::Connector(id, index) = row.source else { return self.measure(row, movings) };
+        if let (1, Some((of, moment))) = (index, *twin)
+            && of == id
+        {
+            return moment;
+        }
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match self.connectors[id.index()].measure_pin(a, b) {
+            Some(samples) => {
+                let [first, second] =
+                    samples.map(|sample| RowMoment { gap: sample.gap, kinematics: sample.kinematics });
+                *twin = Some((id, second));
+                if index == 0 { first } else { second }
+            }
+            None => self.measure(row, movings),
+        }
+    }
+
+    /// The gap of the features of a row, wherever on them it is.
+    pub(crate) fn sample(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> GapSample {
+        self.sample_here(bodies, features, movings)
+    }
+
+    #[inline(always)]
+    fn sample_here(&self, bodies: [BodyId; 2], features: [FeatureId; 2], movings: [&Moving; 2]) -> GapSample {
+        let [a, b] = [0, 1].map(|side: usize| self.shape(bodies[side]).feature(features[side]));
+        GapSample::measure_unbounded(a, &movings[0].pose, b, &movings[1].pose)
+            .expect("a contact was made from features that touch")
+    }
+
+    /// True if a row may run off its features or its piece of a rail.
+    pub(crate) fn can_change(&self, row: &HeldRow) -> bool {
+        match row.source {
+            RowSource::Contact(features) => {
+                // Full circles have no ends.
+                let mut sides = row.bodies.iter().zip(features);
+                !sides.all(|(&body, feature)| is_full(self.shape(body).feature(feature)))
+            }
+            RowSource::Connector(id, _) => {
+                self.connectors[id.index()].path().is_some_and(|path| !path.knots().is_empty())
+            }
+        }
+    }
+
+    /// How far [m] beyond its features a contact has run off them.
+    pub(crate) fn change_margin(&self) -> f64 {
+        CHANGE_SHARE * self.tolerances.accuracy
+    }
+
+    /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
+    /// rows that cannot.
+    pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
+        if !self.can_change(row) {
+            return None;
+        }
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, _) => {
+                let connector = &self.connectors[id.index()];
+                let path = connector.path()?;
+                rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [a, b]);
+                let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };
+                let outside = sample.overrun.max(lean);
+                let inside = || self.inside(&sample, row, features, [a, b]);
+                Some(self.change_margin() + if outside > 0.0 { -outside } else { inside() })
+            }
+        }
+    }
+
+    /// How far [m] a contact that lies within its features is from their ends, by their angles straight across.
+    fn inside(
+        &self,
+        sample: &GapSample,
+        row: &HeldRow,
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let shapes = row.bodies.map(|body| self.shape(body));
+        let levers = contact_levers([0, 1].map(|side| (shapes[side], features[side])));
+        let to_ends = |side: usize| {
+            let (is_primary, pose) = ((side == 0) == sample.primary_is_a, &movings[side].pose);
+            match shapes[side].feature(features[side]) {
+                Feature::Line(line) => {
+                    let along = pose.point_to_body(sample.point_normal).dot(line.normal.perp());
+                    (along - line.start).min(line.end - along)
+                }
+                Feature::Round(_) if row.leans => f64::INFINITY,
+                Feature::Round(round) => {
+                    let sign = if is_primary { -round.sign() } else { round.sign() };
+                    levers[side] * round.range.margin(pose.vector_to_body(sample.normal * sign))
+                }
+            }
+        };
+        to_ends(0).min(to_ends(1)).max(0.0)
+    }
+
+    /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet what touches them
+    /// from behind after half a turn. How far a sharp corner leans does not count.
+    pub(crate) fn overrun(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let mut sample = self.sample(bodies, features, movings);
+        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
+        sample.find_excess([0, 1].map(|side| (feature(side), &movings[side].pose)));
+        let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
+        let of_arc = |(side, excess): (usize, f64)| match feature(side) {
+            Feature::Round(round) => excess * round.radius.abs(),
+            Feature::Line(_) => 0.0,
+        };
+        let arcs = sides.into_iter().zip([sample.excess_primary, sample.excess_normal]);
+        arcs.map(of_arc).fold(sample.overrun, f64::max)
+    }
+
+    /// True if a row is a corner that leans off its line already: to lean further changes nothing.
+    pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
+        let RowSource::Contact(features) = row.source else { return false };
+        let sample = self.sample(row.bodies, features, movings);
+        if !self.is_corner_on_line(&sample, row.bodies, features, movings) {
+            return false;
+        }
+        self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
+    }
+
+    /// True if a contact that is outside of its features has left them.
+    pub(crate) fn has_left(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> bool {
+        let sample = self.sample(bodies, features, movings);
+        sample.overrun > 0.0 || !self.is_corner_on_line(&sample, bodies, features, movings)
+    }
+
+    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If it leans a little off the line, so that
+    /// the next corner along is nearer, it still touches it: so a block rocks from one corner to the other.
+    fn is_corner_on_line(
+        &self,
+        sample: &GapSample,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> bool {
+        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
+        let round = match (feature(0), feature(1)) {
+            (Feature::Round(_), Feature::Line(_)) => 0,
+            (Feature::Line(_), Feature::Round(_)) => 1,
+            _ => return false,
+        };
+        let is_sharp = feature(round).radius() == Some(0.0);
+        is_sharp || {
+            let direction = movings[round].pose.vector_to_body(-sample.normal);
+            self.shape(bodies[round]).goes_on_straight(features[round], direction)
+        }
+    }
+
+    /// How far [m] a contact lies outside of its features by their angles.
+    fn lean(
+        &self,
+        mut sample: GapSample,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let shape = |side: usize| self.shape(bodies[side]);
+        let feature = |side: usize| (shape(side).feature(features[side]), &movings[side].pose);
+        sample.find_excess([feature(0), feature(1)]);
+        let levers = contact_levers([0, 1].map(|side| (shape(side), features[side])));
+        let [primary, normal] = if sample.primary_is_a { levers } else { [levers[1], levers[0]] };
+        (sample.excess_primary * primary).max(sample.excess_normal * normal)
+    }
+}
+
+fn is_full(feature: &Feature) -> bool {
+    matches!(feature, Feature::Round(round) if round.range == DirectionRange::Full)
+}
+
+/// Distance [m] along a rail to the nearer end of the piece on which a point is.
+fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
+    let place = path.nearest(point, hint);
+    let rooms = path.knots().iter().flat_map(|knot| knot_rooms(path, knot, &place));
+    rooms.flatten().min_by(f64::total_cmp)
+}
+
+/// Distance [m] along a rail to a joint at the end and to one at the start of the piece on which a place is, if it is one.
+pub(crate) fn knot_rooms(path: &RailPath, knot: &RailKnot, place: &RailPlace) -> [Option<f64>; 2] {
+    // On a closed path the joint at its start is at both of its ends.
+    let end = if path.is_closed() && knot.arc_length == 0.0 { path.length() } else { knot.arc_length };
+    let before = (knot.before == place.piece()).then_some(end - place.arc_length);
+    let after = (knot.after == place.piece()).then_some(place.arc_length - knot.arc_length);
+    [before, after]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::test_scene::block_on_its_corner;
+    use halfgap_geometry::Pose;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_corner_leans_by_what_it_is_long_itself_whichever_body_is_named_first() {
+        // A corner of 0.1 m on a floor of 20 m, which is body 0.
+        let system = block_on_its_corner();
+        let group = system.group_of(BodyId(1)).expect("it is held");
+        let row = HeldRow { leans: false, ..group.rows[0] };
+        let RowSource::Contact([first, second]) = row.source else { panic!("it is a contact") };
+        let source = RowSource::Contact([second, first]);
+        let swapped = HeldRow { bodies: [row.bodies[1], row.bodies[0]], source, ..row };
+        let mechanism = system.mechanism();
+        let room = |row: &HeldRow, lean: f64| {
+            let mut movings = [0, 1].map(|body| system.flyer(BodyId(body)).moving_at(system.now));
+            let position = movings[1].pose.position;
+            movings[1].pose = Pose::new(position, FRAC_PI_2 + lean / 0.1);
+            mechanism.room(row, &movings).expect("the corner ends")
+        };
+        let margin = mechanism.change_margin();
+        for part in [0.1, 0.5, 0.9, 1.1, 2.0] {
+            let expected = (1.0 - part) * margin;
+            for found in [&row, &swapped].map(|row| room(row, part * margin)) {
+                // Features reach a little beyond smooth joints.
+                assert!((found - expected).abs() < 0.02 * margin, "{part}: {found} m for {expected} m");
+            }
+        }
+    }
+}
