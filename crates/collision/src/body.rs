@@ -1,5 +1,6 @@
 //! A body as collisions see it: a shape about its centre of mass, its inertia, its bounciness.
 
+use crate::motion::BodyState;
 use halfgap_geometry::Shape;
 
 /// Index of a body in its world.
@@ -43,5 +44,13 @@ impl Body {
     #[must_use]
     pub fn is_fixed(&self) -> bool {
         self.inverse_mass == 0.0 && self.inverse_moment == 0.0
+    }
+
+    /// Kinetic energy \[J\] in a state; none of what nothing moves.
+    #[must_use]
+    pub fn kinetic_energy(&self, state: &BodyState) -> f64 {
+        let part = |square: f64, inverse: f64| if inverse > 0.0 { 0.5 * square / inverse } else { 0.0 };
+        part(state.velocity.length_squared(), self.inverse_mass)
+            + part(state.angular_velocity.powi(2), self.inverse_moment)
     }
 }

@@ -94,6 +94,19 @@ impl Row {
         Row { normal: Some((body, coefficients)), ..self }
     }
 
+    /// A unilateral row of two sides, of which some are no bodies of the problem, with the coefficients for x, y and rotation of
+    /// either; `None` if neither is.
+    pub fn between(sides: [Option<BodyId>; 2], coefficients: &[f64; 6], offset: f64) -> Option<Self> {
+        let [c0, c1, c2, c3, c4, c5] = *coefficients;
+        let (primary, normal) = ([c0, c1, c2], [c3, c4, c5]);
+        match sides {
+            [Some(a), Some(b)] => Some(Self::new(a, primary, offset).against(b, normal)),
+            [Some(a), None] => Some(Self::new(a, primary, offset)),
+            [None, Some(b)] => Some(Self::new(b, normal, offset)),
+            [None, None] => None,
+        }
+    }
+
     /// The same row as an equation.
     pub fn bilateral(self) -> Self {
         Row { bilateral: true, ..self }

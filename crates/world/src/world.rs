@@ -366,7 +366,7 @@ impl World {
         }
         let has_failed = self.system.failure().is_some();
         let until = Time::from_seconds(time);
-        self.system.expect(self.sentry.duration.max(time - self.time()));
+        self.system.set_duration(self.sentry.duration.max(time - self.time()));
         let (system, told) = (&mut self.system, &mut self.told);
         let outcome = advance_while(system, until, |system, handled| tell(told, system, *handled, on_event));
         let reached =

@@ -1,7 +1,7 @@
 //! A step of an explicit method, from the tableau of its coefficients.
 
 use super::tableau::{Stage, Tableau, Term};
-use super::{Ode, Point, Stiffness};
+use super::{Ode, Point, StiffnessEstimate};
 
 /// Components that are handled together. The last lane is padded with numbers that nobody reads.
 pub(super) type Lane = [f64; WIDTH];
@@ -165,8 +165,8 @@ impl Explicit {
 
     /// Size of the system's fastest rate times the step, by the difference between the last stage and the end, both of
     /// which are at the end of the step: HNW's (2.26) in "Solving Ordinary Differential Equations II", IV.2.
-    pub(super) fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> Stiffness {
-        let Some(last) = self.tableau.stages.last() else { return Stiffness::default() };
+    pub(super) fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {
+        let Some(last) = self.tableau.stages.last() else { return StiffnessEstimate::default() };
         let place = self.tableau.stages.len();
         self.move_along(last.terms);
         let rates = &self.rates.as_flattened()[WIDTH * place * self.lanes..][..self.size];
@@ -179,7 +179,7 @@ impl Explicit {
         let told = if of_states > 0.0 { self.length.abs() * (of_rates / of_states).sqrt() } else { 0.0 };
         let swing = self.tableau.swing.as_ref().filter(|swing| told >= swing.from);
         let dense_error = swing.map_or(0.0, |swing| swing.by * (of_states / scales.len() as f64).sqrt());
-        Stiffness { fastest: told, dense_error }
+        StiffnessEstimate { fastest: told, dense_error }
     }
 
     fn error(&self, row: usize) -> &[f64] {

@@ -57,7 +57,7 @@ mod through;
 pub use control::{Accepted, is_kept};
 pub use method::Method;
 pub use polynomial::{Jet, SegmentPolynomial, Spread};
-pub use stepper::{Stepper, Stiffness};
+pub use stepper::{Stepper, StiffnessEstimate};
 
 /// A system of ordinary differential equations `y' = f(t, y)`.
 pub trait Ode {

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// How fast the fastest part of a system is, as a step of it tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stiffness {
+pub struct StiffnessEstimate {
     /// Size of the fastest rate times the step: an explicit method is held up by what is fast rather than by its errors when
     /// this comes to [`Method::stability_limit`].
     pub fastest: f64,
@@ -163,10 +163,10 @@ impl Stepper {
     /// Estimates how fast the fastest part of the system is, where `end` is the state at the end of the last step with its
     /// rates, and what that does to the motion along the step.
     #[must_use]
-    pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> Stiffness {
+    pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {
         match &mut self.kind {
             Kind::Explicit(explicit) => explicit.stiffness(end, scales),
-            Kind::Implicit(radau) => Stiffness { fastest: radau.stiffness(), dense_error: 0.0 },
+            Kind::Implicit(radau) => StiffnessEstimate { fastest: radau.stiffness(), dense_error: 0.0 },
         }
     }
 

@@ -2,7 +2,7 @@
 //! impact. Forces that last are laws.
 
 use super::error::AdvanceError;
-use super::event::events::EventWork;
+use super::event::cause::{Cause, EventWork};
 use super::limits::storms::Recent;
 use super::system::{Handled, RigidSystem};
 use crate::time::Time;
@@ -36,10 +36,7 @@ impl RigidSystem {
         changes: &[VelocityChange],
     ) -> Result<Option<Handled>, AdvanceError> {
         let outcome = self.happen(time.max(self.now), |system| {
-            let mut work = system.work.take().unwrap_or_default();
-            let outcome = system.change_velocities(&mut work, changes);
-            system.work = Some(work);
-            outcome
+            system.with_work(Cause::Other, |system, work| system.change_velocities(work, changes))
         });
         self.complete_dense();
         outcome
@@ -73,11 +70,11 @@ impl RigidSystem {
     /// Changes the velocities of a body in flight.
     fn change_velocity(&mut self, change: &VelocityChange) {
         let &VelocityChange { body, velocity, angular_velocity } = change;
-        self.restart_flight(body, self.now);
+        self.book_damping(body, self.now);
         let before = self.flyer(body).unwound_at(self.now);
         self.ledger.interventions += self.work_of(body, &before, change);
         let now = self.now;
-        self.flyer_mut(body).cut(now, velocity, angular_velocity);
+        self.interrupt(body).cut(now, velocity, angular_velocity);
     }
 
     /// Change of the kinetic energy [J] of a body in a state.

@@ -101,7 +101,7 @@ impl RigidParts {
 }
 
 fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
-    let RigidSettings { tolerances, steps, .. } = settings;
+    let RigidSettings { tolerances, steps, search, .. } = settings;
     // What there is of nothing may be zero.
     let sizes = [
         ("target_gap", tolerances.target_gap),
@@ -111,12 +111,16 @@ fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsErro
         ("resolution_time", settings.resolution_time),
         ("steps.length", steps.length),
         ("steps.speed", steps.speed),
+        ("search.depth", search.depth),
+        ("search.rest", search.rest),
     ];
     let largest_step = steps.largest_step.unwrap_or(1.0);
+    let extra_time = settings.extra.map_or(1.0, |extra| extra.time);
     let steps = [
         ("steps.local_error", steps.local_error),
         ("steps.largest_step", largest_step),
         ("impulse_step", settings.impulse_step.unwrap_or(1.0)),
+        ("extra.time", extra_time),
     ];
     let rules: [Rule<'_>; 3] = [
         (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
@@ -148,7 +152,11 @@ fn check_body((body, law, state): &(Body, FlightLaw, BodyState)) -> Result<(), B
         (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
         (FINITE.0, FINITE.1, &numbers),
         ("between 0 and 1", |value| (0.0..=1.0).contains(&value), &[("elasticity", body.elasticity)]),
-    ])
+    ])?;
+    if (body.inverse_mass > 0.0) != (body.inverse_moment > 0.0) {
+        return Err(("inverse moment", "positive exactly if the inverse mass is", body.inverse_moment));
+    }
+    Ok(())
 }
 
 /// A quantity, the rule that it breaks, and its value.
@@ -168,7 +176,7 @@ fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
 mod tests {
     use super::super::system::RigidSystem;
     use super::super::test_scene::FINE;
-    use super::super::{AdvanceError, StepControl};
+    use super::super::{AdvanceError, ExtraAcceleration, StepControl};
     use super::*;
     use glam::DVec2;
     use halfgap_collision::{Anchor, ConnectorKind};
@@ -212,6 +220,16 @@ mod tests {
         assert_eq!(mass, "the inverse mass of body 0 must be finite, and not negative, got -1");
         let lively = of_body(|disc| disc.0.elasticity = 1.5);
         assert_eq!(lively, "the elasticity of body 0 must be between 0 and 1, got 1.5");
+        let stiff = of_body(|disc| disc.0.inverse_moment = 0.0);
+        assert_eq!(
+            stiff,
+            "the inverse moment of body 0 must be positive exactly if the inverse mass is, got 0"
+        );
+        let extra = ExtraAcceleration { time: 0.0, distance: false, joints_only: false };
+        let remedy = refused(|_, settings| settings.extra = Some(extra));
+        assert_eq!(remedy, "extra.time must be positive and finite, got 0");
+        let depth = refused(|_, settings| settings.search.depth = -1.0);
+        assert_eq!(depth, "search.depth must be finite, and not negative, got -1");
         let gap = refused(|_, settings| settings.tolerances.target_gap = f64::INFINITY);
         assert_eq!(gap, "target_gap must be finite, and not negative, got inf");
         let steps = StepControl { largest_step: Some(0.0), ..FINE.steps };

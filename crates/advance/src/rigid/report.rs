@@ -2,14 +2,13 @@
 
 use super::event::region::Region;
 use super::held::settling::Settling;
-use super::ledger::Ledger;
 use super::step::dynamics::Dynamics;
-use super::step::group::{Group, Work};
-use super::step::rows::{HeldRow, RowSource, moving_of};
+use super::step::group::Group;
+use super::step::rows::{HeldRow, RowSource};
 use super::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Moving};
+use halfgap_collision::{BodyId, Collision, ConnectorId, Moving};
 use halfgap_geometry::FeatureId;
 
 /// The force of one row: a contact, or one direction of a connector.
@@ -148,63 +147,6 @@ impl RigidSystem {
         let closing = (-impact.rate_before).max(0.0);
         (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
     }
-
-    /// The energy's books at a time of the present segments.
-    #[must_use]
-    pub fn ledger_at(&self, time: Time) -> Ledger {
-        let mut ledger = Ledger::default();
-        self.write_ledger(time, &mut ledger);
-        ledger
-    }
-
-    /// Writes what [`Self::ledger_at`] tells, in place of what is there.
-    pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
-        let Ledger { impacts, captures, projections, interventions, damping, ref laws } = self.ledger;
-        let mut room = std::mem::take(&mut ledger.laws);
-        room.clone_from(laws);
-        *ledger = Ledger { impacts, captures, projections, interventions, damping, laws: room };
-        for group in self.groups.by_leader.iter().flatten() {
-            let offset = time.since(group.start);
-            for (&work, path) in group.works.iter().zip(group.work_paths()) {
-                ledger.book(work, path.value_at(offset));
-            }
-        }
-        for body in self.bodies() {
-            ledger.damping += self.damping_loss(body, time);
-        }
-    }
-
-    /// Energy [J] that damping took from a body in flight since the start of its segment.
-    fn damping_loss(&self, body: BodyId, time: Time) -> f64 {
-        let flyer = self.flyer(body);
-        let Some(start) = flyer.flight_start().filter(|_| flyer.law().is_damped()) else { return 0.0 };
-        let inertia = flyer.body();
-        let energy = |state: &BodyState| {
-            let spin = state.angular_velocity;
-            0.5 * state.velocity.length_squared() / inertia.inverse_mass
-                + 0.5 * spin * spin / inertia.inverse_moment
-                - flyer.law().acceleration.dot(state.position) / inertia.inverse_mass
-        };
-        energy(&flyer.unwound_at(time)) - energy(start)
-    }
-
-    /// Books what damping took from a body in flight, which starts another segment at a time.
-    pub(crate) fn restart_flight(&mut self, body: BodyId, time: Time) {
-        if self.flyer(body).law().is_damped() {
-            self.ledger.damping += self.damping_loss(body, time);
-            let state = self.flyer(body).unwound_at(time);
-            self.flyers[body.index()].fly_from(time, state);
-        }
-    }
-}
-
-impl Ledger {
-    pub(crate) fn book(&mut self, work: Work, value: f64) {
-        match work {
-            Work::Law(law) => self.laws[law] += value,
-            Work::Damping => self.damping += value,
-        }
-    }
 }
 
 fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
@@ -220,23 +162,6 @@ fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
         normal: record.geometry.normal,
         force: record.response.force.unwrap_or(0.0),
         bouncing: None,
-    }
-}
-
-impl super::step::rows::Mechanism<'_> {
-    /// Where a row's force acts on its primary body [m], and its normal.
-    fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
-        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
-        match row.source {
-            RowSource::Connector(id, index) => {
-                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
-                (sample.point_a, sample.normal)
-            }
-            RowSource::Contact(features) => {
-                let sample = self.sample(row.bodies, features, [a, b]);
-                (sample.point_primary, sample.normal)
-            }
-        }
     }
 }
 

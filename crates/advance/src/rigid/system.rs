@@ -4,8 +4,8 @@
 //! Between events nothing is computed; an event touches only its bodies and what is near them.
 
 use super::error::AdvanceError;
+use super::event::cause::EventWork;
 use super::event::connectors::ConnectorState;
-use super::event::events::EventWork;
 use super::event::groups::Groups;
 use super::event::impacts::ImpactReport;
 use super::event::ticks::Ticks;
@@ -150,11 +150,9 @@ pub struct RigidSystem {
     pub(crate) is_forceless: bool,
     pub(crate) paces: Vec<Pace>,
     /// For how long [s] the system will be advanced in all; 0 if nothing is known.
-    pub(crate) horizon: f64,
+    pub(crate) duration: f64,
     pub(crate) ledger: Ledger,
     pub(crate) ticks: Ticks,
-    /// The event at hand is a tick.
-    pub(crate) at_tick: bool,
     /// When the system started.
     pub(crate) start: Time,
     /// Taken out while an event is handled.
@@ -163,7 +161,7 @@ pub struct RigidSystem {
     pub(crate) extended: Vec<BodyId>,
     pub(crate) stage: Stage,
     pub(crate) steppers: Steppers,
-    pub(crate) scales: Vec<f64>,
+    pub(crate) error_scales: Vec<f64>,
     pub(crate) last_impact: ImpactReport,
     pub(crate) changes: ContactChanges,
     /// Which of what begins is no change.
@@ -221,9 +219,8 @@ impl RigidSystem {
             is_forceless: laws.is_empty()
                 && flyers.iter().all(|flyer| flyer.law().acceleration == DVec2::ZERO),
             paces: vec![Pace::default(); count],
-            horizon: 0.0,
+            duration: 0.0,
             ticks: Ticks::default(),
-            at_tick: false,
             start,
             ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
             has_potential: laws.iter().map(|law| law.potential(&snapshot).is_some()).collect(),
@@ -237,7 +234,7 @@ impl RigidSystem {
             extended: Vec::new(),
             stage: Stage::new(movings),
             steppers: Steppers::new(settings.method),
-            scales: Vec::new(),
+            error_scales: Vec::new(),
             last_impact: ImpactReport::default(),
             changes: ContactChanges::default(),
             goes_on: Vec::new(),
@@ -338,7 +335,8 @@ impl RigidSystem {
         &self.excluded
     }
 
-    pub(crate) fn flyer_mut(&mut self, body: BodyId) -> &mut Flyer {
+    /// A body whose segment is cut short, which counts.
+    pub(crate) fn interrupt(&mut self, body: BodyId) -> &mut Flyer {
         self.counts.segments += 1;
         self.counts.backups += 1;
         &mut self.flyers[body.index()]
@@ -355,6 +353,14 @@ impl RigidSystem {
     /// Laws that act on a body.
     pub(crate) fn laws_of(&self, body: BodyId) -> &[usize] {
         self.laws_of.of(body)
+    }
+
+    /// Lists the laws that act on some bodies, each once, ascending.
+    pub(crate) fn list_laws(&self, bodies: &[BodyId], laws: &mut Vec<usize>) {
+        laws.clear();
+        laws.extend(bodies.iter().flat_map(|&body| self.laws_of(body)));
+        laws.sort_unstable();
+        laws.dedup();
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_> {

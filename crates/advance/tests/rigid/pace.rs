@@ -35,7 +35,7 @@ fn hum(duration: f64) -> (Result<(), AdvanceError>, RigidSystem) {
     let disc = body(&disc(0.5), moving(DVec2::new(1e-3, 0.0), DVec2::ZERO, 0.0));
     let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(Hum)], ..RigidParts::default() };
     let mut system = RigidSystem::new(parts, SETTINGS, Time::ZERO).expect("nothing touches");
-    system.expect(duration);
+    system.set_duration(duration);
     let outcome = advance_until(&mut system, Time::from_seconds(3e4 / FREQUENCY), |_, _| ());
     (outcome, system)
 }

@@ -339,10 +339,7 @@ impl WorldBuilder {
 fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
     let bounds = bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()));
     let size = bounds.reduce(Aabb::union).map_or(0.0, |all| all.size().length());
-    let kinetic = bodies.iter().filter(|(body, ..)| !body.is_fixed()).map(|(body, _, state)| {
-        let (v, w) = (state.velocity, state.angular_velocity);
-        0.5 * (v.length_squared() / body.inverse_mass + w * w / body.inverse_moment)
-    });
+    let kinetic = bodies.iter().map(|(body, _, state)| body.kinetic_energy(state));
     kinetic.sum::<f64>() + forces * size
 }
 

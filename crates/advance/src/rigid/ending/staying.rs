@@ -166,7 +166,7 @@ mod tests {
             let said = dynamics.stays(0);
             let done = (0..=64).all(|part| {
                 dynamics.place_at(span * f64::from(part) / 64.0);
-                dynamics.room(0) >= 0.0
+                dynamics.way_to_end(0) >= 0.0
             });
             [said, done]
         })

@@ -57,13 +57,13 @@ const RELEASES: Watch = Watch {
 const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
-    read: |dynamics, row| dynamics.room(row),
+    read: |dynamics, row| dynamics.way_to_end(row),
     counts: |_, _| true,
     end: SegmentEnd::Change,
 };
 const SINKINGS: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
-    place_for: |dynamics, row, offset| dynamics.put_leaning_at(row, offset),
+    place_for: |dynamics, row, offset| dynamics.put_idle_at(row, offset),
     read: |dynamics, row| dynamics.height(row),
     // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
     counts: |dynamics, row| dynamics.is_within(row),
@@ -255,13 +255,13 @@ impl Dynamics<'_> {
         let Samples { rooms, heights, early, .. } = &mut samples;
         self.find_who_may_leave(rooms);
         self.watch_rows(|row| rooms.get(row).is_some_and(|sample| sample[0].is_finite()));
-        fill(heights, self.group.leaning.len());
+        fill(heights, self.group.idle.len());
         early.clear();
         early.resize(heights.len(), [0.0; EARLY]);
         for index in 0..if rooms.is_empty() && heights.is_empty() { 0 } else { NODES } {
             self.put_watched_at(node(index, self.group.span));
             for (row, sample) in rooms.iter_mut().enumerate().filter(|(_, sample)| sample[0].is_finite()) {
-                sample[index] = self.room(row);
+                sample[index] = self.way_to_end(row);
             }
             for (row, sample) in heights.iter_mut().enumerate() {
                 sample[index] = self.height(row);
@@ -299,13 +299,13 @@ impl Dynamics<'_> {
     fn find_early_sinking(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, samples: &Samples) {
         for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
             let fall = early_fall(heights[0], early, self.group.span, |offset| {
-                self.put_leaning_at(row, offset);
+                self.put_idle_at(row, offset);
                 self.height(row)
             });
             let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) else {
                 continue;
             };
-            self.put_leaning_at(row, offset);
+            self.put_idle_at(row, offset);
             if self.is_within(row) {
                 *earliest = Some((offset, SegmentEnd::Sink(row)));
             }
@@ -318,7 +318,7 @@ impl Dynamics<'_> {
         for (row, values) in rooms.iter().enumerate() {
             let fall = fall_after_rise(values, self.group.span, |offset| {
                 self.put_row_at(row, offset);
-                self.room(row)
+                self.way_to_end(row)
             });
             if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
                 *earliest = Some((offset, SegmentEnd::Change(row)));
@@ -392,34 +392,34 @@ impl Dynamics<'_> {
     fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
         let span = self.group.span;
         let mut read = |offset: f64| {
-            self.put_leaning_at(row, offset);
-            self.height(row).max(-self.leaning_room(row))
+            self.put_idle_at(row, offset);
+            self.height(row).max(-self.idle_way(row))
         };
         let values = std::array::from_fn(|index| read(node(index, span)));
         first_fall_before(&values, span, None, read)
     }
 
     /// How far a row is from running off its features, without end for one that cannot.
-    pub(crate) fn room(&self, row: usize) -> f64 {
-        self.physics.mechanism.room(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
+    pub(crate) fn way_to_end(&self, row: usize) -> f64 {
+        self.physics.mechanism.way_to_end(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
     /// Distance [m] of a contact that is touched without force from its least gap.
     fn height(&self, row: usize) -> f64 {
-        let row = &self.group.leaning[row];
+        let row = &self.group.idle[row];
         self.physics.mechanism.gap(row, &self.stage.movings) - row.gap
     }
 
     /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
     /// projection onto the held rows may have moved their bodies, and what starts below its least gap is not seen to sink.
-    pub(crate) fn lower_leaning(&mut self) {
-        let Group { bodies, end_state, leaning, .. } = &mut *self.group;
-        if leaning.is_empty() {
+    pub(crate) fn lower_idle(&mut self) {
+        let Group { bodies, end_state, idle, .. } = &mut *self.group;
+        if idle.is_empty() {
             return;
         }
         self.stage.load(bodies, end_state);
         let mechanism = &self.physics.mechanism;
-        for row in leaning {
+        for row in idle {
             let gap = mechanism.gap(row, &self.stage.movings);
             row.gap = row.gap.min(gap - mechanism.tolerances.sink());
         }
@@ -444,13 +444,13 @@ impl Dynamics<'_> {
 
     /// True if a contact that is touched without force lies within its features.
     fn is_within(&self, row: usize) -> bool {
-        self.leaning_room(row) >= 0.0
+        self.idle_way(row) >= 0.0
     }
 
     /// How far [m] a contact that is touched without force is from running off its features, without end if it cannot.
-    fn leaning_room(&self, row: usize) -> f64 {
-        let row = &self.group.leaning[row];
-        self.physics.mechanism.room(row, &self.stage.movings).unwrap_or(f64::INFINITY)
+    fn idle_way(&self, row: usize) -> f64 {
+        let row = &self.group.idle[row];
+        self.physics.mechanism.way_to_end(row, &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
     /// Force [N] of a row, raised by what counts as none; without end for one of either sign.

@@ -11,8 +11,8 @@ use crate::rigid::step::rows::{RowSource, knot_rooms};
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, Collision, Connector, ConnectorId, ConnectorKind, Detector, Flight, Motion, MotionBounds,
-    RailHint, Rope, RopeSearch, rope_contact,
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Detector, Flight, Motion,
+    MotionBounds, RailHint, Rope, RopeSearch, rope_contact,
 };
 
 /// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
@@ -178,12 +178,10 @@ impl RigidSystem {
                 let Some(rope) = rope_of(self.connector(id)) else { continue };
                 let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, self.now));
                 let sample = self.connector(id).measure(0, &a, &b);
-                let at_rest = sample.kinematics.rate <= self.rest_speed();
-                let touches = sample.gap <= self.settings.tolerances.accuracy;
+                let slack = self.slack_of(&sample);
                 let state = &mut self.connector_states[id.index()];
                 state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
-                state.slack = if at_rest && touches { sink + (-sample.gap).max(0.0) } else { 0.0 };
-                state.slack += f64::from(state.repeats_at(self.now)) * sink;
+                state.slack = slack + f64::from(state.repeats_at(self.now)) * sink;
                 state.clear = self.now;
                 self.predict_rope(id, &rope);
             }
@@ -276,10 +274,14 @@ impl RigidSystem {
         let hint = self.connector_states[id.index()].hint;
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
-        let tolerances = &self.settings.tolerances;
-        let rests = sample.kinematics.rate <= self.rest_speed() && sample.gap <= tolerances.accuracy;
-        let slack = if rests { tolerances.sink() + (-sample.gap).max(0.0) } else { 0.0 };
-        Stop { id, hint, slack }
+        Stop { id, hint, slack: self.slack_of(&sample) }
+    }
+
+    /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than nothing where it is touched.
+    fn slack_of(&self, sample: &ConnectorSample) -> f64 {
+        let touches = sample.gap <= self.settings.tolerances.accuracy;
+        let rests = touches && sample.kinematics.rate <= self.rest_speed();
+        if rests { self.sink() + (-sample.gap).max(0.0) } else { 0.0 }
     }
 
     /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.

@@ -35,7 +35,7 @@ impl RigidSystem {
     /// Cuts the groups of a region at the present time, or a little off, and ends them: their bodies fly on from there.
     pub(crate) fn cut_groups(&mut self, region: &mut Region) {
         self.complete_dense();
-        let (seen, fired) = (self.now, region.fired);
+        let (seen, fired) = (self.now, region.cause.fired());
         self.measure_touches(region);
         let gap = fired.map(|fired| self.gap_at(fired, seen).0);
         let time = self.cut_exactly(region, fired, gap);
@@ -107,7 +107,7 @@ impl RigidSystem {
         let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
         let mut seen = region.touches.iter().zip(&region.motions);
         let moves_touches = seen.any(|(&touch, &(gap, _))| {
-            let counts = time == self.now || region.fired == Some(touch);
+            let counts = time == self.now || region.cause.fired() == Some(touch);
             counts && (self.gap_at(touch, time).0 - gap).abs() > allowed
         });
         moves_touches || self.strayed(region, time).any(|body| self.is_in_another(body, region, time))

@@ -1,20 +1,19 @@
 //! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
 
+use super::cause::{Cause, EventWork};
 use super::impacts::{ImpactReport, Manner};
-use super::region::{Region, Touch};
+use super::region::{Region, Touch, sorted};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::limits::bounces::closes_fast;
 use crate::rigid::limits::repeats::{CALM_REPEATS, is_same_time};
 use crate::rigid::search::pairs::PairId;
 use crate::rigid::step::group::SegmentEnd;
-use crate::rigid::step::rows::{HeldRow, RowSource};
+use crate::rigid::step::rows::RowSource;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
     Body, BodyId, BodyState, Collision, ConnectorId, Detector, GapKinematics, Tolerances, Zone,
 };
-use halfgap_contact::Impact;
 use halfgap_geometry::{FeatureId, GapSample};
 
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
@@ -26,43 +25,30 @@ const MOST_CANCELLING: f64 = 10.0;
 /// Cap on the rounds in which the low hops of one event are stilled.
 const HOP_ROUNDS: u32 = 4;
 
-/// Buffers of the handling of events, kept from one to the next.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct EventWork {
-    pub(crate) region: Region,
-    pub(crate) impact: Impact,
-    pub(crate) settling: Settling,
-    pub(crate) seeds: Vec<BodyId>,
-    /// Impulses that the contacts of the region carry until its low hops have come down [N s].
-    pub(crate) carried: Vec<f64>,
-    /// States of the region's bodies before contacts were stopped as bilateral ones, and what that was.
-    before: Vec<BodyState>,
-    pub(crate) stop: ImpactReport,
-    /// How often the pair that fired has done so without time going by, beyond what is calm.
-    repeats: u32,
-    /// The contact that fired does not close: the search takes its rounding for motion.
-    pub(crate) fired_open: bool,
+/// Where the energy of an impact is booked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Booking {
+    /// As an impact, unless it is slow.
+    BySpeed,
+    /// As a capture: something was stopped without elasticity, whatever its speed.
+    Capture,
 }
 
 impl RigidSystem {
     /// Finds what is held at the start, where nothing has happened yet.
     pub(crate) fn establish(&mut self) -> Result<(), AdvanceError> {
-        let mut work = self.work.take().unwrap_or_default();
-        work.seeds.clear();
-        work.seeds.extend(self.bodies());
-        work.region.at_start = true;
-        self.collect_region(&mut work.region, &work.seeds, self.now);
-        let outcome = if self.closes_slowly(&work.region) {
+        self.with_work(Cause::Start, |system, work| {
+            work.seeds.clear();
+            work.seeds.extend(system.bodies());
+            system.collect_region(&mut work.region, &work.seeds, system.now);
+            if !system.closes_slowly(&work.region) {
+                return system.go_on(work);
+            }
             // What closes fast fires in its own time, unless that is now.
             let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
             work.region.records.retain(|record| !fast(record));
-            self.collide(&mut work).map(|_| ())
-        } else {
-            self.go_on(&mut work)
-        };
-        work.region.at_start = false;
-        self.work = Some(work);
-        outcome
+            system.collide(work).map(|_| ())
+        })
     }
 
     /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more slowly than forces
@@ -90,18 +76,15 @@ impl RigidSystem {
         if self.sinks(pair, features) || self.passes_over(pair, features) || self.grazes(pair, features) {
             return Ok(false);
         }
-        self.note_pressed(Touch::new(bodies, features))?;
+        let touch = Touch::new(bodies, features);
+        self.note_pressed(touch)?;
         let repeats = self.note_repeat(pair)?;
-        let mut work = self.work.take().unwrap_or_default();
-        work.repeats = repeats.saturating_sub(CALM_REPEATS);
-        work.seeds.clear();
-        work.seeds.extend(bodies);
-        work.region.fired = Some(Touch { bodies, features });
-        let outcome = self.handle_impact(&mut work);
-        work.region.fired = None;
-        work.repeats = 0;
-        self.work = Some(work);
-        outcome
+        self.with_work(Cause::Fired(touch), |system, work| {
+            work.repeats = repeats.saturating_sub(CALM_REPEATS);
+            work.seeds.clear();
+            work.seeds.extend(bodies);
+            system.handle_impact(work)
+        })
     }
 
     /// A group's segment ends, or something ends it early; true if that is an impact: at a stop or a corner of a rail.
@@ -113,10 +96,7 @@ impl RigidSystem {
         if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
             return self.extend_naturally(leader).map(|()| false);
         }
-        let mut work = self.work.take().unwrap_or_default();
-        let outcome = self.handle_group_with(leader, &mut work);
-        self.work = Some(work);
-        outcome
+        self.with_work(Cause::Other, |system, work| system.handle_group_with(leader, work))
     }
 
     fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<bool, AdvanceError> {
@@ -124,37 +104,33 @@ impl RigidSystem {
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
         let Some((_, end)) = group.event else { return Ok(false) };
-        let is_pull = group.made == self.now && matches!(end, SegmentEnd::Release(_));
-        let released = match end {
-            SegmentEnd::Release(row) => group.rows[row].touch(),
-            _ => None,
-        };
-        let changed_row = match end {
-            SegmentEnd::Change(row) => Some(group.rows[row]),
+        match end {
+            SegmentEnd::Release(row) => {
+                if let Some(touch) = group.rows[row].touch() {
+                    work.region.cause = Cause::Released(touch);
+                }
+                if group.made == self.now {
+                    self.last_pull = Some(self.now);
+                }
+                self.handle_change(work)
+            }
+            SegmentEnd::Change(row) => match (group.rows[row].touch(), group.rows[row].source) {
+                (_, RowSource::Connector(id, _)) => self.pass_joint(work, id),
+                (touch, RowSource::Contact(_)) => {
+                    let left = touch.filter(|&touch| self.leaves(touch));
+                    work.region.cause = left.map_or(Cause::Other, Cause::RunOff);
+                    self.handle_change(work)
+                }
+            },
             SegmentEnd::Sink(row) => {
-                let row = group.leaning[row];
-                return self.handle_sinking(work, &row);
+                // A contact that was touched without force has sunk.
+                let Some(touch) = group.idle[row].touch() else { return Ok(false) };
+                work.region.cause = Cause::Fired(touch);
+                self.handle_impact(work)
             }
-            SegmentEnd::Release(_) | SegmentEnd::Stop | SegmentEnd::Switch => None,
-        };
-        if is_pull {
-            self.last_pull = Some(self.now);
+            SegmentEnd::Stop => self.handle_impact(work),
+            SegmentEnd::Switch => self.handle_change(work),
         }
-        (work.region.run_off, work.region.released) = (None, released);
-        match changed_row.map(|row| (row.bodies, row.source)) {
-            Some((bodies, RowSource::Contact(features))) => {
-                let touch = Touch::new(bodies, features);
-                work.region.run_off = self.leaves(touch).then_some(touch);
-            }
-            Some((_, RowSource::Connector(id, _))) => return self.pass_joint(work, id),
-            None => {}
-        }
-        if end == SegmentEnd::Stop {
-            return self.handle_impact(work);
-        }
-        let outcome = self.handle_change(work);
-        (work.region.run_off, work.region.released) = (None, None);
-        outcome
     }
 
     /// True if a contact that has come to the end of its features leaves them.
@@ -163,32 +139,15 @@ impl RigidSystem {
         self.mechanism().has_left(bodies, features, [&moving[0], &moving[1]])
     }
 
-    /// A contact that was touched without force has sunk.
-    fn handle_sinking(&mut self, work: &mut EventWork, row: &HeldRow) -> Result<bool, AdvanceError> {
-        let RowSource::Contact(features) = row.source else { return Ok(false) };
-        work.region.fired = Some(Touch::new(row.bodies, features));
-        let outcome = self.handle_impact(work);
-        work.region.fired = None;
-        outcome
-    }
-
     /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
     fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
         let is_corner = self.pass_knot(id, self.now);
+        work.region.cause = if is_corner { Cause::Other } else { Cause::SmoothJoint };
         let happened = self.handle_impact(work)?;
         if is_corner {
             self.note_corner(id)?;
         }
-        // At a smooth joint rounding was stopped, unless something else has met at the same moment.
-        let rest = self.rest_speed();
-        let mut rows = self.last_impact.rows.iter();
-        let meets = rows.any(|row| !row.collision.parties.bilateral && row.rate_before < -rest);
-        let is_impact = happened && (is_corner || meets);
-        if happened && !is_impact {
-            self.counts.impacts -= 1;
-            self.has_hit = false;
-        }
-        Ok(is_impact)
+        Ok(happened)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
@@ -208,12 +167,11 @@ impl RigidSystem {
 
     /// A rope goes taut; true if there was an impact.
     pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
-        let mut work = self.work.take().unwrap_or_default();
-        work.seeds.clear();
-        work.seeds.extend(self.connector(id).bodies());
-        let outcome = self.handle_impact(&mut work);
-        self.work = Some(work);
-        outcome
+        self.with_work(Cause::Other, |system, work| {
+            work.seeds.clear();
+            work.seeds.extend(system.connector(id).bodies());
+            system.handle_impact(work)
+        })
     }
 
     /// What is held changes; true if there was an impact, of something else that closes within its target zone.
@@ -253,7 +211,7 @@ impl RigidSystem {
 
     /// True if another place closes where the bodies of the contact touch that has run off its features.
     fn neighbour_closes(&self, region: &Region) -> bool {
-        let Some(run_off) = region.run_off else { return false };
+        let Some(run_off) = region.cause.run_off() else { return false };
         let rest = self.rest_speed();
         let mut closing = region.records.iter().filter(|record| record.motion.normal_velocity < -rest);
         closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
@@ -262,11 +220,11 @@ impl RigidSystem {
     /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour closes or opens
     /// by is only the angle up to which joints are smooth. What meets at the same moment is an impact, which does without.
     fn hand_over(&mut self, work: &mut EventWork) {
-        let Some(run_off) = work.region.run_off else { return };
+        let Some(run_off) = work.region.cause.run_off() else { return };
         let is_neighbour = |record: &Collision| {
-            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let bodies = sorted(record.parties.primary.body, record.parties.normal.body);
             let (rate, speed) = (record.motion.normal_velocity, record.motion.center_velocity.length());
-            Touch::new(bodies, run_off.features).bodies == run_off.bodies && rate.abs() <= SEAM_ANGLE * speed
+            bodies == run_off.bodies && rate.abs() <= SEAM_ANGLE * speed
         };
         let records = &mut work.region.records;
         if records.iter().any(|record| closes_fast(record) && !is_neighbour(record)) {
@@ -283,7 +241,7 @@ impl RigidSystem {
     }
 
     pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
-        let fired = work.region.fired;
+        let fired = work.region.cause.fired();
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
             self.cut_groups(&mut work.region);
@@ -291,12 +249,10 @@ impl RigidSystem {
         }
         let rest = self.rest_speed();
         work.fired_open = fired.is_some_and(|fired| self.gap_at(fired, self.now).1 > -rest);
-        if self.at_tick {
+        if work.region.cause == Cause::Tick {
             self.put_back(work);
         }
-        let outcome = self.collide(work);
-        work.fired_open = false;
-        outcome
+        self.collide(work)
     }
 
     /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
@@ -306,13 +262,21 @@ impl RigidSystem {
         let is_storm = work.region.in_storm || work.repeats > 0;
         let mut report = std::mem::take(&mut self.last_impact);
         let now = self.now;
-        let manner = if is_storm || self.at_tick { Manner::Inelastic } else { Manner::Lawful };
+        let is_lawful = !is_storm && work.region.cause != Cause::Tick;
+        let manner = if is_lawful { Manner::Lawful } else { Manner::Inelastic };
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut report, now, manner);
         if outcome.is_ok() {
-            self.book_impact(&report, is_storm);
+            self.book_impact(&report, if is_storm { Booking::Capture } else { Booking::BySpeed });
         }
         self.last_impact = report;
-        let happened = outcome?;
+        outcome?;
+        // What comes to rest without closing is a contact that begins, not an impact.
+        let (rest, at_joint) = (self.rest_speed(), work.region.cause == Cause::SmoothJoint);
+        let mut rows = self.last_impact.rows.iter();
+        let happened = rows.any(|row| match row.collision.parties.bilateral {
+            true => !at_joint,
+            false => row.rate_before < -rest,
+        });
         if happened {
             self.has_hit = true;
             self.counts.impacts += 1;
@@ -320,7 +284,6 @@ impl RigidSystem {
         }
         self.remeasure(&mut work.region, self.now);
         self.go_on(work)?;
-        work.region.in_storm = false;
         Ok(happened)
     }
 
@@ -352,15 +315,16 @@ impl RigidSystem {
     /// Finds what is held, and stills what of it hops: to stop some contacts makes others hop.
     fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let EventWork { region, settling, .. } = &mut *work;
-        settling.expect(region.records.iter().map(|record| self.is_likely(record)));
+        settling.set_likely(region.records.iter().map(|record| self.is_likely(record)));
         settling.expect_forces(region, &self.changes.end);
-        self.settle_region(work, !work.region.at_start)?;
+        let may_hop = work.region.cause != Cause::Start;
+        self.settle_region(work, may_hop)?;
         for round in 1..=HOP_ROUNDS {
             if !self.any_held_hops(work) {
                 break;
             }
             let is_stilled = self.still_hops(work);
-            let with_hops = is_stilled && !work.region.at_start && round < HOP_ROUNDS;
+            let with_hops = is_stilled && may_hop && round < HOP_ROUNDS;
             self.settle_region(work, with_hops)?;
         }
         Ok(())
@@ -373,15 +337,10 @@ impl RigidSystem {
         outcome
     }
 
-    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are.
-    /// Where such rows contradict each other, nothing is done, and it says false: as unilateral ones they need not.
-    fn stop_bilaterally(&mut self, work: &mut EventWork) -> bool {
+    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are. Where
+    /// such rows contradict each other, nothing is done: as unilateral ones they need not.
+    fn stop_bilaterally(&mut self, work: &mut EventWork) {
         let now = self.now;
-        // At the start there may be blows to come, which are not to be stopped along with the rest.
-        if work.region.records.iter().any(closes_fast) {
-            unmark(&mut work.region);
-            return false;
-        }
         work.before.clear();
         work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(now)));
         // What may as well be left is not worth long trying.
@@ -395,14 +354,13 @@ impl RigidSystem {
             && self.is_modest(&work.stop, &work.region, &work.before);
         unmark(&mut work.region);
         if is_stopped {
-            self.book_impact(&work.stop, true);
+            self.book_impact(&work.stop, Booking::Capture);
         } else if outcome.is_ok() {
             for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
-                self.flyer_mut(body).fly_from(now, state);
+                self.flyers[body.index()].fly_from(now, state);
             }
             self.remeasure(&mut work.region, now);
         }
-        is_stopped
     }
 
     /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped, and by the most
@@ -452,13 +410,14 @@ impl RigidSystem {
         (sample.gap, GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
     }
 
-    pub(crate) fn book_impact(&mut self, report: &ImpactReport, is_storm: bool) {
+    /// Books what an impact changes of the energy.
+    pub(crate) fn book_impact(&mut self, report: &ImpactReport, booking: Booking) {
         // Connectors are stopped whichever way they move: a corner of a rail that turns to either side is an impact.
         let closing = report.rows.iter().map(|row| {
             if row.collision.parties.bilateral { row.rate_before.abs() } else { -row.rate_before }
         });
         let fastest = closing.fold(0.0, f64::max);
-        let is_capture = is_storm || fastest <= self.settings.tolerances.velocity_tol;
+        let is_capture = booking == Booking::Capture || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
         *booked += report.energy_change;
         self.note_kinetic_energy_before(report);

@@ -89,9 +89,9 @@ impl RigidSystem {
 
     /// How deep [m] two bodies may lie in one another, as the contacts of a group do that one of them is in, or was until now.
     /// What takes over from a contact that has sunk lies as deep.
-    pub(crate) fn holds_deep(&self, bodies: [BodyId; 2]) -> f64 {
+    pub(crate) fn held_depth(&self, bodies: [BodyId; 2]) -> f64 {
         let depths = bodies.map(|body| match self.group_of(body) {
-            Some(group) => group.sunk(),
+            Some(group) => group.depth(),
             None => self.groups.past_of[body.index()].sunk_until(self.now),
         });
         let sunk = depths[0].max(depths[1]);
@@ -104,7 +104,7 @@ impl RigidSystem {
         group: &mut Group,
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
-        let Self { flyers, connectors, laws, settings, stage, steppers, scales, .. } = self;
+        let Self { flyers, connectors, laws, settings, stage, steppers, error_scales: scales, .. } = self;
         let physics = Physics::of(flyers, connectors, laws, settings);
         let (start, stepper) = (group.start, steppers.of(group.stepping()));
         act(&mut Dynamics { physics, group, stage, start }, &mut Tools { stepper, scales, settings })
@@ -260,11 +260,9 @@ impl RigidSystem {
         let rows = settling.held.iter().map(|&(_, row)| row).filter(in_group);
         group.rows.extend(rows.clone().filter(|row| row.bilateral));
         group.rows.extend(rows.filter(|row| !row.bilateral));
-        self.list_leaning(&mut group, region, settling);
+        self.list_idle(&mut group, region, settling);
         self.list_stops(&mut group);
-        group.laws.extend(group.bodies.iter().flat_map(|&body| self.laws_of(body)));
-        group.laws.sort_unstable();
-        group.laws.dedup();
+        self.list_laws(&group.bodies, &mut group.laws);
         self.list_works(&mut group);
         self.foresee(&mut group);
         group.is_unwatched = self.is_unwatched(&group);
@@ -272,7 +270,7 @@ impl RigidSystem {
     }
 
     /// Lists the contacts of a group that are touched without force and neither close nor open.
-    fn list_leaning(&self, group: &mut Group, region: &Region, settling: &Settling) {
+    fn list_idle(&self, group: &mut Group, region: &Region, settling: &Settling) {
         if self.settings.impulse_step.is_some() {
             // Without contact forces the search is told of what sinks, once a step.
             return;
@@ -287,12 +285,12 @@ impl RigidSystem {
                 continue;
             }
             if rate.abs() <= self.rest_speed() {
-                let gap = self.sunk(gap);
+                let gap = self.refire_gap(gap);
                 let source = RowSource::Contact(touch.features);
                 let bodies = touch.bodies;
                 let (hint, leans, is_lifted) = (None, false, false);
                 let row = HeldRow { source, bodies, bilateral: false, gap, hint, leans, is_lifted };
-                group.leaning.push(self.leaning(row, self.now));
+                group.idle.push(self.with_lean(row, self.now));
             }
         }
     }
@@ -301,8 +299,8 @@ impl RigidSystem {
     pub(crate) fn is_watched(&self, touch: Touch) -> bool {
         let source = RowSource::Contact(touch.features);
         let groups = touch.bodies.into_iter().filter_map(|body| self.group_of(body));
-        let mut leaning = groups.flat_map(|group| &group.leaning);
-        leaning.any(|row| row.bodies == touch.bodies && row.source == source)
+        let mut idle = groups.flat_map(|group| &group.idle);
+        idle.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
     /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their features, and the ropes that
@@ -312,7 +310,7 @@ impl RigidSystem {
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
         let mut touched = std::mem::take(&mut self.touched);
         touched.clear();
-        group.leaning.retain(|row| {
+        group.idle.retain(|row| {
             let RowSource::Contact(features) = row.source else { return true };
             let touch = Touch { bodies: row.bodies, features };
             let [a, b] = row.bodies.map(|body| self.moving_at(body, self.now));
@@ -401,7 +399,7 @@ impl RigidSystem {
         group.end_state.clear();
         group.end_state.resize(dimension, 0.0);
         for place in 0..count {
-            self.restart_flight(group.bodies[place], self.now);
+            self.book_damping(group.bodies[place], self.now);
             let state = self.flyer(group.bodies[place]).unwound_at(self.now);
             set_body_state(&mut group.end_state, count, place, &state);
         }
@@ -411,7 +409,7 @@ impl RigidSystem {
             dynamics.soften_dependent();
             dynamics.end_on_rows(tools);
             dynamics.leave_lifted();
-            dynamics.lower_leaning();
+            dynamics.lower_idle();
         });
         self.ledger.projections += std::mem::take(&mut group.projected);
         std::mem::swap(&mut group.state, &mut group.end_state);
@@ -538,7 +536,7 @@ impl RigidSystem {
         match failure {
             StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
             StepFailure::Crawls(step) => {
-                AdvanceError::Crawls { time, step, duration: self.horizon, bodies, laws }
+                AdvanceError::Crawls { time, step, duration: self.duration, bodies, laws }
             }
             StepFailure::Unresolved(length) => {
                 let bodies = self.so_far_apart(group, length).map_or(bodies, Vec::from);
@@ -581,11 +579,11 @@ mod tests {
         });
         system.groups.put(group);
         let [floor, sunk, other] = [0, 1, 2].map(BodyId);
-        assert!((system.holds_deep([floor, sunk]) / gap - 6.0).abs() < 1e-6);
-        assert_eq!(system.holds_deep([floor, other]), 0.0);
+        assert!((system.held_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
+        assert_eq!(system.held_depth([floor, other]), 0.0);
         system.dissolve(sunk);
-        assert!((system.holds_deep([floor, sunk]) / gap - 6.0).abs() < 1e-6);
+        assert!((system.held_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
         system.now = system.now.plus(1e-3);
-        assert_eq!(system.holds_deep([floor, sunk]), 0.0);
+        assert_eq!(system.held_depth([floor, sunk]), 0.0);
     }
 }

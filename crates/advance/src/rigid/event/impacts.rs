@@ -62,7 +62,7 @@ impl RigidSystem {
     }
 
     /// Resolves the impact of a region's rows; the bodies, which must be in flight, go on with changed velocities, and the
-    /// records are brought up to date. True if any row closed: `report` then tells of it.
+    /// records are brought up to date. `report` tells of it.
     pub(crate) fn resolve_impact(
         &mut self,
         region: &mut Region,
@@ -70,7 +70,7 @@ impl RigidSystem {
         report: &mut ImpactReport,
         time: Time,
         manner: Manner,
-    ) -> Result<bool, AdvanceError> {
+    ) -> Result<(), AdvanceError> {
         let outcome = self.find_impulses(region, impact, manner);
         outcome.map_err(|source| impact_error(region, time, source))?;
         if self.leave_out_jammed(region, impact) {
@@ -78,11 +78,7 @@ impl RigidSystem {
             outcome.map_err(|source| impact_error(region, time, source))?;
         }
         self.conclude_impact(region, impact, report, time);
-        // What comes to rest without closing is a contact that begins, not an impact.
-        Ok(report
-            .rows
-            .iter()
-            .any(|row| row.collision.parties.bilateral || row.rate_before < -self.rest_speed()))
+        Ok(())
     }
 
     /// Finds the impulses of a region's rows.
@@ -128,8 +124,8 @@ impl RigidSystem {
     fn apply_impulses(&mut self, region: &mut Region, impact: &Impact, time: Time) {
         region.sum_changes(impact);
         for (&body, &[x, y, spin]) in region.bodies.iter().zip(&region.changes) {
-            self.restart_flight(body, time);
-            self.flyer_mut(body).cut(time, DVec2::new(x, y), spin);
+            self.book_damping(body, time);
+            self.interrupt(body).cut(time, DVec2::new(x, y), spin);
             if [x, y, spin] != [0.0; 3] {
                 self.struck[body.index()] = Some(time);
             }
@@ -182,7 +178,8 @@ impl RigidSystem {
         let shape = |side: usize| &self.flyer(sides[side].body).body().shape;
         let (primary, normal) = (shape(0).feature(primary), shape(1).feature(normal));
         let sample = GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
-        if let Some(sample) = sample.filter(|sample| sample.primary_is_a) {
+        if let Some(sample) = sample {
+            debug_assert!(sample.primary_is_a, "records have their primary first");
             let measured = (&sample, [primary.radius(), normal.radius()]);
             record.update(measured, [&moving[0], &moving[1]], time.seconds());
         }

@@ -102,6 +102,7 @@ impl Region {
 
 #[cfg(test)]
 mod tests {
+    use super::super::cause::Cause;
     use super::super::impacts::ImpactReport;
     use super::*;
     use crate::rigid::RigidParts;
@@ -147,9 +148,9 @@ mod tests {
         {
             let state = system.flyer(body).state_at(system.now);
             let state = BodyState { velocity, angular_velocity: 0.0, ..state };
-            system.flyer_mut(body).fly_from(Time::ZERO, state);
+            system.interrupt(body).fly_from(Time::ZERO, state);
         }
-        work.region.at_start = true;
+        work.region.cause = Cause::Start;
         system.collect_region(&mut work.region, &[BodyId(2), BodyId(3)], system.now);
         let (mut report, manner) = (ImpactReport::default(), Manner::Inelastic);
         let now = system.now;

@@ -3,6 +3,7 @@
 //! bodies. `connectors` says when a rope goes taut, and where on its rail a point is; `ticks` stands in for forces where contacts carry
 //! impulses only. What is held afterwards is found in `held`.
 
+pub(super) mod cause;
 pub(super) mod connectors;
 pub(super) mod cutting;
 pub(super) mod events;

@@ -1,6 +1,7 @@
 //! The region of an event: the bodies that touch each other around some seeds, with the groups that they belong to, and
 //! the records of all places where they touch.
 
+use super::cause::Cause;
 use crate::rigid::motion::lane::LaneKind;
 use crate::rigid::search::pairs::Link;
 use crate::rigid::step::rows::{HeldRow, RowSource};
@@ -10,7 +11,7 @@ use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
 };
-use halfgap_contact::Impact;
+use halfgap_contact::{BodyId as RowBody, Impact, Inertia, Problem, Row};
 use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
@@ -33,18 +34,12 @@ pub(crate) struct Region {
     pub(crate) motions: Vec<(f64, f64)>,
     /// Leaders of the groups that they belong to.
     pub(crate) groups: Vec<BodyId>,
-    /// Nothing has happened yet: what rests within `distance_tol` counts as touching.
-    pub(crate) at_start: bool,
+    /// Why its bodies are looked at.
+    pub(crate) cause: Cause,
     /// What happens to it is one event too many in a short time.
     pub(crate) in_storm: bool,
     /// It comes on so slowly that contacts which count as resting seem to take turns.
     pub(crate) is_hasty: bool,
-    /// The contact that fired: it takes part, however near it is to the ends of its features.
-    pub(crate) fired: Option<Touch>,
-    /// A contact that has just run off its features: its neighbours take over, if they touch.
-    pub(crate) run_off: Option<Touch>,
-    /// A contact that has just lost its force: what is found of it again may be what others were moved by meanwhile.
-    pub(crate) released: Option<Touch>,
     fresh: Vec<Collision>,
     /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
     pub(crate) changes: Vec<[f64; 3]>,
@@ -97,6 +92,22 @@ impl Region {
         (self.changes, self.struck) = (changes, struck);
     }
 
+    /// The row of a record in a problem of the region's bodies, in their order; `None` if nothing of it moves.
+    pub(crate) fn row_of(&self, record: &Collision, offset: f64) -> Option<Row> {
+        let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(RowBody);
+        let sides = [record.parties.primary.body, record.parties.normal.body].map(place);
+        let row = Row::between(sides, &record.motion.kinematics.jacobian, offset)?;
+        Some(if record.parties.bilateral { row.bilateral() } else { row })
+    }
+
+    /// Gives a problem the region's bodies and no rows.
+    pub(crate) fn begin(&self, problem: &mut Problem, inertia: impl Fn(BodyId) -> Inertia) {
+        problem.clear();
+        for &body in &self.bodies {
+            problem.add_body(inertia(body)).expect("inertias were checked when the body was made");
+        }
+    }
+
     pub(crate) fn add(&mut self, body: BodyId) {
         if self.place(body).is_none() {
             let place = u32::try_from(self.bodies.len()).unwrap_or(u32::MAX);
@@ -143,7 +154,7 @@ impl RigidSystem {
             let reach = lanes[0].reach + lanes[1].reach + self.settings.tolerances.distance_tol();
             let offset = moving.pose.position - self.position_of(other, time);
             // What has fired may be farther away by rounding.
-            let has_fired = region.fired.is_some_and(|fired| fired.bodies == sorted(body, other));
+            let has_fired = region.cause.fired().is_some_and(|fired| fired.bodies == sorted(body, other));
             if offset.length_squared() > reach * reach && !has_fired {
                 continue;
             }
@@ -182,26 +193,27 @@ impl RigidSystem {
         let bodies = [first.id, second.id];
         let depth = tolerances.distance_tol().max(self.may_have_sunk_by(bodies));
         detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
-        let takes_over = region.run_off.is_some_and(|run_off| run_off.bodies == bodies);
+        let takes_over = region.cause.run_off().is_some_and(|run_off| run_off.bodies == bodies);
         fresh.retain(|record| {
-            self.counts_as_touching(record, bodies, region.at_start, takes_over)
+            self.counts_as_touching(record, bodies, region.cause == Cause::Start, takes_over)
                 && !self.is_passed_over(record)
                 && !self.is_grazing(record)
         });
         // What has fired takes part, and what is put back at a tick, though it may have been moved out of its zone, or may have
         // turned by a little since: where a block lies flat, to put back one of its corners would sink the other.
         let moved = self.ticks.moved;
-        let waiting: &[Touch] = if self.at_tick { &self.ticks.waiting } else { &[] };
-        for known in region.fired.iter().chain(waiting).filter(|known| known.bodies == bodies) {
+        let fired = region.cause.fired();
+        let waiting = if region.cause == Cause::Tick { self.ticks.waiting_of(bodies) } else { &[] };
+        for known in fired.iter().filter(|fired| fired.bodies == bodies).chain(waiting) {
             if !fresh.iter().any(|record| touch_of(record, bodies) == Some(*known)) {
                 let record = record_features([first, second], known.features, tolerances, time.seconds());
                 let farthest = tolerances.distance_tol() + 2.0 * moved;
                 let is_near = |record: &Collision| record.geometry.distance <= farthest;
-                fresh.extend(record.filter(|record| region.fired == Some(*known) || is_near(record)));
+                fresh.extend(record.filter(|record| fired == Some(*known) || is_near(record)));
             }
         }
         region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
-        if let Some(run_off) = region.run_off {
+        if let Some(run_off) = region.cause.run_off() {
             fresh.retain(|record| touch_of(record, [first.id, second.id]) != Some(run_off));
         }
         if fresh.len() > 1 {
@@ -257,7 +269,7 @@ impl RigidSystem {
 }
 
 /// Two bodies, the lesser first.
-fn sorted(a: BodyId, b: BodyId) -> [BodyId; 2] {
+pub(super) fn sorted(a: BodyId, b: BodyId) -> [BodyId; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }
 

@@ -7,15 +7,16 @@
 //! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another blow may drive one
 //! on into the other, and what has turned meanwhile touches elsewhere.
 
-use super::events::EventWork;
+use super::cause::{Cause, EventWork};
 use super::region::{Region, Touch};
 use crate::rigid::error::{AdvanceError, Between};
+use crate::rigid::motion::law::Snapshot;
 use crate::rigid::search::pairs::PairId;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Tolerances};
-use halfgap_contact::{BodyId as RowBody, Problem, Row};
+use halfgap_contact::Problem;
 use halfgap_geometry::FeatureId;
 
 /// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a part of the way.
@@ -30,7 +31,7 @@ const THIN_SHARE: f64 = 1e-1;
 /// Part of that room to which it sinks before it fires again.
 const FIRST_SHARE: f64 = 0.6;
 /// Part of it beyond which it sinks no further, but for what others drive it.
-const DEEPEST: f64 = 0.9;
+const DEEPEST_SHARE: f64 = 0.9;
 /// Part of it by which it may sink further whenever it fires again, slowly.
 const FURTHER_SHARE: f64 = 1.0 / 96.0;
 /// So many times that room, what is deeper lies behind.
@@ -44,19 +45,41 @@ const MOST_PRESSED: u32 = 100_000;
 /// What waits for the next tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ticks {
-    pub(crate) waiting: Vec<Touch>,
+    /// Touches that have sunk, sorted.
+    waiting: Vec<Touch>,
     /// How far [m] bodies have been moved in being put back, zero but at a tick.
     pub(crate) moved: f64,
     /// Ticks that have gone by.
     count: f64,
     /// How often what waits has collided since the last.
     pressed: u32,
-    /// By how much bodies are to be moved apart, and the records of its rows.
-    problem: Problem,
-    rows: Vec<usize>,
-    shifts: Vec<[f64; 3]>,
     /// The laws of a region's bodies.
     laws: Vec<usize>,
+}
+
+/// The least displacement by which bodies are moved apart.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lift {
+    problem: Problem,
+    /// The record of each of its rows.
+    rows: Vec<usize>,
+    /// By how much (x, y, angle) each body of the region is moved [m, rad].
+    shifts: Vec<[f64; 3]>,
+}
+
+impl Ticks {
+    fn wait(&mut self, touch: Touch) {
+        if let Err(place) = self.waiting.binary_search(&touch) {
+            self.waiting.insert(place, touch);
+        }
+    }
+
+    /// What waits of two bodies, the lesser first.
+    pub(super) fn waiting_of(&self, bodies: [BodyId; 2]) -> &[Touch] {
+        let start = self.waiting.partition_point(|touch| touch.bodies < bodies);
+        let count = self.waiting[start..].partition_point(|touch| touch.bodies == bodies);
+        &self.waiting[start..start + count]
+    }
 }
 
 impl RigidSystem {
@@ -73,7 +96,7 @@ impl RigidSystem {
         let room = self.room_to_sink(bodies);
         let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
         let is_fast = -rate > tolerances.velocity_tol;
-        let is_deepest = gap < tolerances.target_gap - DEEPEST * room;
+        let is_deepest = gap < tolerances.target_gap - DEEPEST_SHARE * room;
         if is_deepest || is_fast && (is_deep || !self.has_stayed_low(pair, features, -rate, tolerances)) {
             return false;
         }
@@ -83,9 +106,7 @@ impl RigidSystem {
             rules.retain(|rule| rule.features != features);
             rules.push(touch.lowered_to(lowest));
         });
-        if !self.ticks.waiting.contains(&touch) {
-            self.ticks.waiting.push(touch);
-        }
+        self.ticks.wait(touch);
         // The search goes on for the other features of the two bodies.
         self.predict(pair);
         self.queue.set(self.tick_source(), tick);
@@ -107,9 +128,9 @@ impl RigidSystem {
     pub(crate) fn sinks_to(&self, touch: Touch, gap: f64) -> f64 {
         let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
         if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
-            return self.sunk(gap);
+            return self.refire_gap(gap);
         }
-        let left = gap - target_gap + DEEPEST * self.room_to_sink(touch.bodies);
+        let left = gap - target_gap + DEEPEST_SHARE * self.room_to_sink(touch.bodies);
         gap - self.sink().max(FURTHER_SHARE * left)
     }
 
@@ -126,11 +147,11 @@ impl RigidSystem {
     /// would sink within a step. Where contacts carry forces, because held ones do.
     pub(crate) fn may_have_sunk_by(&self, bodies: [BodyId; 2]) -> f64 {
         if self.settings.impulse_step.is_none() {
-            return self.holds_deep(bodies);
+            return self.held_depth(bodies);
         }
         // Either may have been moved against the other.
         let moved = 2.0 * self.ticks.moved;
-        if self.ticks.waiting.iter().any(|touch| touch.bodies == bodies) {
+        if !self.ticks.waiting_of(bodies).is_empty() {
             // What is turned as it is put back sinks elsewhere.
             return BEHIND * self.room_to_sink(bodies) + moved.min(self.thinness(bodies));
         }
@@ -169,16 +190,14 @@ impl RigidSystem {
             let (gap, _) = self.gap_at(self.ticks.waiting[index], self.now);
             self.counts.note_gap(gap);
         }
-        let mut work = self.work.take().unwrap_or_default();
-        work.seeds.clear();
-        work.seeds.extend(self.ticks.waiting.iter().flat_map(|touch| touch.bodies));
-        work.seeds.sort_unstable();
-        work.seeds.dedup();
-        self.at_tick = true;
-        let outcome = self.handle_impact(&mut work);
-        self.at_tick = false;
+        let outcome = self.with_work(Cause::Tick, |system, work| {
+            work.seeds.clear();
+            work.seeds.extend(system.ticks.waiting.iter().flat_map(|touch| touch.bodies));
+            work.seeds.sort_unstable();
+            work.seeds.dedup();
+            system.handle_impact(work)
+        });
         self.keep_what_is_sunk();
-        self.work = Some(work);
         outcome
     }
 
@@ -203,7 +222,7 @@ impl RigidSystem {
         let (mut full, mut short) = (0, 0);
         while full < ROUNDS && short < SHORT_ROUNDS {
             for &body in &work.region.bodies {
-                self.restart_flight(body, self.now);
+                self.book_damping(body, self.now);
             }
             let before = self.potential_of(&work.region);
             let Some(share) = self.move_apart(work) else { break };
@@ -220,34 +239,31 @@ impl RigidSystem {
         }
         self.ticks.moved = 0.0;
         // Where connectors are put together again afterwards, what touches may yet sink.
-        self.ticks.waiting.extend(&work.region.touches);
-        self.ticks.waiting.sort_unstable();
-        self.ticks.waiting.dedup();
+        for &touch in &work.region.touches {
+            self.ticks.wait(touch);
+        }
     }
 
     /// One round: tells which part of the way it went; `None` if nothing had to move.
     fn move_apart(&mut self, work: &mut EventWork) -> Option<f64> {
-        let mut ticks = std::mem::take(&mut self.ticks);
-        let moves = self.is_sunk(&work.region, &mut ticks) && work.settling.solve(&ticks.problem).is_ok();
-        let mut moved = None;
-        if moves {
-            let Ticks { shifts, rows, moved: way, .. } = &mut ticks;
-            shifts.clear();
-            shifts.resize(work.region.bodies.len(), [0.0; 3]);
-            work.settling.add_responses(&work.region, rows, |body| self.inertia(body), shifts);
-            let longest = self.longest_way(&work.region, shifts);
-            let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
-            *way += share * longest.0;
-            moved = Some(share);
-            for (&body, &[x, y, turn]) in work.region.bodies.iter().zip(shifts.iter()) {
-                let state = self.flyer(body).unwound_at(self.now);
-                let position = state.position + share * DVec2::new(x, y);
-                let moved = BodyState { position, angle: state.angle + share * turn, ..state };
-                self.flyers[body.index()].fly_from(self.now, moved);
-            }
+        let EventWork { region, settling, lift, .. } = work;
+        if !self.pose_lift(region, lift) || settling.solve(&lift.problem).is_err() {
+            return None;
         }
-        self.ticks = ticks;
-        moved
+        let Lift { shifts, rows, .. } = lift;
+        shifts.clear();
+        shifts.resize(region.bodies.len(), [0.0; 3]);
+        settling.add_responses(region, rows, |body| self.inertia(body), shifts);
+        let longest = self.longest_way(region, shifts);
+        let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
+        self.ticks.moved += share * longest.0;
+        for (&body, &[x, y, turn]) in region.bodies.iter().zip(shifts.iter()) {
+            let state = self.flyer(body).unwound_at(self.now);
+            let position = state.position + share * DVec2::new(x, y);
+            let moved = BodyState { position, angle: state.angle + share * turn, ..state };
+            self.flyers[body.index()].fly_from(self.now, moved);
+        }
+        Some(share)
     }
 
     /// The longest way [m] of a point of a region's bodies along a displacement (x, y, angle) of each, and the longest in parts of
@@ -262,32 +278,16 @@ impl RigidSystem {
     }
 
     /// Sets up the least displacement of a region's bodies that leaves no gap less than its target; false if none is.
-    fn is_sunk(&self, region: &Region, Ticks { problem, rows, .. }: &mut Ticks) -> bool {
-        problem.clear();
+    fn pose_lift(&self, region: &Region, Lift { problem, rows, .. }: &mut Lift) -> bool {
+        region.begin(problem, |body| self.inertia(body));
         rows.clear();
-        for &body in &region.bodies {
-            problem.add_body(self.inertia(body)).expect("inertias were checked when the body was made");
-        }
-        let place_of = |body: BodyId| Some(RowBody(u32::try_from(region.place(body)?).ok()?));
         let mut any_sunk = false;
         for (index, record) in region.records.iter().enumerate() {
-            let bilateral = record.parties.bilateral;
             let target =
                 if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
             let offset = record.geometry.distance - target;
-            any_sunk |= offset < 0.0 && !bilateral;
-            let j = &record.motion.kinematics.jacobian;
-            let sides = [
-                (place_of(record.parties.primary.body), [j[0], j[1], j[2]]),
-                (place_of(record.parties.normal.body), [j[3], j[4], j[5]]),
-            ];
-            let mut movable = sides.into_iter().filter_map(|(place, j)| Some((place?, j)));
-            let Some((first, coefficients)) = movable.next() else { continue };
-            let mut row = Row::new(first, coefficients, offset);
-            if let Some((second, coefficients)) = movable.next() {
-                row = row.against(second, coefficients);
-            }
-            let row = if bilateral { row.bilateral() } else { row };
+            any_sunk |= offset < 0.0 && !record.parties.bilateral;
+            let Some(row) = region.row_of(record, offset) else { continue };
             problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
             rows.push(index);
         }
@@ -304,11 +304,8 @@ impl RigidSystem {
             energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
         }
         let mut laws = std::mem::take(&mut self.ticks.laws);
-        laws.clear();
-        laws.extend(region.bodies.iter().flat_map(|&body| self.laws_of(body)));
-        laws.sort_unstable();
-        laws.dedup();
-        let now = crate::rigid::Snapshot::new(self.now.seconds(), &self.stage.movings);
+        self.list_laws(&region.bodies, &mut laws);
+        let now = Snapshot::new(self.now.seconds(), &self.stage.movings);
         let of_laws = laws.iter().filter_map(|&law| self.laws[law].potential(&now)).sum::<f64>();
         self.ticks.laws = laws;
         energy + of_laws
@@ -336,9 +333,9 @@ mod tests {
         };
         assert!((sinks_by(0.0) * room / system.sink() - 1.0).abs() < 1e-9, "it has not sunk yet");
         for depth in [0.5, 0.75] {
-            assert!((sinks_by(depth) - (DEEPEST - depth) * FURTHER_SHARE).abs() < 1e-9);
+            assert!((sinks_by(depth) - (DEEPEST_SHARE - depth) * FURTHER_SHARE).abs() < 1e-9);
         }
-        assert!((sinks_by(DEEPEST) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
+        assert!((sinks_by(DEEPEST_SHARE) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
     }
     #[test]
     fn what_is_pressed_collides_only_so_often_in_a_step() {

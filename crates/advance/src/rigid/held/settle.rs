@@ -6,6 +6,7 @@
 
 use super::settling::{SMALL_CONTRADICTION, Settling};
 use crate::rigid::error::AdvanceError;
+use crate::rigid::event::cause::Cause;
 use crate::rigid::event::jams::JAM;
 use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::step::dynamics::{LEVEL, Physics, Stage};
@@ -15,7 +16,7 @@ use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
-use halfgap_contact::{Row, SolveError};
+use halfgap_contact::SolveError;
 
 /// Part of the reach of a body from which the half-width of its zone can be seen.
 const SEEN: f64 = 1e-4;
@@ -64,7 +65,7 @@ impl RigidSystem {
         settling.passing.clear();
         settling.candidates.clear();
         let rest = match region {
-            Region { at_start: true, .. } => self.start_rest(),
+            Region { cause: Cause::Start, .. } => self.start_rest(),
             Region { in_storm: true, .. } => self.storm_rest(),
             _ => self.rest_speed(),
         };
@@ -236,42 +237,23 @@ impl RigidSystem {
         for &body in &region.bodies {
             stage.movings[body.index()] = self.flyer(body).moving_at(time);
         }
-        settling.laws.clear();
-        settling.laws.extend(region.bodies.iter().flat_map(|&body| self.laws_of(body)));
-        settling.laws.sort_unstable();
-        settling.laws.dedup();
+        self.list_laws(&region.bodies, &mut settling.laws);
         let physics = self.physics();
         let of_region = (region.bodies.as_slice(), settling.laws.as_slice());
         stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
     }
 
     fn pose_problem(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
-        let (problem, bodies) = (&mut settling.problem, &mut settling.bodies);
+        let problem = &mut settling.problem;
         let least = f64::EPSILON * self.settings.tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
-        problem.clear();
-        bodies.clear();
-        bodies.extend(region.bodies.iter().map(|&body| {
-            problem.add_body(self.inertia(body)).expect("inertias were checked when the body was made")
-        }));
+        region.begin(problem, |body| self.inertia(body));
         for &index in &settling.candidates {
             let record = &region.records[index];
-            let sides = [record.parties.primary.body, record.parties.normal.body];
-            let places = sides.map(|body| region.place(body));
             // What moves nothing in the longest time is rounding, and what is left of accelerations across the normal.
             let offset = free_offset(region, record, stage);
             let least = least.max(LEVEL * largest_acceleration(region, record, stage));
             let offset = if offset.abs() > least { offset } else { 0.0 };
-            let j = &record.motion.kinematics.jacobian;
-            let coefficients = [[j[0], j[1], j[2]], [j[3], j[4], j[5]]];
-            let row = match places {
-                [Some(a), Some(b)] => {
-                    Row::new(bodies[a], coefficients[0], offset).against(bodies[b], coefficients[1])
-                }
-                [Some(a), None] => Row::new(bodies[a], coefficients[0], offset),
-                [None, Some(b)] => Row::new(bodies[b], coefficients[1], offset),
-                [None, None] => continue,
-            };
-            let row = if record.parties.bilateral { row.bilateral() } else { row };
+            let Some(row) = region.row_of(record, offset) else { continue };
             problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
         }
     }
@@ -294,7 +276,7 @@ impl RigidSystem {
             let force = forces.next().copied().unwrap_or_default();
             let record = region.records[index];
             let loads = places_of(region, &record).map(|place| gross[place]);
-            let is_released = region.released.is_some() && Touch::of(&record) == region.released;
+            let is_released = Touch::of(&record).is_some_and(|touch| region.cause == Cause::Released(touch));
             let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
             let least = share * loads.fold(f64::INFINITY, f64::min);
             let lies_deep = self.lifted(&record).is_some();
@@ -315,7 +297,7 @@ impl RigidSystem {
     }
 
     /// A row that knows whether it leans at a time.
-    pub(crate) fn leaning(&self, row: HeldRow, time: Time) -> HeldRow {
+    pub(crate) fn with_lean(&self, row: HeldRow, time: Time) -> HeldRow {
         let movings = row.bodies.map(|body| self.moving_at(body, time));
         HeldRow { leans: self.mechanism().leans(&row, [&movings[0], &movings[1]]), ..row }
     }
@@ -334,7 +316,7 @@ impl RigidSystem {
         let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
         let is_lifted = lifted.is_some() && self.is_seen(record);
         let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted };
-        Some(self.leaning(row, time))
+        Some(self.with_lean(row, time))
     }
 
     /// The gap [m] to which a row is lifted that has sunk too deep; `None` of others. What touches without force sinks a little each
@@ -428,7 +410,7 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 mod tests {
     use super::*;
     use crate::rigid::RigidParts;
-    use crate::rigid::event::events::EventWork;
+    use crate::rigid::event::cause::EventWork;
     use crate::rigid::motion::flyer::FlightLaw;
     use crate::rigid::test_scene::{FINE, resting_discs};
     use halfgap_collision::{Body, BodyState};
@@ -459,14 +441,14 @@ mod tests {
         system.dissolve(BodyId(2));
         let position = system.flyer(BodyId(3)).state_at(system.now).position;
         let leaving = BodyState { position, velocity: DVec2::new(0.0, -1e-8), ..BodyState::default() };
-        system.flyer_mut(BodyId(3)).fly_from(Time::ZERO, leaving);
+        system.interrupt(BodyId(3)).fly_from(Time::ZERO, leaving);
         let EventWork { region, settling, .. } = &mut *work;
-        region.at_start = true;
+        region.cause = Cause::Start;
         system.collect_region(region, &[BodyId(2), BodyId(3)], system.now);
-        region.at_start = false;
+        region.cause = Cause::Other;
         let touch = |record: &&Collision| record.involves_body(BodyId(3));
         let touch = region.records.iter().find(touch).and_then(Touch::of).expect("they touch");
-        settling.expect(region.records.iter().map(|_| None));
+        settling.set_likely(region.records.iter().map(|_| None));
         let mut stage = std::mem::take(&mut system.stage);
         system.settle(region, settling, &mut stage, system.now, true).expect("it rests");
         assert!(settling.held.len() >= 2, "the posts hold the beam");
@@ -508,7 +490,7 @@ mod tests {
         for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
             region.is_hasty = is_hasty;
             region.records[0].motion.normal_velocity = share * system.rest_speed();
-            settling.expect([None].into_iter());
+            settling.set_likely([None].into_iter());
             system.settle(region, settling, &mut stage, system.now, false).expect("it rests");
             assert_eq!(settling.held.len(), rows, "{share} of what counts as rest, hasty: {is_hasty}");
         }

@@ -50,8 +50,6 @@ pub(crate) struct Settling {
     pub(super) gross: Vec<f64>,
     /// Accelerations of the region's bodies under the forces of the candidates.
     pub(super) pushed: Vec<[f64; 3]>,
-    /// Bodies as the problem numbers them.
-    pub(super) bodies: Vec<halfgap_contact::BodyId>,
 }
 
 impl Default for Settling {
@@ -85,7 +83,6 @@ impl Default for Settling {
             laws: Vec::new(),
             gross: Vec::new(),
             pushed: Vec::new(),
-            bodies: Vec::new(),
         }
     }
 }
@@ -116,7 +113,7 @@ impl Settling {
     }
 
     /// Expects those records of a region to carry a force that do so already.
-    pub(crate) fn expect(&mut self, likely: impl Iterator<Item = Option<bool>>) {
+    pub(crate) fn set_likely(&mut self, likely: impl Iterator<Item = Option<bool>>) {
         self.likely.clear();
         self.likely.extend(likely);
         self.leaving.clear();
@@ -234,7 +231,7 @@ mod tests {
         let mut work = system.work.take().expect("the start has made it");
         system.dissolve(BodyId(1));
         system.collect_region(&mut work.region, &[BodyId(2), BodyId(1)], system.now);
-        work.settling.expect([None, None].into_iter());
+        work.settling.set_likely([None, None].into_iter());
         work.settling.expect_forces(&work.region, &system.changes.end);
         let [None, Some(force)] = work.settling.forces[..] else { panic!("{:?}", work.settling.forces) };
         assert!((force - 9.81).abs() < 1e-9, "{force} N");
@@ -251,7 +248,7 @@ mod tests {
         let settling = &mut work.settling;
         settling.problem.clear();
         settling.candidates.clear();
-        settling.expect([system.is_likely(&record), None].into_iter());
+        settling.set_likely([system.is_likely(&record), None].into_iter());
         for index in 0..2 {
             let body = settling.problem.add_body(system.inertia(BodyId(1))).expect("a fine inertia");
             let row = Row::new(body, [0.0, 1.0, 0.0], -9.81);

@@ -37,7 +37,7 @@ impl RigidSystem {
             let low = before.map_or(0, |before| self.low_bounces(before, gap));
             let formed = before.map_or(gap, |before| before.formed.max(gap));
             let goes_on = || before.is_some_and(|before| before.fires_open);
-            let fires_open = if region.fired == Some(*touch) { fired_open } else { goes_on() };
+            let fires_open = if region.cause.fired() == Some(*touch) { fired_open } else { goes_on() };
             let fires_open = fires_open && gap < self.settings.tolerances.target_gap;
             let fresh = Seen { features: touch.features, time: self.now, gap, formed, rate, low, fires_open };
             let seen = self.pairs.seen_mut(pair);

@@ -6,7 +6,8 @@
 //! velocities at T. So a hop may be the higher the less its bodies move in T, up to the half-width of the target zone.
 
 use super::bounces::closes_fast;
-use crate::rigid::event::events::EventWork;
+use crate::rigid::event::cause::EventWork;
+use crate::rigid::event::events::Booking;
 use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
@@ -102,7 +103,7 @@ impl RigidSystem {
         }
         self.conclude_impact(region, impact, stop, self.now);
         self.remeasure(region, self.now);
-        self.book_impact(stop, true);
+        self.book_impact(stop, Booking::Capture);
         settling.let_leave(|index| self.opens(&region.records[index]));
         true
     }

@@ -57,8 +57,8 @@ impl<const STEPS: u32> Count<STEPS> {
 impl RigidSystem {
     /// Tells for how long [s] the system will be advanced in all. With that, steps are told that will never come to an end
     /// ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for ever.
-    pub fn expect(&mut self, duration: f64) {
-        self.horizon = duration;
+    pub fn set_duration(&mut self, duration: f64) {
+        self.duration = duration;
     }
 
     /// Notes the step that a group has begun, and fails if such steps have become hopeless.
@@ -67,7 +67,7 @@ impl RigidSystem {
         if let Some(mean) = pace.few.note(group.start) {
             pace.is_hasty = mean < HASTE * self.settings.resolution_time;
         }
-        match pace.all.note(group.start).filter(|mean| mean * HOPELESS < self.horizon) {
+        match pace.all.note(group.start).filter(|mean| mean * HOPELESS < self.duration) {
             Some(mean) => Err(StepFailure::Crawls(mean)),
             None => Ok(()),
         }

@@ -132,6 +132,12 @@ impl Flyer {
         self.reach
     }
 
+    /// How fast [m/s] the fastest point of the body is at a velocity (x, y, angle) of its centre; of accelerations and displacements
+    /// likewise.
+    pub(crate) fn fastest_point(&self, [x, y, angle]: [f64; 3]) -> f64 {
+        DVec2::new(x, y).length() + angle.abs() * self.reach
+    }
+
     /// Force [N] that gives the body an acceleration (x, y, angle), with what turns it acting at its reach.
     pub(crate) fn load(&self, acceleration: &[f64]) -> f64 {
         let linear = DVec2::new(acceleration[0], acceleration[1]).length();

@@ -1,7 +1,7 @@
 //! What the search is told about features that touch: which to leave alone, and how far others may sink before they fire.
 
 use super::pairs::PairId;
-use crate::rigid::event::events::EventWork;
+use crate::rigid::event::cause::EventWork;
 use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::held::settle::DEEPEST;
 use crate::rigid::system::RigidSystem;
@@ -20,7 +20,7 @@ impl RigidSystem {
     }
 
     /// Gap [m] at which a contact without force fires that has a gap now.
-    pub(crate) fn sunk(&self, gap: f64) -> f64 {
+    pub(crate) fn refire_gap(&self, gap: f64) -> f64 {
         (gap - self.sink()).min(self.settings.tolerances.target_gap)
     }
 
@@ -91,7 +91,7 @@ impl RigidSystem {
             let (gap, rate) = self.gap_at(touch, self.now);
             // What lies deeper by far has gone round its body.
             if gap < deepest && gap > MUCH_DEEPER * told {
-                let target = if rate.abs() <= self.rest_speed() { self.sunk(gap) } else { gap };
+                let target = if rate.abs() <= self.rest_speed() { self.refire_gap(gap) } else { gap };
                 // What was told of the same features in this event comes first, and counts.
                 self.pairs.change_rules(pair, |rules| rules.push(touch.lowered_to(target)));
             }

@@ -79,7 +79,7 @@ impl Past {
     /// Of a group that ends now.
     pub(crate) fn of(group: &Group, now: Time) -> Self {
         let step = if group.is_brief { group.full_step } else { group.next_step };
-        let (lasted, stiffness, sunk) = (now.since(group.made), group.stiffness, group.sunk());
+        let (lasted, stiffness, sunk) = (now.since(group.made), group.stiffness, group.depth());
         Self { step, lasted, stiffness, sunk, ended: now }
     }
 

@@ -198,9 +198,7 @@ impl Stage {
 
     /// Notes the largest acceleration of a point of some bodies, before the forces of rows are added.
     fn note_free_acceleration(&mut self, flyers: &[Flyer], bodies: &[BodyId]) {
-        let of_points = |(&body, &[x, y, angular]): (&BodyId, &[f64; 3])| {
-            DVec2::new(x, y).length() + angular.abs() * flyers[body.index()].reach()
-        };
+        let of_points = |(&body, &rate): (&BodyId, &[f64; 3])| flyers[body.index()].fastest_point(rate);
         self.free_acceleration = bodies.iter().zip(&self.accelerations).map(of_points).fold(0.0, f64::max);
     }
 

@@ -8,7 +8,6 @@ use crate::rigid::event::impacts::ImpactReport;
 use crate::rigid::motion::law::Snapshot;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, BodyState};
-use halfgap_contact::Inertia;
 
 /// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it. Where rows all
 /// but depend on each other, or near a centre of attraction, what is rounding elsewhere does work, and no error estimate
@@ -47,9 +46,7 @@ impl RigidSystem {
 
     /// Kinetic energy [J] of a movable body in a state.
     fn kinetic_energy(&self, body: BodyId, state: &BodyState) -> f64 {
-        let Inertia { inverse_mass, inverse_moment } = self.inertia(body);
-        let (square, spin) = (state.velocity.length_squared(), state.angular_velocity.powi(2));
-        0.5 * (square / inverse_mass + spin / inverse_moment)
+        self.flyer(body).body().kinetic_energy(state)
     }
 }
 
@@ -125,13 +122,8 @@ impl Dynamics<'_> {
 
     fn kinetic_energy(&self, state: &[f64]) -> f64 {
         let count = self.group.bodies.len();
-        let of_body = |(place, &body): (usize, &BodyId)| {
-            let inertia = self.physics.mechanism.flyers[body.index()].body();
-            let state = body_state(state, count, place);
-            0.5 * state.velocity.length_squared() / inertia.inverse_mass
-                + 0.5 * state.angular_velocity * state.angular_velocity / inertia.inverse_moment
-        };
-        self.group.bodies.iter().enumerate().map(of_body).sum()
+        let bodies = self.group.bodies.iter().map(|body| self.physics.mechanism.flyers[body.index()].body());
+        bodies.enumerate().map(|(place, body)| body.kinetic_energy(&body_state(state, count, place))).sum()
     }
 
     /// Mass [kg] of a body.

@@ -2,7 +2,7 @@
 
 use super::dynamics::Dynamics;
 use super::segment::StepFailure;
-use crate::ode::{Stepper, Stiffness as Told};
+use crate::ode::{Stepper, StiffnessEstimate};
 use crate::rigid::system::RigidSettings;
 
 /// Shorter steps that are tried for one that keeps to its rows.
@@ -42,7 +42,7 @@ impl Dynamics<'_> {
 
     /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go on otherwise, it keeps to
     /// its rows and its energy, too.
-    fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
+    fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
         for tries in 0.. {
             let energy = self.extend(tools)?;
             let told = self.tell_stiffness(tools);
@@ -70,7 +70,7 @@ impl Dynamics<'_> {
 
     /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not swing:
     /// shorter ones are tried until it does. Tells how fast the fastest part is, if somebody has looked.
-    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<Told>, StepFailure> {
+    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
         let (mut proposed, mut before) = (None, f64::INFINITY);

@@ -53,7 +53,7 @@ pub(crate) struct Group {
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
     pub(crate) sides: Vec<[Option<u32>; 2]>,
     /// Contacts within the group that are touched without force, each with the gap [m] below which it fires.
-    pub(crate) leaning: Vec<HeldRow>,
+    pub(crate) idle: Vec<HeldRow>,
     pub(crate) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
     pub(crate) laws: Vec<usize>,
@@ -81,8 +81,9 @@ pub(crate) struct Group {
     pub(crate) end_forces: Vec<f64>,
     /// Another group was ended when this one was made, as a contact pulled from the start: it may again.
     pub(crate) is_patient: bool,
-    /// How far [m] each row was off its features already, and by what force [N] it pulled, when it was first seen to; 0 of others.
+    /// How far [m] each row was off its features already when that was first seen; 0 if it was not.
     pub(crate) overrun: Vec<f64>,
+    /// By what force [N] each row pulled already when that was first seen; 0 if it did not.
     pub(crate) pulled: Vec<f64>,
     /// x, y and angle of each body along the segment.
     pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
@@ -127,33 +128,39 @@ pub(crate) struct Group {
 
 impl Group {
     /// How deep [m] a held contact lies below where its bodies touch: rows that contradict each other do not keep to their gaps.
-    pub(crate) fn sunk(&self) -> f64 {
+    pub(crate) fn depth(&self) -> f64 {
         self.least_gap.map_or(0.0, |gap| (-gap).max(0.0))
     }
 
     /// Forgets everything but the room of its buffers.
     pub(crate) fn clear(&mut self) {
-        self.bodies.clear();
-        self.rows.clear();
-        self.sides.clear();
-        self.overrun.clear();
-        self.pulled.clear();
-        self.leaning.clear();
-        self.stops.clear();
-        self.laws.clear();
-        self.works.clear();
-        self.tree.clear();
-        self.kept.clear();
-        self.dependent = 0;
-        self.state.clear();
-        self.rates.clear();
-        (self.next_step, self.full_step) = (None, None);
-        (self.is_brief, self.has_kinks, self.is_unwatched) = (false, false, false);
-        self.stiffness = Stiffness::default();
-        self.roughness.clear();
-        (self.accepted, self.steady_step) = (None, None);
-        self.least_gap = None;
-        (self.event, self.look) = (None, None);
+        let mut old = std::mem::take(self);
+        old.tree.clear();
+        old.kept.clear();
+        *self = Self {
+            bodies: emptied(old.bodies),
+            rows: emptied(old.rows),
+            sides: emptied(old.sides),
+            idle: emptied(old.idle),
+            stops: emptied(old.stops),
+            laws: emptied(old.laws),
+            works: emptied(old.works),
+            held: old.held,
+            tree: old.tree,
+            kept: old.kept,
+            state: emptied(old.state),
+            rates: emptied(old.rates),
+            end_state: emptied(old.end_state),
+            end_rates: emptied(old.end_rates),
+            forces: emptied(old.forces),
+            end_forces: emptied(old.end_forces),
+            overrun: emptied(old.overrun),
+            pulled: emptied(old.pulled),
+            paths: emptied(old.paths),
+            rate_paths: emptied(old.rate_paths),
+            roughness: emptied(old.roughness),
+            ..Self::default()
+        };
     }
 
     /// The body by which the group is found.
@@ -193,5 +200,30 @@ impl Group {
     /// When the segment ends.
     pub(crate) fn end(&self) -> Time {
         self.start.plus(self.span)
+    }
+}
+
+/// A list without its entries, but with their room.
+fn emptied<T>(mut list: Vec<T>) -> Vec<T> {
+    list.clear();
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::test_scene::resting_discs;
+
+    #[test]
+    fn a_group_that_was_used_knows_nothing_of_it() {
+        let system = resting_discs(&[0.0]);
+        let mut used = system.group_of(BodyId(1)).expect("it rests").clone();
+        assert!(used.free_acceleration > 0.0 && used.span > 0.0);
+        let held = used.held.clone();
+        used.clear();
+        let mut fresh = Group::default();
+        // Whose rows are sorted how is found anew with each group.
+        (fresh.held, fresh.tree, fresh.kept) = (held, used.tree.clone(), used.kept.clone());
+        assert_eq!(format!("{used:?}"), format!("{fresh:?}"));
     }
 }

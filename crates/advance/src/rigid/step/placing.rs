@@ -29,13 +29,13 @@ impl Dynamics<'_> {
 
     /// Chooses the bodies of some rows as those that are watched.
     pub(crate) fn watch_rows(&mut self, watches: impl Fn(usize) -> bool) {
-        let Group { bodies, sides, leaning, .. } = &*self.group;
+        let Group { bodies, sides, idle, .. } = &*self.group;
         let of_rows = (0..sides.len()).filter(|&row| watches(row)).flat_map(|row| sides[row]).flatten();
         let place_of = |body| bodies.binary_search(body).ok().and_then(|place| u32::try_from(place).ok());
-        let of_leaning = leaning.iter().flat_map(|HeldRow { bodies, .. }| bodies).filter_map(place_of);
+        let of_idle = idle.iter().flat_map(|HeldRow { bodies, .. }| bodies).filter_map(place_of);
         let watched = &mut self.stage.watched;
         watched.clear();
-        watched.extend(of_rows.chain(of_leaning));
+        watched.extend(of_rows.chain(of_idle));
         watched.sort_unstable();
         watched.dedup();
     }
@@ -55,8 +55,8 @@ impl Dynamics<'_> {
     }
 
     /// The same of the bodies of a contact that is touched without force.
-    pub(crate) fn put_leaning_at(&mut self, row: usize, offset: f64) {
-        for body in self.group.leaning[row].bodies {
+    pub(crate) fn put_idle_at(&mut self, row: usize, offset: f64) {
+        for body in self.group.idle[row].bodies {
             if let Ok(place) = self.group.bodies.binary_search(&body) {
                 self.put(place, offset);
             }

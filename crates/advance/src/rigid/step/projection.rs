@@ -3,7 +3,6 @@
 use super::dynamics::Dynamics;
 use super::group::Group;
 use super::segment::{ROUNDING_SHARE, StepControl};
-use glam::DVec2;
 
 /// Newton steps of one projection.
 const PROJECTIONS: usize = 5;
@@ -112,7 +111,7 @@ impl Dynamics<'_> {
             .bodies
             .iter()
             .zip(&self.stage.changes)
-            .map(|(&body, &[x, y, angle])| DVec2::new(x, y).length() + angle.abs() * self.reach(body));
+            .map(|(&body, &change)| self.physics.mechanism.flyers[body.index()].fastest_point(change));
         sizes.fold(0.0, f64::max)
     }
 

@@ -164,14 +164,29 @@ impl Mechanism<'_> {
         }
     }
 
-    /// How far [m] beyond its features a contact has run off them.
+    /// Where a row's force acts on its primary body [m], and its normal.
+    pub(crate) fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, index) => {
+                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
+                (sample.point_a, sample.normal)
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [a, b]);
+                (sample.point_primary, sample.normal)
+            }
+        }
+    }
+
+    /// How far [m] past its features a contact may run before it counts as changed.
     pub(crate) fn change_margin(&self) -> f64 {
         CHANGE_SHARE * self.tolerances.accuracy
     }
 
     /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
     /// rows that cannot.
-    pub(crate) fn room(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
+    pub(crate) fn way_to_end(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
         if !self.can_change(row) {
             return None;
         }
@@ -340,7 +355,7 @@ mod tests {
             let mut movings = [0, 1].map(|body| system.flyer(BodyId(body)).moving_at(system.now));
             let position = movings[1].pose.position;
             movings[1].pose = Pose::new(position, FRAC_PI_2 + lean / 0.1);
-            mechanism.room(row, &movings).expect("the corner ends")
+            mechanism.way_to_end(row, &movings).expect("the corner ends")
         };
         let margin = mechanism.change_margin();
         for part in [0.1, 0.5, 0.9, 1.1, 2.0] {

@@ -8,7 +8,6 @@ use super::extending::Tools;
 use super::group::Group;
 use super::rows::RowSource;
 use crate::ode::{Accepted, Point, SegmentPolynomial, Stepper, is_kept};
-use glam::DVec2;
 use halfgap_collision::BodyId;
 
 /// How groups are stepped.
@@ -284,21 +283,21 @@ impl Dynamics<'_> {
     /// along the last step, as of what slides or is carried along, they need not be expected to.
     fn longest_watched_step(&self) -> f64 {
         let group = &self.group;
-        let any_leans = !group.leaning.is_empty();
-        if !any_leans && group.rows.iter().all(|row| row.bilateral) {
+        let any_idle = !group.idle.is_empty();
+        if !any_idle && group.rows.iter().all(|row| row.bilateral) {
             return f64::INFINITY;
         }
         let count = group.bodies.len();
         let waits = group.bodies.iter().enumerate().map(|(place, &body)| {
-            let reach = self.reach(body);
-            let is_disc = self.physics.mechanism.flyers[body.index()].disc().is_some();
+            let flyer = &self.physics.mechanism.flyers[body.index()];
+            let (reach, is_disc) = (flyer.reach(), flyer.disc().is_some());
             let of_points = |values: &[f64]| {
                 let at = 3 * (count + place);
-                DVec2::new(values[at], values[at + 1]).length() + values[at + 2].abs() * reach
+                flyer.fastest_point([values[at], values[at + 1], values[at + 2]])
             };
             let (speed, acceleration) = (of_points(&group.state), of_points(&group.rates));
             // What is held of a disc does not vary as it turns.
-            if (is_disc && !any_leans) || (speed == 0.0 && acceleration == 0.0) {
+            if (is_disc && !any_idle) || (speed == 0.0 && acceleration == 0.0) {
                 return f64::INFINITY;
             }
             let way = WATCHED_SHARE * reach;
@@ -363,7 +362,11 @@ impl Dynamics<'_> {
         let count = self.group.bodies.len();
         let speeds = self.group.bodies.iter().enumerate().map(|(place, &body)| {
             let at = 3 * (count + place);
-            DVec2::new(state[at], state[at + 1]).length() + state[at + 2].abs() * self.reach(body)
+            self.physics.mechanism.flyers[body.index()].fastest_point([
+                state[at],
+                state[at + 1],
+                state[at + 2],
+            ])
         });
         speeds.fold(0.0, f64::max)
     }

@@ -5,7 +5,7 @@ use super::brief::Stepping;
 use super::dynamics::Dynamics;
 use super::extending::Tools;
 use super::group::Group;
-use crate::ode::{Method, Point, Stiffness as Told};
+use crate::ode::{Method, Point, StiffnessEstimate};
 use glam::DVec2;
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
@@ -87,7 +87,7 @@ fn cost(numbers: usize) -> f64 {
 
 impl Dynamics<'_> {
     /// How fast the fastest part of the group is, as a step tells whose end has its rates; `None` where nobody looks.
-    pub(crate) fn tell_stiffness(&mut self, tools: &mut Tools<'_>) -> Option<Told> {
+    pub(crate) fn tell_stiffness(&mut self, tools: &mut Tools<'_>) -> Option<StiffnessEstimate> {
         if !tools.settings.method.is_adaptive() || self.group.is_brief {
             return None;
         }
@@ -130,8 +130,8 @@ impl Dynamics<'_> {
     }
 
     /// Notes how fast the fastest part of the group is, after a step that told it.
-    pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>, told: Option<Told>) {
-        let Some(Told { fastest: told, .. }) = told else { return };
+    pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>, told: Option<StiffnessEstimate>) {
+        let Some(StiffnessEstimate { fastest: told, .. }) = told else { return };
         self.probe(tools);
         let told = told.max(self.damping_rate() * self.group.span);
         let numbers = self.group.numbers();

@@ -1,7 +1,7 @@
 //! Steps of a group in the coordinates of its tree.
 
 use super::Hinge;
-use crate::ode::{Ode, Point, SegmentPolynomial, Stepper, Stiffness};
+use crate::ode::{Ode, Point, SegmentPolynomial, Stepper, StiffnessEstimate};
 use crate::rigid::step::dynamics::Dynamics;
 use crate::rigid::step::group::Group;
 use glam::DVec2;
@@ -130,7 +130,7 @@ impl Dynamics<'_> {
     }
 
     /// How fast the fastest part of the tree is, as the stepper tells it of its last step.
-    pub(crate) fn stiffness_of_tree(&mut self, stepper: &mut Stepper, scales: &[f64]) -> Stiffness {
+    pub(crate) fn stiffness_of_tree(&mut self, stepper: &mut Stepper, scales: &[f64]) -> StiffnessEstimate {
         self.group.gather_end();
         let Group { tree, span, .. } = &*self.group;
         stepper.stiffness(Point { offset: *span, state: &tree.end, rates: &tree.end_rates }, scales)
