@@ -26,6 +26,7 @@ mod parts;
 mod report;
 mod scales;
 mod search;
+mod sources;
 mod step;
 mod system;
 #[cfg(test)]

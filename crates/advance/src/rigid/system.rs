@@ -21,6 +21,7 @@ use super::search::boxes::Room;
 use super::search::by_body::ByBody;
 use super::search::marks::Marks;
 use super::search::pairs::{Link, PairId, Pairs, Prediction};
+use super::sources::Source;
 use super::step::brief::Steppers;
 use super::step::deferred::loners;
 use super::step::dynamics::{ExtraAcceleration, Stage};
@@ -371,35 +372,6 @@ impl RigidSystem {
         }
     }
 
-    fn count_u32(&self) -> u32 {
-        u32::try_from(self.flyers.len()).unwrap_or(u32::MAX)
-    }
-
-    /// Sources of events, in this order: bodies that leave their boxes, groups by leader, connectors, ticks, pairs.
-    pub(crate) fn group_source(&self, leader: BodyId) -> SourceId {
-        SourceId(self.count_u32().saturating_add(leader.0))
-    }
-
-    fn first_connector_source(&self) -> u32 {
-        self.count_u32().saturating_mul(2)
-    }
-
-    pub(crate) fn connector_source(&self, id: ConnectorId) -> SourceId {
-        SourceId(self.first_connector_source().saturating_add(id.0))
-    }
-
-    pub(crate) fn tick_source(&self) -> SourceId {
-        SourceId(self.first_connector_source() + u32::try_from(self.connectors.len()).unwrap_or(u32::MAX))
-    }
-
-    fn first_pair_source(&self) -> u32 {
-        self.tick_source().0 + 1
-    }
-
-    pub(crate) fn pair_source(&self, pair: PairId) -> SourceId {
-        SourceId(self.first_pair_source().saturating_add(pair.0))
-    }
-
     /// Something happens at a time, which says whether it was an impact; `None` if nobody outside needs to know.
     pub(crate) fn happen(
         &mut self,
@@ -424,26 +396,18 @@ impl RigidSystem {
     }
 
     fn handle(&mut self, source: SourceId) -> Result<bool, AdvanceError> {
-        if let Some(pair) = source.0.checked_sub(self.first_pair_source()).map(PairId) {
-            if let Prediction::Contact(features) = self.pairs.get(pair).prediction {
-                return self.handle_contact(pair, features);
-            }
-            self.predict(pair);
-            return Ok(false);
+        match self.source(source) {
+            Source::Box(body) => self.leave_box(body),
+            Source::Group(leader) => return self.handle_group(leader),
+            Source::Connector(id) if self.rope_fires(id) => return self.handle_rope(id),
+            Source::Connector(_) => {}
+            Source::Tick => return self.handle_tick(),
+            Source::Pair(pair) => match self.pairs.get(pair).prediction {
+                Prediction::Contact(features) => return self.handle_contact(pair, features),
+                _ => self.predict(pair),
+            },
         }
-        if source == self.tick_source() {
-            return self.handle_tick();
-        }
-        if let Some(id) = source.0.checked_sub(self.first_connector_source()).map(ConnectorId) {
-            return if self.rope_fires(id) { self.handle_rope(id) } else { Ok(false) };
-        }
-        match source.0.checked_sub(self.count_u32()).map(BodyId) {
-            Some(leader) => self.handle_group(leader),
-            None => {
-                self.leave_box(BodyId(source.0));
-                Ok(false)
-            }
-        }
+        Ok(false)
     }
 }
 

@@ -3,6 +3,7 @@
 //! polynomial crosses zero, `overdue` what should have ended before, `staying` which contacts surely do not end.
 
 pub(super) mod crossing;
+mod earliest;
 pub(super) mod overdue;
 pub(super) mod staying;
 pub(super) mod switches;

@@ -3,17 +3,19 @@
 //! more: it would pull from then on, or run along an edge that is not there.
 
 use super::crossing::{NODES, fall_from_below};
+use super::earliest::Earliest;
 use super::watch::Watch;
 use crate::rigid::step::dynamics::Dynamics;
-use crate::rigid::step::group::SegmentEnd;
 
 impl Dynamics<'_> {
-    /// The earliest fall of any row of a watch that is below zero at the start and falls on, if it comes before what was found so
-    /// far; with the samples, how far each was below zero when it was first seen to be, which is noted (0 of others), and how far a
-    /// row may be by rounding alone. A row may fall on along many segments.
+    /// The earliest fall of any row of a watch that is below zero at the start and falls on: it may do so along many segments.
+    ///
+    /// * `samples`: its values at the nodes, row by row;
+    /// * `below`: how far below zero each row was when it was first seen to be, 0 of others; brought up to date;
+    /// * `rounding`: how far below zero a row may be by rounding alone.
     pub(super) fn find_overdue(
         &mut self,
-        earliest: &mut Option<(f64, SegmentEnd)>,
+        earliest: &mut Earliest,
         (samples, below): (&[[f64; NODES]], &mut Vec<f64>),
         watch: &Watch,
         rounding: impl Fn(&Self, usize) -> f64,
@@ -32,17 +34,14 @@ impl Dynamics<'_> {
                 (watch.place_for)(self, row, offset);
                 (watch.read)(self, row)
             });
-            if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
-                *earliest = Some((offset, (watch.end)(row)));
-            }
+            earliest.offer(fall, (watch.end)(row));
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::rigid::step::group::Group;
+    use crate::rigid::step::group::{Group, SegmentEnd};
     use crate::rigid::test_scene::{block_on_its_corner, resting_discs, turn_on_its_corner};
     use crate::rigid::{ForceLaw, RigidSystem, Snapshot, Wrenches};
     use crate::time::Time;

@@ -5,6 +5,7 @@
 //! when the time comes up to which none can vanish.
 
 use super::crossing::{EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall_before, node};
+use super::earliest::Earliest;
 use crate::ode::Ode;
 use crate::rigid::step::brief::Stepping;
 use crate::rigid::step::dynamics::Dynamics;
@@ -42,8 +43,8 @@ pub(super) struct Watch {
     pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
     /// The value of a row there.
     pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
-    /// True if a fall of a row counts, with the bodies in place.
-    counts: fn(&Dynamics<'_>, usize) -> bool,
+    /// When a row that falls at an offset [s] does so in earnest, if at all; the bodies are in place there.
+    genuine: fn(&mut Dynamics<'_>, usize, f64) -> Option<f64>,
     pub(super) end: fn(usize) -> SegmentEnd,
 }
 
@@ -51,14 +52,14 @@ const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
     read: |dynamics, row| dynamics.pressure(row),
-    counts: |_, _| true,
+    genuine: |_, _, offset| Some(offset),
     end: SegmentEnd::Release,
 };
 const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
     read: |dynamics, row| dynamics.way_to_end(row),
-    counts: |_, _| true,
+    genuine: |_, _, offset| Some(offset),
     end: SegmentEnd::Change,
 };
 const SINKINGS: Watch = Watch {
@@ -66,7 +67,9 @@ const SINKINGS: Watch = Watch {
     place_for: |dynamics, row, offset| dynamics.put_idle_at(row, offset),
     read: |dynamics, row| dynamics.height(row),
     // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
-    counts: |dynamics, row| dynamics.is_within(row),
+    genuine: |dynamics, row, offset| {
+        if dynamics.is_within(row) { Some(offset) } else { dynamics.first_sinking_within(row) }
+    },
     end: SegmentEnd::Sink,
 };
 
@@ -113,14 +116,14 @@ impl Dynamics<'_> {
             }
             self.sample_forces(&mut forces, index);
         }
-        let mut earliest = self.pull_at_start(&forces).or(self.group.event);
+        let mut earliest = Earliest { found: self.pull_at_start(&forces).or(self.group.event) };
         self.find_first(&mut earliest, &forces, &RELEASES);
         let mut pulled = std::mem::take(&mut self.group.pulled);
         self.find_overdue(&mut earliest, (&forces, &mut pulled), &RELEASES, |dynamics, row| {
             PULL * dynamics.stage.least[row]
         });
         self.group.pulled = pulled;
-        self.group.event = earliest.map(|(offset, end)| (offset.max(from), end));
+        self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
     }
 
@@ -137,7 +140,7 @@ impl Dynamics<'_> {
 
     /// The earliest event that bodies' places tell.
     fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
-        let mut earliest: Option<(f64, SegmentEnd)> = None;
+        let mut earliest = Earliest::default();
         let samples = self.sample_rows();
         if !self.are_still(&samples.heights) {
             self.group.steady_step = None;
@@ -151,21 +154,16 @@ impl Dynamics<'_> {
         self.group.overrun = overrun;
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
-        let mut offer = |found: Option<f64>, end: SegmentEnd| {
-            if let Some(offset) = found.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
-                earliest = Some((offset, end));
-            }
-        };
         for place in 0..self.group.stops.len() {
-            offer(self.find_stop(self.group.stops[place]), SegmentEnd::Stop);
+            earliest.offer(self.find_stop(self.group.stops[place]), SegmentEnd::Stop);
         }
         for place in 0..self.group.laws.len() {
             let law = self.group.laws[place];
             for index in 0..self.physics.laws[law].switches() {
-                offer(self.find_switch(law, index), SegmentEnd::Switch);
+                earliest.offer(self.find_switch(law, index), SegmentEnd::Switch);
             }
         }
-        earliest
+        earliest.found
     }
 
     /// True if contacts that are touched without force neither closed nor opened along the segment.
@@ -296,33 +294,29 @@ impl Dynamics<'_> {
     }
 
     /// The earliest contact that sinks before the first node.
-    fn find_early_sinking(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, samples: &Samples) {
+    fn find_early_sinking(&mut self, earliest: &mut Earliest, samples: &Samples) {
         for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
             let fall = early_fall(heights[0], early, self.group.span, |offset| {
                 self.put_idle_at(row, offset);
                 self.height(row)
             });
-            let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) else {
-                continue;
-            };
+            let Some(offset) = fall.filter(|&offset| earliest.is_after(offset)) else { continue };
             self.put_idle_at(row, offset);
             if self.is_within(row) {
-                *earliest = Some((offset, SegmentEnd::Sink(row)));
+                earliest.offer(Some(offset), SegmentEnd::Sink(row));
             }
         }
     }
 
     /// The earliest contact that comes onto its features and runs off again before the first node: what has just taken over from its
     /// neighbour starts at the end of its features, or beyond by rounding.
-    fn find_early_change(&mut self, earliest: &mut Option<(f64, SegmentEnd)>, rooms: &[[f64; NODES]]) {
+    fn find_early_change(&mut self, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
         for (row, values) in rooms.iter().enumerate() {
             let fall = fall_after_rise(values, self.group.span, |offset| {
                 self.put_row_at(row, offset);
                 self.way_to_end(row)
             });
-            if let Some(offset) = fall.filter(|&offset| earliest.is_none_or(|(least, _)| offset < least)) {
-                *earliest = Some((offset, SegmentEnd::Change(row)));
-            }
+            earliest.offer(fall, SegmentEnd::Change(row));
         }
     }
 
@@ -344,19 +338,14 @@ impl Dynamics<'_> {
     ///
     /// To place the bodies costs more than to read a row: once a fall is found, all rows are read there, and those that have
     /// not fallen by then need no search of their own.
-    fn find_first(
-        &mut self,
-        earliest: &mut Option<(f64, SegmentEnd)>,
-        samples: &[[f64; NODES]],
-        watch: &Watch,
-    ) {
+    fn find_first(&mut self, earliest: &mut Earliest, samples: &[[f64; NODES]], watch: &Watch) {
         if samples.is_empty() {
             return;
         }
         let mut there = std::mem::take(&mut self.stage.there);
         let mut read_at = None;
         for (row, values) in samples.iter().enumerate() {
-            let limit = earliest.map(|(offset, _)| offset);
+            let limit = earliest.limit();
             if limit != read_at
                 && let Some(offset) = limit
             {
@@ -372,17 +361,9 @@ impl Dynamics<'_> {
                 (watch.place_for)(self, row, offset);
                 (watch.read)(self, row)
             });
-            let is_first = |offset: &f64| limit.is_none_or(|(least, _)| *offset < least);
-            let Some(offset) = fall.filter(is_first) else { continue };
+            let Some(offset) = fall.filter(|&offset| earliest.is_after(offset)) else { continue };
             (watch.place_for)(self, row, offset);
-            let counting = if (watch.counts)(self, row) {
-                Some(offset)
-            } else {
-                self.first_sinking_within(row).filter(is_first)
-            };
-            if let Some(offset) = counting {
-                *earliest = Some((offset, (watch.end)(row)));
-            }
+            earliest.offer((watch.genuine)(self, row, offset), (watch.end)(row));
         }
         self.stage.there = there;
     }
@@ -465,6 +446,7 @@ impl Dynamics<'_> {
 
 #[cfg(test)]
 mod tests {
+    use crate::rigid::sources::Source;
     use crate::rigid::step::group::SegmentEnd;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::BodyId;
@@ -512,7 +494,10 @@ mod tests {
         let group = system.group_of(leader).expect("it goes on");
         let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
         assert!(offset > 0.75 * group.span, "{offset} s");
-        assert_eq!(system.queue.time_of(system.group_source(leader)), Some(group.start.plus(offset)));
+        assert_eq!(
+            system.queue.time_of(system.source_id(Source::Group(leader))),
+            Some(group.start.plus(offset))
+        );
         // What is found for a time that has gone by happens now.
         let mut group = system.groups.take(leader).expect("it goes on");
         let late = 2.0 * group.span;

@@ -6,6 +6,7 @@ use crate::rigid::held::settling::Settling;
 use crate::rigid::limits::repeats::is_same_time;
 use crate::rigid::motion::path::Path;
 use crate::rigid::search::predictions::LONGEST_SPAN;
+use crate::rigid::sources::Source;
 use crate::rigid::step::group::Stop;
 use crate::rigid::step::rows::{RowSource, knot_rooms};
 use crate::rigid::system::RigidSystem;
@@ -202,7 +203,7 @@ impl RigidSystem {
     }
 
     fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
-        let source = self.connector_source(id);
+        let source = self.source_id(Source::Connector(id));
         self.connector_states[id.index()].taut = None;
         if self.connector_states[id.index()].held || self.is_rope_watched(id) {
             self.queue.clear(source);

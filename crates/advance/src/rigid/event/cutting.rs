@@ -7,6 +7,7 @@
 
 use super::region::{Region, Touch};
 use crate::rigid::search::pairs::{Link, Prediction};
+use crate::rigid::sources::Source as EventSource;
 use crate::rigid::step::dynamics::body_state;
 use crate::rigid::step::group::SegmentEnd;
 use crate::rigid::system::RigidSystem;
@@ -93,7 +94,7 @@ impl RigidSystem {
         let links = region.bodies.iter().flat_map(|&body| self.pairs.of_body(body));
         let contacts = links.filter_map(|link| {
             let Prediction::Contact(features) = self.pairs.get(link.pair).prediction else { return None };
-            let predicted = self.queue.time_of(self.pair_source(link.pair))?;
+            let predicted = self.queue.time_of(self.source_id(EventSource::Pair(link.pair)))?;
             let bodies = self.pairs.bodies(link.pair);
             let has_sunk = || self.gap_at(Touch { bodies, features }, time).0 < least;
             (predicted < time && has_sunk()).then_some(predicted)

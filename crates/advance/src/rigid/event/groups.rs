@@ -6,6 +6,7 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::limits::repeats::is_same_time;
 use crate::rigid::search::pairs::Prediction;
+use crate::rigid::sources::Source;
 use crate::rigid::step::brief::Past;
 use crate::rigid::step::dynamics::{Dynamics, Physics, body_state, set_body_state};
 use crate::rigid::step::extending::Tools;
@@ -123,7 +124,7 @@ impl RigidSystem {
             self.groups.past_of[body.index()] = Past::of(&group, self.now);
             self.counts.backups += 1;
         }
-        self.queue.clear(self.group_source(leader));
+        self.queue.clear(self.source_id(Source::Group(leader)));
         group.clear();
         self.groups.pool.push(group);
     }
@@ -495,7 +496,7 @@ impl RigidSystem {
             return Err(error);
         }
         self.note_kinetic_energy(&group);
-        self.queue.set(self.group_source(leader), group.due());
+        self.queue.set(self.source_id(Source::Group(leader)), group.due());
         if group.is_unwatched {
             self.defer_dense(leader);
         } else {
@@ -509,7 +510,7 @@ impl RigidSystem {
     pub(crate) fn look_further(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         self.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
-        self.queue.set(self.group_source(leader), group.due());
+        self.queue.set(self.source_id(Source::Group(leader)), group.due());
         self.groups.put(group);
     }
 

@@ -12,6 +12,7 @@ use super::region::{Region, Touch};
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::motion::law::Snapshot;
 use crate::rigid::search::pairs::PairId;
+use crate::rigid::sources::Source;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
@@ -109,7 +110,7 @@ impl RigidSystem {
         self.ticks.wait(touch);
         // The search goes on for the other features of the two bodies.
         self.predict(pair);
-        self.queue.set(self.tick_source(), tick);
+        self.queue.set(self.source_id(Source::Tick), tick);
         true
     }
 
@@ -184,7 +185,7 @@ impl RigidSystem {
 
     /// Stops and puts back what has sunk; true if there was an impact.
     pub(crate) fn handle_tick(&mut self) -> Result<bool, AdvanceError> {
-        self.queue.clear(self.tick_source());
+        self.queue.clear(self.source_id(Source::Tick));
         self.ticks.pressed = 0;
         for index in 0..self.ticks.waiting.len() {
             let (gap, _) = self.gap_at(self.ticks.waiting[index], self.now);
@@ -212,7 +213,7 @@ impl RigidSystem {
         self.ticks.waiting = waiting;
         if let Some(step) = self.settings.impulse_step.filter(|_| !self.ticks.waiting.is_empty()) {
             let tick = self.next_tick(step);
-            self.queue.set(self.tick_source(), tick);
+            self.queue.set(self.source_id(Source::Tick), tick);
         }
     }
 

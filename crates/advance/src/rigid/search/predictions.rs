@@ -1,9 +1,9 @@
 //! What may happen next: which bodies are near each other, and when pairs of them come into contact.
 
 use super::pairs::{Link, PairId, Prediction};
-use crate::queue::SourceId;
 use crate::rigid::motion::lane::{Lane, LaneKind};
 use crate::rigid::motion::path::Path;
+use crate::rigid::sources::Source;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{
@@ -50,9 +50,10 @@ impl RigidSystem {
         let fat_box = self.broad.bounds(body);
         let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.now));
         lane.stay = stay.unwrap_or(Time::NEVER);
+        let source = self.source_id(Source::Box(body));
         match stay {
-            Some(time) => self.queue.set(SourceId(body.0), time),
-            None => self.queue.clear(SourceId(body.0)),
+            Some(time) => self.queue.set(source, time),
+            None => self.queue.clear(source),
         }
     }
 
@@ -184,9 +185,9 @@ impl RigidSystem {
         let was_quiet = entry.prediction == Prediction::Quiet;
         (entry.prediction, entry.clear) = (prediction, clear);
         if prediction != Prediction::Quiet {
-            self.queue.set(self.pair_source(pair), clear);
+            self.queue.set(self.source_id(Source::Pair(pair)), clear);
         } else if !was_quiet {
-            self.queue.clear(self.pair_source(pair));
+            self.queue.clear(self.source_id(Source::Pair(pair)));
         }
     }
 

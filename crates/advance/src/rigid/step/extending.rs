@@ -43,7 +43,8 @@ impl Dynamics<'_> {
     /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go on otherwise, it keeps to
     /// its rows and its energy, too.
     fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
-        for tries in 0.. {
+        let mut tries = 0;
+        loop {
             let energy = self.extend(tools)?;
             let told = self.tell_stiffness(tools);
             let mut excess = told.map_or(0.0, |told| told.dense_error);
@@ -58,8 +59,8 @@ impl Dynamics<'_> {
                 return Ok(told);
             }
             self.limit_next_step(tools.stepper.method().step_factor(excess));
+            tries += 1;
         }
-        Ok(None)
     }
 
     /// Makes the dense output of the last step.
@@ -74,7 +75,8 @@ impl Dynamics<'_> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
         let (mut proposed, mut before) = (None, f64::INFINITY);
-        for tries in 0.. {
+        let mut tries = 0;
+        loop {
             let energy = self.extend(tools)?;
             self.make_dense(tools.stepper);
             let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
@@ -97,8 +99,8 @@ impl Dynamics<'_> {
             if excess <= 1.0 {
                 return Ok(told);
             }
+            tries += 1;
         }
-        Ok(None)
     }
 }
 

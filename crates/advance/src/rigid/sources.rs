@@ -1,0 +1,96 @@
+//! What events come from, and the numbers under which the queue knows that.
+
+use super::search::pairs::PairId;
+use super::system::RigidSystem;
+use crate::queue::SourceId;
+use halfgap_collision::{BodyId, ConnectorId};
+
+/// What an event comes from. The queue takes events of one time in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A body leaves its box.
+    Box(BodyId),
+    /// The group that a body leads comes to the end of its segment, or to an event on it.
+    Group(BodyId),
+    /// A rope goes taut.
+    Connector(ConnectorId),
+    /// What has sunk is put back.
+    Tick,
+    /// A pair comes into contact, or its search goes on.
+    Pair(PairId),
+}
+
+/// How many there are of each kind but the last.
+#[derive(Clone, Copy, Debug)]
+struct Sources {
+    bodies: u32,
+    connectors: u32,
+}
+
+impl Sources {
+    fn first_connector(self) -> u32 {
+        self.bodies.saturating_mul(2)
+    }
+
+    fn tick(self) -> u32 {
+        self.first_connector().saturating_add(self.connectors)
+    }
+
+    fn id(self, source: Source) -> SourceId {
+        SourceId(match source {
+            Source::Box(body) => body.0,
+            Source::Group(leader) => self.bodies.saturating_add(leader.0),
+            Source::Connector(id) => self.first_connector().saturating_add(id.0),
+            Source::Tick => self.tick(),
+            Source::Pair(pair) => self.tick().saturating_add(1).saturating_add(pair.0),
+        })
+    }
+
+    fn source(self, SourceId(id): SourceId) -> Source {
+        if id < self.bodies {
+            Source::Box(BodyId(id))
+        } else if id < self.first_connector() {
+            Source::Group(BodyId(id - self.bodies))
+        } else if id < self.tick() {
+            Source::Connector(ConnectorId(id - self.first_connector()))
+        } else if id == self.tick() {
+            Source::Tick
+        } else {
+            Source::Pair(PairId(id - self.tick() - 1))
+        }
+    }
+}
+
+impl RigidSystem {
+    fn sources(&self) -> Sources {
+        let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
+        Sources { bodies: count(self.flyers.len()), connectors: count(self.connectors.len()) }
+    }
+
+    /// Under which number the queue knows what an event comes from.
+    pub(crate) fn source_id(&self, source: Source) -> SourceId {
+        self.sources().id(source)
+    }
+
+    /// What an event of the queue comes from.
+    pub(crate) fn source(&self, id: SourceId) -> Source {
+        self.sources().source(id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_one_source() {
+        let sources = Sources { bodies: 3, connectors: 2 };
+        let found: Vec<Source> = (0..11).map(|id| sources.source(SourceId(id))).collect();
+        let [a, b, c] = [BodyId(0), BodyId(1), BodyId(2)];
+        let boxes_and_groups = [a, b, c].map(Source::Box).into_iter().chain([a, b, c].map(Source::Group));
+        let rest = [Source::Connector(ConnectorId(0)), Source::Connector(ConnectorId(1)), Source::Tick];
+        let pairs = [PairId(0), PairId(1)].map(Source::Pair);
+        assert_eq!(found, boxes_and_groups.chain(rest).chain(pairs).collect::<Vec<_>>());
+        assert!(found.iter().zip(0..).all(|(&source, id)| sources.id(source) == SourceId(id)));
+    }
+}
