@@ -64,6 +64,8 @@ pub(crate) struct Books {
     pub(crate) booked: f64,
     /// That of captures among them [J].
     pub(crate) captures: f64,
+    /// That of projections among them [J].
+    pub(crate) projections: f64,
     /// Sum of the sizes of the works of force laws that have no potential [J].
     pub(crate) works: f64,
 }
@@ -78,8 +80,8 @@ impl Books {
 impl From<&Ledger> for Books {
     fn from(ledger: &Ledger) -> Self {
         let works = ledger.laws.iter().map(|law| law.work.abs()).sum();
-        let Ledger { now, start, captures, .. } = *ledger;
-        Self { now, start, booked: ledger.booked(), captures, works }
+        let Ledger { now, start, captures, projections, .. } = *ledger;
+        Self { now, start, booked: ledger.booked(), captures, projections, works }
     }
 }
 

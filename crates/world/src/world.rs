@@ -215,6 +215,7 @@ impl World {
                 + booked.damping
                 + works(|work| work),
             captures: booked.captures,
+            projections: booked.projections,
             works: works(f64::abs),
         }
     }

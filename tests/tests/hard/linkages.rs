@@ -1,9 +1,12 @@
 //! Loops of connectors: closed, redundant, singular, long.
 
 use super::within;
+use halfgap::force::Spring;
 use halfgap::geometry::DVec2;
-use halfgap::{BodyId, BodyState, ConnectorKind, World};
-use halfgap_tests::mechanism::{Workshop, advance, block, connector_error, disc, pendulum_period};
+use halfgap::{BodyId, BodyState, ConnectorKind, SlotFrame, World};
+use halfgap_tests::mechanism::{
+    Workshop, advance, at_rest, block, connector_error, disc, pendulum_period, thrown,
+};
 
 const WORLD: BodyId = BodyId::WORLD;
 
@@ -59,6 +62,61 @@ fn a_parallelogram_with_redundant_cranks_goes_through_its_dead_points() {
                 within(&what, world.state(crank).angular_velocity, 30.0 * tolerance);
             }
         }
+    }
+}
+
+/// A crank and a rod of half a metre each, whose slider goes along a line, turning at a rate [rad/s]; beside it another slider
+/// that a spring ties to it. Two slots hold either.
+fn folding_bars(tolerance: f64, rate: f64) -> World {
+    let mut shop = Workshop::weightless(tolerance);
+    let arm = 0.5 * DVec2::from_angle(1.0);
+    let end = DVec2::new(2.0 * arm.x, 0.0);
+    let state = |position: DVec2, velocity: DVec2, angle: f64, angular_velocity: f64| BodyState {
+        position,
+        angle,
+        velocity,
+        angular_velocity,
+    };
+    let of_crank = state(0.5 * arm, 0.5 * rate * arm.perp(), 1.0, rate);
+    let of_rod = state(0.5 * (arm + end), rate * DVec2::new(-1.5 * arm.y, 0.5 * arm.x), -1.0, -rate);
+    let crank = shop.body("crank", block(0.5, 0.04), 0.5, of_crank);
+    let rod = shop.body("rod", block(0.5, 0.04), 0.5, of_rod);
+    let slider =
+        shop.body("slider", block(0.2, 0.2), 1.0, thrown(end.x, 0.0, DVec2::new(-2.0 * rate * arm.y, 0.0)));
+    let other = shop.body("other", block(0.2, 0.2), 1.0, at_rest(2.0, 0.0));
+    let all = [crank, rod, slider, other];
+    for (index, &body) in all.iter().enumerate() {
+        all[index + 1..].iter().for_each(|&other| shop.builder.let_pass(body, other));
+    }
+    shop.pin(WORLD, crank, DVec2::ZERO);
+    shop.pin(crank, rod, arm);
+    shop.pin(rod, slider, end);
+    for (body, at) in [(slider, end.x), (other, 2.0)] {
+        for place in [DVec2::new(at, 0.0), DVec2::new(at + 0.1, 0.0)] {
+            let [a, b] = [shop.anchor(WORLD, DVec2::ZERO), shop.anchor(body, place)];
+            shop.connect(ConnectorKind::Slot { a, b, normal: DVec2::Y, frame: SlotFrame::World }, 0.0);
+        }
+    }
+    let ends = [shop.anchor(slider, end), shop.anchor(other, DVec2::new(2.0, 0.0))];
+    shop.builder.add_force(std::sync::Arc::new(Spring::new("spring", ends, 1.0, 20.0)));
+    shop.build()
+}
+
+#[test]
+fn a_slider_on_two_slots_passes_the_fold_of_its_bars() {
+    for (tolerance, allowed) in [(1e-8, 1e-6), (1e-9, 1e-6), (1e-10, 1e-6)] {
+        let mut most: f64 = 0.0;
+        for part in 0..60 {
+            let mut world = folding_bars(tolerance, 1.0 + f64::from(part) / 12.0);
+            advance(&mut world, 3.0);
+            let ledger = world.ledger();
+            most = most.max(ledger.projections.abs()).max(ledger.integration_error().abs());
+        }
+        within(
+            &format!("60 sliders on two slots, through their folds at {tolerance:e}: energy [J]"),
+            most,
+            allowed,
+        );
     }
 }
 

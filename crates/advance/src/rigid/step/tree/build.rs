@@ -78,7 +78,7 @@ impl Dynamics<'_> {
         hung.sort_unstable();
         rest.rows.extend((0..rows.len()).filter(|row| hung.binary_search(row).is_err()));
         let is_sound = |link: &Link| link.mass.is_finite() && link.moment.is_finite();
-        if 2 * rest.rows.len() > hung.len() || hung.is_empty() || !links.iter().all(is_sound) {
+        if rest.rows.len() > hung.len() || hung.is_empty() || !links.iter().all(is_sound) {
             tree.clear();
             return;
         }
