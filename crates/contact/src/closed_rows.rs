@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use crate::order::RowOrder;
 use crate::problem::Problem;
+use crate::settings::DOUBTFUL;
 use crate::skyline::Skyline;
 use crate::system::System;
 
@@ -14,10 +15,6 @@ const OPEN: u32 = u32::MAX;
 
 /// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
 const LOST: f64 = 0.25;
-
-/// Part of its square below which what is left of a row may be no more than rounding, enlarged by closed rows of which as little as
-/// passes for independent was left.
-const DOUBTFUL: f64 = 1e-4;
 
 /// Rounding of what is left of a row: so much times 1 + |z|², where z times the closed rows are closest to it.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
@@ -132,8 +129,8 @@ impl ClosedRows {
         self.position[row] != OPEN
     }
 
-    /// Finds how an open row relates to the closed ones, for [`close`](Self::close) or
-    /// [`null_direction`](Self::null_direction).
+    /// Finds how an open row relates to the closed ones, for [`close`](Self::close) or, if it depends on them, for the null
+    /// direction by which [`Shift`](crate::dependent::Shift) reconciles them.
     pub(crate) fn consider(&mut self, row: usize) -> Relation {
         let closed = self.len();
         // Only what an earlier row left is not zero.

@@ -11,7 +11,7 @@
 
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::DualActiveSet;
-use crate::start::WELL;
+use crate::settings::WELL;
 
 /// One in so many closed rows that pull, and so many at least, are more than blocks can mend.
 const MANY: usize = 16;

@@ -99,6 +99,23 @@ pub(crate) struct Attempt {
     pub(crate) is_last: bool,
 }
 
+/// The ways to treat rows that are dependent or nearly so.
+#[derive(Clone, Copy, Debug)]
+struct Attempts {
+    /// As the settings say contradictions are to be treated.
+    first: Attempt,
+    /// Nearly dependent rows as independent ones, with forces as large as that takes.
+    strict: Attempt,
+    /// In the least-squares sense, whatever is left of bilateral rows.
+    last: Attempt,
+}
+
+impl Attempts {
+    fn in_order(self) -> [Attempt; 3] {
+        [self.first, self.strict, self.last]
+    }
+}
+
 /// How the pivoting ended.
 pub(crate) enum End {
     Done,
@@ -130,7 +147,7 @@ impl DualActiveSet {
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
         }
         let mut failure = None;
-        for attempt in self.attempts() {
+        for attempt in self.attempts().in_order() {
             let error = match self.attempt(problem, warm, solution, attempt) {
                 Ok(()) if self.owes_to_contacts(solution) => {
                     // What is within rounding of the rows as given comes before least squares.
@@ -173,8 +190,7 @@ impl DualActiveSet {
         start: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        let [_, strict, _] = self.attempts();
-        self.attempt(problem, start, solution, strict)
+        self.attempt(problem, start, solution, self.attempts().strict)
     }
 
     /// As [`run`](Self::run), but stops where many pivots are in sight on a large problem, or were made, and says so.
@@ -215,18 +231,19 @@ impl DualActiveSet {
         is_out
     }
 
-    /// The ways to treat rows that are dependent or nearly so, in order.
-    fn attempts(&self) -> [Attempt; 3] {
+    /// The ways to treat rows that are dependent or nearly so.
+    fn attempts(&self) -> Attempts {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
         let usual = Attempt { dependence, doubts: false, contradiction: as_given, is_last: false };
         let strict = Attempt { dependence: least_dependence, ..usual };
         let least_squares = Attempt { contradiction: inconsistency, ..usual };
         let last = Attempt { is_last: true, ..least_squares };
-        match self.settings.contradiction {
-            Contradiction::SolveExactly => [usual, strict, last],
-            Contradiction::LeastSquares => [least_squares, strict, last],
-        }
+        let first = match self.settings.contradiction {
+            Contradiction::SolveExactly => usual,
+            Contradiction::LeastSquares => least_squares,
+        };
+        Attempts { first, strict, last }
     }
 
     fn attempt(
@@ -522,8 +539,8 @@ mod tests {
             problem.add_row(&Row::new(body, [0.0, 1.0, arm], -together - own)).expect("a row");
         }
         let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
-        let [usual, ..] = solver.attempts();
-        assert!(solver.attempt(&problem, Start::Nothing, &mut solution, usual).is_err());
+        let first = solver.attempts().first;
+        assert!(solver.attempt(&problem, Start::Nothing, &mut solution, first).is_err());
         assert!(solver.pivots < 40, "{} pivots", solver.pivots);
         solver.solve(&problem, &mut solution).expect("two independent rows");
         let errors = [0, 1].map(|row: usize| (solution.force[row] / FORCES[row] - 1.0).abs());

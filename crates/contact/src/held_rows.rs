@@ -15,13 +15,10 @@ mod refining;
 mod structure;
 
 use crate::order::RowOrder;
-use crate::settings::Settings;
+use crate::settings::{DOUBTFUL, Settings};
 use crate::skyline::dot;
 use refining::Refining;
 use structure::Shared;
-
-/// Part of a row's square below which what earlier rows leave of it is measured with care.
-const DOUBTFUL: f64 = 1e-4;
 
 /// Part of a row's square below which what earlier rows leave of it is not told from rounding of their forces.
 const RESOLVED: f64 = 1e-13;

@@ -25,6 +25,8 @@
 //! | `json` | feature `json`: problems and answers as files |
 
 #![forbid(unsafe_code)]
+// Units are escaped in this crate, so that what is left in brackets is a link.
+#![warn(rustdoc::broken_intra_doc_links)]
 
 mod auto;
 mod body_factor;

@@ -274,7 +274,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Gives every row an identity for warm starts.
+    /// Gives every row an identity for warm starts; rows of bodies may have theirs from the start, by [`Row::with_key`].
     ///
     /// # Errors
     ///
@@ -296,7 +296,8 @@ impl Problem {
         self.offset.is_empty()
     }
 
-    /// The right-hand side b [m/s²].
+    /// The offset b of a = A f + b: what contacts would do without their forces, an acceleration [m/s²], or what an impulse must
+    /// undo [m/s].
     pub fn offset(&self) -> &[f64] {
         &self.offset
     }

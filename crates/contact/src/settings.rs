@@ -3,6 +3,14 @@
 use crate::error::{SettingsError, SolveError};
 use crate::problem::Problem;
 
+/// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the
+/// forces, which of them are wrong means nothing. Pivots close what has less.
+pub(crate) const WELL: f64 = 1e-7;
+
+/// Part of its square below which what earlier rows leave of a row may be no more than rounding, enlarged by rows of which
+/// as little as passes for independent was left: it is measured with care.
+pub(crate) const DOUBTFUL: f64 = 1e-4;
+
 /// Leakage of a certificate whose rows depend on each other to the last digit.
 const SAME: f64 = 2.0 * f64::EPSILON;
 
@@ -39,7 +47,7 @@ pub struct Settings {
     /// A row whose offset b is below this part of the scale starts closed: contacts between bodies at rest on each other
     /// have b = 0 but for small relative motions.
     pub start_closed: f64,
-    /// The same, in units of the largest sum of terms that an acceleration is made of: a few roundings.
+    /// As `open_tolerance`, in units of the largest sum of terms that an acceleration is made of: a few roundings.
     pub rounding: f64,
     /// Cap on pivots, per row of the problem.
     pub pivots_per_row: usize,

@@ -11,6 +11,7 @@
 
 use crate::dual_active_set::{DualActiveSet, REFINED};
 use crate::settings::ForceSelection;
+use crate::start::{REDUNDANT, SUBSTANTIAL};
 
 /// What the diagonal of the factor is raised by: small beside the least eigenvalue of piles that is not zero, so that few
 /// steps of refinement are needed, large beside rounding.
@@ -18,12 +19,6 @@ const RAISE: f64 = 1e-9;
 
 /// Steps of refinement before it is given up.
 const STEPS: usize = 6;
-
-/// One in so many rows dependent is worth it.
-const REDUNDANT: usize = 5;
-
-/// One in so many rows independent at least: where fewer are (a box on a floor), pivots are cheap.
-const SUBSTANTIAL: usize = 4;
 
 /// Part of the scale below which the acceleration of a row that depends on closed ones is none, and one in so many of them
 /// that must have none: else they contradict the closed ones, and some must open.
@@ -146,16 +141,7 @@ impl DualActiveSet {
         self.closed.solve_closed();
         self.closed.accelerate();
         // Accelerations are known but for the raise times the forces.
-        let limit = -self.noise() - RAISE * self.closed.terms;
-        let closed = &self.closed;
-        let mut wrong = 0;
-        for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
-            let is_closed = closed.is_closed(row);
-            let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
-            *start = is_closed != bad;
-            wrong += usize::from(bad);
-        }
-        wrong
+        self.mark_wrong(-self.noise() - RAISE * self.closed.terms)
     }
 
     /// Refines the forces until the closed rows are at rest. Returns whether they are, with all forces admissible.

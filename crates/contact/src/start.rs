@@ -9,16 +9,14 @@ use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::Infeasibility;
 use crate::problem::Problem;
+use crate::settings::WELL;
 use crate::warm::WarmStart;
 
-/// One in so many rows dependent makes a problem a very redundant one; fewer than one in so many independent, a simple
-/// one.
-const REDUNDANT: usize = 5;
-const SUBSTANTIAL: usize = 4;
+/// One in so many rows dependent makes a problem a very redundant one, where spreading forces or handing over is worth it.
+pub(crate) const REDUNDANT: usize = 5;
 
-/// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the forces,
-/// which of them are wrong means nothing. Pivots close what has less.
-pub(crate) const WELL: f64 = 1e-7;
+/// Fewer than one in so many rows independent make it a simple one (a box on a floor), where pivots are cheap.
+pub(crate) const SUBSTANTIAL: usize = 4;
 
 /// Pivots that are in sight are not waited for if they are so many times more work than there is patience for: some rows come
 /// right with others.
@@ -137,15 +135,7 @@ impl DualActiveSet {
                 self.closed.solve_closed();
                 self.closed.accelerate();
             }
-            let limit = -self.noise();
-            let mut wrong = 0;
-            let closed = &self.closed;
-            for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
-                let is_closed = closed.is_closed(row);
-                let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
-                *start = is_closed != bad;
-                wrong += usize::from(bad);
-            }
+            let wrong = self.mark_wrong(-self.noise());
             if self.may_hand_over && fewest == usize::MAX && wrong > 0 && self.is_redundant(flagged) {
                 self.handed_over = Some(HandOver::Redundant);
                 return true;
@@ -167,6 +157,20 @@ impl DualActiveSet {
             }
         }
         true
+    }
+
+    /// Flags, of the unilateral rows, those that should be closed instead of those that are: wrong is a closed row whose force
+    /// pulls, and an open one whose acceleration is below `limit`. Returns how many are wrong.
+    pub(crate) fn mark_wrong(&mut self, limit: f64) -> usize {
+        let mut wrong = 0;
+        let closed = &self.closed;
+        for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
+            let is_closed = closed.is_closed(row);
+            let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
+            *start = is_closed != bad;
+            wrong += usize::from(bad);
+        }
+        wrong
     }
 
     /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at least, are more than

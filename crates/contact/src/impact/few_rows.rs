@@ -5,13 +5,10 @@
 //! and Vicente 1994). A row that nearly depends on those before it is not held, as long as these hold it too. What that does not
 //! end is left to `many_rows`.
 
-use crate::settings::Settings;
+use crate::settings::{Settings, WELL};
 
 /// Up to so many rows are few.
 pub(super) const FEW: usize = 8;
-
-/// Part of a row's square that it must have to itself: with less, rounding has a say in the impulses.
-const WELL: f64 = 1e-7;
 
 /// Rounding of an acceleration, in parts of its terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;

@@ -44,7 +44,7 @@ impl Impact {
         Ok(())
     }
 
-    /// The row to solve next: the fastest, ties by place, or a random one of those that are violated.
+    /// The row to solve next: the fastest, the last of several, or a random one of those that are violated.
     fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
         let rest = self.rest(small);
         match shuffle {
