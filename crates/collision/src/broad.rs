@@ -132,14 +132,6 @@ impl BroadPhase {
         self.leaves.get(body.index())?.as_ref().map(|leaf| &leaf.bounds)
     }
 
-    /// Takes all boxes away; the tree keeps its room.
-    pub fn clear(&mut self) {
-        self.nodes.clear();
-        self.root = None;
-        self.free.clear();
-        self.leaves.clear();
-    }
-
     /// Gives a body its box [m], in place of the one it had.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
         if self.leaves.len() <= body.index() {
@@ -150,7 +142,8 @@ impl BroadPhase {
         self.insert(body, bounds, near);
     }
 
-    /// Takes a body's box away; nothing happens if it has none.
+    /// Takes a body's box away, as of one that leaves the scene, which none does in the layers above; nothing happens if it has
+    /// none.
     pub fn remove(&mut self, body: BodyId) {
         self.take_out(body);
     }

@@ -259,7 +259,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         for (index_a, a) in features_a.iter().enumerate() {
             for (index_b, b) in features_b.iter().enumerate() {
                 let Some(kind) = pair_kind(a, b) else { continue };
-                let ids = [feature_id(index_a), feature_id(index_b)];
+                let ids = [FeatureId::from_index(index_a), FeatureId::from_index(index_b)];
                 let Some(pair) = self.pair(kind, ids, a, b) else { continue };
                 if let Some(contact) =
                     self.closed_form(&pair, ids, from)?.filter(|found| found.time < progress.clear)
@@ -476,8 +476,4 @@ fn slack(feature: &Feature, lever: f64, other: &Feature) -> f64 {
         (Feature::Round(round), Feature::Line(_)) if round.radius == 0.0 => LEAN_SHARE / lever,
         _ => 0.0,
     }
-}
-
-fn feature_id(index: usize) -> FeatureId {
-    FeatureId(u32::try_from(index).unwrap_or(u32::MAX))
 }

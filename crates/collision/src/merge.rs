@@ -24,7 +24,7 @@ const HAIR: f64 = 1.0 / 64.0;
 #[must_use]
 pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     let bodies = |c: &Collision| {
-        let (p, n) = (c.parties.primary.body, c.parties.normal.body);
+        let [p, n] = c.bodies();
         (p.min(n), p.max(n))
     };
     if a.connector().is_some() || b.connector().is_some() {

@@ -28,7 +28,7 @@ impl CollisionRow {
     pub fn of_collision(collision: &Collision, inertia: [Inertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
         Self {
-            bodies: [collision.parties.primary.body, collision.parties.normal.body],
+            bodies: collision.bodies(),
             jacobian,
             response: response(&jacobian, inertia),
             elasticity: collision.response.elasticity,

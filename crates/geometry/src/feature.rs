@@ -6,6 +6,18 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FeatureId(pub u32);
 
+impl FeatureId {
+    /// The feature at a place in the list of a shape's features.
+    ///
+    /// # Panics
+    /// If the place is no number of 32 bits.
+    #[must_use]
+    #[inline]
+    pub fn from_index(index: usize) -> Self {
+        Self(u32::try_from(index).expect("a shape has fewer than 2^32 features"))
+    }
+}
+
 /// Which edge of a shape: its path and its place in the path as the shape runs it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeId {

@@ -185,8 +185,7 @@ impl Shape {
             let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
             // Features are in the order of their edges, a vertex before the edge that starts at it.
             let place = self.parts.sources.partition_point(|source| source < &corner);
-            (self.parts.sources.get(place) == Some(&corner))
-                .then(|| FeatureId(u32::try_from(place).unwrap_or(u32::MAX)))
+            (self.parts.sources.get(place) == Some(&corner)).then(|| FeatureId::from_index(place))
         })
     }
 
@@ -220,7 +219,7 @@ impl Shape {
         let whole = |edge: u32| {
             let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
             let place = self.parts.sources.partition_point(|source| source <= &corner);
-            FeatureId(u32::try_from(place).unwrap_or(u32::MAX))
+            FeatureId::from_index(place)
         };
         Some([before, edge].map(whole))
     }

@@ -117,8 +117,11 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// Looks whether connectors are together and bodies apart.
+    /// Looks whether connectors are together and bodies apart, unless the sentry has just done so and found that they are.
     pub(crate) fn look(&mut self, world: &World) {
+        if world.sentry.is_sound {
+            return;
+        }
         let mut found = Vec::new();
         world.find_connectors_off(&mut found);
         world.find_overlaps(&mut self.near, &mut found);

@@ -103,7 +103,10 @@ impl World {
             None => ControlFlow::Continue(()),
         });
         let reached = self.system.now();
-        self.conclude(outcome, reached, has_failed, &mut go_on).map(|_| ())
+        if !has_failed {
+            self.tell_last_words(&mut go_on);
+        }
+        self.conclude(outcome, reached).map(|_| ())
     }
 
     fn check_intervention(&self, intervention: &Intervention) -> Result<(), RunError> {

@@ -6,6 +6,7 @@ use crate::ledger::{Books, Turnover};
 use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
+use crate::sentry::LOOKS;
 use crate::world::{Energy, World};
 use std::time::{Duration, Instant};
 
@@ -14,8 +15,6 @@ const LAST_STEP_SHARE: f64 = 1e-6;
 /// Part of a run after which its progress is told where no output is kept: the clock is read as often, which in a run of a
 /// few impacts costs as much as they do.
 const PROGRESS_SHARE: f64 = 1.0 / 50.0;
-/// Looks on the way, where all is recorded, at what does not hold.
-const LOOKS: f64 = 50.0;
 
 /// What a run keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,6 +146,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
         }
+        // The sentry looks as often, but not where steps err by what they err.
         if wanted && done(now, plan) >= looks / LOOKS {
             findings.look(world);
             looks += 1.0;

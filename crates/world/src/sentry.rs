@@ -15,9 +15,9 @@ use halfgap_collision::Moving;
 
 /// Segments of motion from one look to the next, beside one for each body.
 const SEGMENTS: u64 = 16;
-/// Where it is known how long the world will run, it is looked at so many times on the way, however few segments it makes, and a
-/// stop that rounding puts a little before such a time is one, too.
-const LOOKS: f64 = 50.0;
+/// Where it is known how long the world will run, it is looked at so many times on the way, however few segments it makes.
+pub(crate) const LOOKS: f64 = 50.0;
+/// A stop that rounding puts this part of the time between two looks before such a time is one, too.
 const EARLY: f64 = 1e-6;
 
 /// What the sentry remembers, and room for its looks.
@@ -38,6 +38,9 @@ pub(crate) struct Sentry {
     /// How many of the looks of a known duration are behind, and whether none of them was left out.
     looks: f64,
     pub(crate) is_watchful: bool,
+    /// The last advance ended with a look, which found connectors together and bodies apart: they are so still, for nothing moves
+    /// without another advance.
+    pub(crate) is_sound: bool,
     room: Room,
 }
 
@@ -74,6 +77,7 @@ impl Sentry {
             looked: 0,
             looks: 0.0,
             is_watchful: duration > 0.0,
+            is_sound: false,
             room: Room::default(),
         }
     }
@@ -88,6 +92,7 @@ impl World {
         let segments = self.steps();
         let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
         let is_due = self.is_look_due();
+        self.sentry.is_sound = false;
         if outcome.is_ok() && is_soon && !is_due || !self.keeps_to_tolerance() {
             return outcome;
         }
@@ -99,6 +104,7 @@ impl World {
         self.sentry.turnover.note_kinetic(kinetic);
         let found = self.astray(&books, &mut room.near);
         self.sentry.room = room;
+        self.sentry.is_sound = found.is_none();
         match found {
             Some(finding) => Err(RunError::Astray { time: self.time(), finding }),
             None => outcome,

@@ -10,7 +10,7 @@ use crate::run_error::RunError;
 use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
-use crate::world::{Inertia, Named, Start, World, energy_of, name_among};
+use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
 use crate::world_error::WorldError;
 use checks::world_bounds;
 use glam::DVec2;
@@ -78,7 +78,6 @@ pub struct WorldBuilder {
     settings: WorldSettings,
     bodies: Vec<BodySpec>,
     laws: Vec<FlightLaw>,
-    gravity: Vec<DVec2>,
     forces: Vec<Arc<dyn ForceLaw>>,
     connectors: Vec<ConnectorSpec>,
     excluded: Vec<(BodyId, BodyId)>,
@@ -95,8 +94,7 @@ impl WorldBuilder {
     pub fn add(&mut self, body: BodySpec) -> BodyId {
         self.bodies.push(body);
         self.laws.push(FlightLaw::default());
-        self.gravity.push(DVec2::ZERO);
-        BodyId(u32::try_from(self.bodies.len() - 1).unwrap_or(u32::MAX))
+        BodyId::from_index(self.bodies.len() - 1)
     }
 
     /// A body that was added.
@@ -114,7 +112,6 @@ impl WorldBuilder {
     /// If no such body was added.
     pub fn add_gravity(&mut self, body: BodyId, acceleration: DVec2) {
         self.laws[body.index()].acceleration += acceleration;
-        self.gravity[body.index()] += acceleration;
     }
 
     /// Lets damping act on a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m].
@@ -176,7 +173,7 @@ impl WorldBuilder {
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
-            self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
+            self.bodies.into_iter().zip(self.laws).map(into_parts).unzip();
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
@@ -214,7 +211,7 @@ impl WorldBuilder {
             lost: lost_energy(&bodies, forces, &self.settings),
         };
         let sentry = Sentry::new(&self.settings, energies);
-        let settings = rigid_settings(&self.settings, &scales);
+        let settings = rigid_settings(&self.settings, &scales, tolerances);
         let parts = RigidParts {
             bodies,
             connectors: connectors.clone(),
@@ -224,7 +221,16 @@ impl WorldBuilder {
         let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(system, named, (self.forces, connectors), now, warnings, start, sentry))
+        Ok(World::new(WorldParts {
+            system,
+            bodies: named,
+            forces: self.forces,
+            connectors,
+            now,
+            warnings,
+            start,
+            sentry,
+        }))
     }
 
     /// What to say if the coordinates do not allow the gap that the tolerance asks for.
@@ -397,9 +403,9 @@ fn centered(body: &BodySpec) -> Shape {
 
 type Parts = (Named, StartParts);
 
-fn into_parts(((spec, law), gravity): ((BodySpec, FlightLaw), DVec2)) -> Parts {
+fn into_parts((spec, law): (BodySpec, FlightLaw)) -> Parts {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
-    let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity };
+    let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
     let inverse =
         |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
     let body = Body {

@@ -51,7 +51,7 @@ pub(super) fn can_lift(bodies: &[StartParts], record: &Collision, connectors: &[
 fn lift(record: &Collision) -> Correction {
     let (above, accuracy) = (record.distance_to_target(), record.tolerances.accuracy);
     Correction {
-        bodies: [record.parties.primary.body, record.parties.normal.body],
+        bodies: record.bodies(),
         jacobian: record.motion.kinematics.jacobian,
         // What lies in the zone already may move within it.
         offset: if above < -accuracy { above } else { above + accuracy },

@@ -191,10 +191,7 @@ fn cannot_correct(
     named: &[Named],
     connectors: &[Connector],
 ) -> WorldError {
-    let of_gap = |record: &Collision| {
-        let bodies = [record.parties.primary.body, record.parties.normal.body];
-        (bodies, record.geometry.distance)
-    };
+    let of_gap = |record: &Collision| (record.bodies(), record.geometry.distance);
     let gap = overlap.map(|(bodies, depth)| (bodies, -depth)).or(too_near.map(of_gap));
     match (gap, off) {
         (None, Some(off)) => {
