@@ -1,6 +1,8 @@
 //! Generated scenes of bodies that fly and collide: what must hold does.
 //!
 //! The example `fuzz` runs scenes of all kinds, as many as one likes.
+//!
+//! A binary of its own: what keeps panics quiet here would keep those of other tests quiet, too.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{Finding, RunError, World};

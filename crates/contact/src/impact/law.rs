@@ -30,8 +30,8 @@ pub enum ImpactLaw {
 /// In which order the serial laws take the rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactOrder {
-    /// The one that closes fastest first; of several that do, but for a part of 1e-9, the last in the list. Which of them does not
-    /// matter to the law, but rounding must not decide it, and all runs must choose the same.
+    /// The one that closes fastest first; of several that do, but for a part of 1e-9, the last in the list. Which of them is
+    /// arbitrary, but fixed: rounding does not decide it, and equal runs are equal.
     #[default]
     Fastest,
     /// A random order from a seed, the same for the same seed.

@@ -2,7 +2,7 @@
 
 use halfgap_contact::{Auto, Inertia, Lemke, Problem, Row, Solution, SolveError, Solver};
 
-use crate::data::{Case, disproof, judge};
+use super::data::{Case, disproof, judge};
 
 #[test]
 fn solvable_problems_that_were_called_infeasible_are_solved() {

@@ -3,7 +3,7 @@
 
 use halfgap_contact::{Auto, Problem, Solution, SolveError, Solver};
 
-use crate::data::{Case, collection, disproof, judge};
+use super::data::{Case, collection, disproof, judge};
 
 /// The problem with every coefficient of J changed by up to `size` of itself, differently for each seed.
 fn perturbed(case: &Case, size: f64, seed: usize) -> Problem {

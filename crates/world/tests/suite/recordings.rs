@@ -1,5 +1,4 @@
 //! Runs, what they record, and pictures of recordings that have nothing much to show.
-#![cfg(feature = "scene")]
 
 use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};

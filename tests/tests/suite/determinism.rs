@@ -78,7 +78,7 @@ fn two_processes_give_the_same_bits() {
     let other = || {
         let program = std::env::current_exe().expect("this program has a path");
         let mut command = Command::new(program);
-        command.args(["--exact", "two_processes_give_the_same_bits", "--nocapture"]).env(ONLY_HASHES, "1");
+        command.args(["--exact", "determinism::two_processes_give_the_same_bits", "--nocapture"]).env(ONLY_HASHES, "1");
         String::from_utf8(command.output().expect("it runs").stdout).expect("it writes text")
     };
     let (first, second, own) = (other(), other(), hashes());
