@@ -1,8 +1,8 @@
 //! The collision record: everything that is known of one place where two bodies touch or are about to.
 //!
-//! It is made for whoever uses this crate alone, to write an advance of their own. So it also holds and answers what the
-//! layers above find in other ways, or do not ask for: the first detection with the estimate that follows from it,
-//! `must_handle` and `updated`, curvature, arms, most predicates of `zone`.
+//! It is made for whoever uses this crate alone, to write an advance of their own. So it also holds and
+//! answers what the layers above find in other ways, or do not ask for: the first detection with the estimate
+//! that follows from it, `must_handle` and `updated`, curvature, arms, most predicates of `zone`.
 
 use crate::body::BodyId;
 use crate::connector::{Connector, ConnectorId, ConnectorSample};

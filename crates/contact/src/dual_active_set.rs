@@ -35,9 +35,9 @@ pub(crate) const REFINED: f64 = 0.125;
 /// Part that a dependent row must have in a closed one, in units of its own, to take its place.
 const LARGER: f64 = 2.0;
 
-/// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of one of them for
-/// little. So many times it may: of rows that all but depend on each other now this, now that one closes by more than
-/// noise, for ever.
+/// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of
+/// one of them for little. So many times it may: of rows that all but depend on each other now this, now that
+/// one closes by more than noise, for ever.
 const SLIGHT: f64 = 100.0;
 const MOST_SLIGHT: usize = 10;
 
@@ -90,8 +90,8 @@ pub(crate) enum HandOver {
 pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
     pub(crate) dependence: f64,
-    /// Whether a row of which no more than rounding is left counts as dependent, too: where no other attempt follows, and forces are
-    /// to be modest.
+    /// Whether a row of which no more than rounding is left counts as dependent, too: where no other attempt
+    /// follows, and forces are to be modest.
     pub(crate) doubts: bool,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     pub(crate) contradiction: f64,
@@ -326,11 +326,11 @@ impl DualActiveSet {
         }
     }
 
-    /// Closes the bilateral row that moves most although it depends on closed ones, in place of the one in which it has the
-    /// largest part, if that exceeds `LARGER`. The closed rows are then further from dependent on each other, by that factor
-    /// at least, and magnify the rounding of their forces less (M. Gu, S. Eisenstat, "Efficient algorithms for computing a
-    /// strong rank-revealing QR factorization", SIAM Journal on Scientific Computing 17, 1996, 848-869). Returns whether it
-    /// did.
+    /// Closes the bilateral row that moves most although it depends on closed ones, in place of the one in
+    /// which it has the largest part, if that exceeds `LARGER`. The closed rows are then further from
+    /// dependent on each other, by that factor at least, and magnify the rounding of their forces less (M.
+    /// Gu, S. Eisenstat, "Efficient algorithms for computing a strong rank-revealing QR factorization", SIAM
+    /// Journal on Scientific Computing 17, 1996, 848-869). Returns whether it did.
     fn exchange_connector(&mut self, noise: f64) -> bool {
         let closed = &mut self.closed;
         let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
@@ -379,8 +379,8 @@ impl DualActiveSet {
             let full = if relation.dependent {
                 f64::INFINITY
             } else {
-                // Where rounding has made an acceleration that came to zero positive, the force goes back, but not to where
-                // it would pull.
+                // Where rounding has made an acceleration that came to zero positive, the force goes back,
+                // but not to where it would pull.
                 (-self.closed.acceleration[row] / relation.complement).max(-self.closed.force[row])
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
@@ -409,8 +409,8 @@ impl DualActiveSet {
         self.slight_swaps > MOST_SLIGHT
     }
 
-    /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on each other, by
-    /// the reciprocal of the least part that one of them leaves of its square.
+    /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on
+    /// each other, by the reciprocal of the least part that one of them leaves of its square.
     fn rounding_of_response(&self) -> f64 {
         let closed = &self.closed;
         let largest = closed.step[..closed.len()].iter().fold(1.0, |m: f64, z| m.max(z.abs()));

@@ -12,14 +12,15 @@ use crate::problem::Problem;
 use crate::settings::WELL;
 use crate::warm::WarmStart;
 
-/// One in so many rows dependent makes a problem a very redundant one, where spreading forces or handing over is worth it.
+/// One in so many rows dependent makes a problem a very redundant one, where spreading forces or handing over
+/// is worth it.
 pub(crate) const REDUNDANT: usize = 5;
 
 /// Fewer than one in so many rows independent make it a simple one (a box on a floor), where pivots are cheap.
 pub(crate) const SUBSTANTIAL: usize = 4;
 
-/// Pivots that are in sight are not waited for if they are so many times more work than there is patience for: some rows come
-/// right with others.
+/// Pivots that are in sight are not waited for if they are so many times more work than there is patience
+/// for: some rows come right with others.
 const SURELY: usize = 2;
 
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
@@ -44,8 +45,9 @@ pub(crate) enum Start<'a> {
 }
 
 impl DualActiveSet {
-    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the factor narrow;
-    /// if some turn out dependent, they come first, so that what they contradict is each other.
+    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the
+    /// factor narrow; if some turn out dependent, they come first, so that what they contradict is each
+    /// other.
     pub(crate) fn find_start(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
         if self.exchange_blocks() {
             return None;
@@ -109,8 +111,8 @@ impl DualActiveSet {
         }));
     }
 
-    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
-    /// others and the bilateral rows did not come first.
+    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row
+    /// depends on others and the bilateral rows did not come first.
     pub(crate) fn exchange_blocks(&mut self) -> bool {
         if self.is_still_spread() {
             return true;
@@ -159,8 +161,9 @@ impl DualActiveSet {
         true
     }
 
-    /// Flags, of the unilateral rows, those that should be closed instead of those that are: wrong is a closed row whose force
-    /// pulls, and an open one whose acceleration is below `limit`. Returns how many are wrong.
+    /// Flags, of the unilateral rows, those that should be closed instead of those that are: wrong is a
+    /// closed row whose force pulls, and an open one whose acceleration is below `limit`. Returns how many
+    /// are wrong.
     pub(crate) fn mark_wrong(&mut self, limit: f64) -> usize {
         let mut wrong = 0;
         let closed = &self.closed;
@@ -173,8 +176,9 @@ impl DualActiveSet {
         wrong
     }
 
-    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at least, are more than
-    /// there is patience for. Where few are closed, as of a box on a floor, a pivot rights many of them.
+    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at
+    /// least, are more than there is patience for. Where few are closed, as of a box on a floor, a pivot
+    /// rights many of them.
     fn look_ahead(&mut self, wrong: usize) {
         let is_much = self.patience.is_some_and(|patience| wrong * self.work_of_pivot() > SURELY * patience);
         if is_much && self.closed.len() * SUBSTANTIAL >= wrong {

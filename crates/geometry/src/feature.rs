@@ -232,8 +232,9 @@ impl DirectionRange {
         self.ends().map_or(0.0, |[from, to]| angle_between(from, direction).min(angle_between(to, direction)))
     }
 
-    /// An angle [rad] that a unit vector in the range is away from its ends, or less; none at all for one outside, and without
-    /// end for all directions. The straight way to an end is taken for the turn, which is longer.
+    /// An angle [rad] that a unit vector in the range is away from its ends, or less; none at all for one
+    /// outside, and without end for all directions. The straight way to an end is taken for the turn, which
+    /// is longer.
     #[must_use]
     #[inline]
     pub fn margin(&self, direction: DVec2) -> f64 {

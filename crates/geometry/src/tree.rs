@@ -44,8 +44,8 @@ pub struct FeatureTree {
     leaves: Vec<usize>,
 }
 
-/// Two trees of no more leaves are compared leaf by leaf: those of one with the root of the other, then what is left of both
-/// with each other.
+/// Two trees of no more leaves are compared leaf by leaf: those of one with the root of the other, then what
+/// is left of both with each other.
 const FEW: usize = 16;
 
 impl FeatureTree {

@@ -1,8 +1,9 @@
 //! The sentry: stops a world that does not hold together any more.
 //!
-//! What a run finds out about itself ([`Finding`]) is told at its end. But a connector that has come apart, bodies that lie in
-//! one another, or energy from nowhere mean that all that follows is another scene's: there the advance ends with an error.
-//! It is looked at where an advance stops, as often as costs next to nothing.
+//! What a run finds out about itself ([`Finding`]) is told at its end. But a connector that has come apart,
+//! bodies that lie in one another, or energy from nowhere mean that all that follows is another scene's:
+//! there the advance ends with an error. It is looked at where an advance stops, as often as costs next to
+//! nothing.
 
 use crate::finding::Finding;
 use crate::ledger::{Books, Turnover};
@@ -15,7 +16,8 @@ use halfgap_collision::Moving;
 
 /// Segments of motion from one look to the next, beside one for each body.
 const SEGMENTS: u64 = 16;
-/// Where it is known how long the world will run, it is looked at so many times on the way, however few segments it makes.
+/// Where it is known how long the world will run, it is looked at so many times on the way, however few
+/// segments it makes.
 pub(crate) const LOOKS: f64 = 50.0;
 /// A stop that rounding puts this part of the time between two looks before such a time is one, too.
 const EARLY: f64 = 1e-6;
@@ -38,8 +40,8 @@ pub(crate) struct Sentry {
     /// How many of the looks of a known duration are behind, and whether none of them was left out.
     looks: f64,
     pub(crate) is_watchful: bool,
-    /// The last advance ended with a look, which found connectors together and bodies apart: they are so still, for nothing moves
-    /// without another advance.
+    /// The last advance ended with a look, which found connectors together and bodies apart: they are so
+    /// still, for nothing moves without another advance.
     pub(crate) is_sound: bool,
     room: Room,
 }

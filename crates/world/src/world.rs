@@ -330,8 +330,8 @@ impl World {
         }
     }
 
-    /// The largest kinetic energy [J] that some bodies had at the end of a step, or came to an impact with: who looks now and then may
-    /// never see it.
+    /// The largest kinetic energy [J] that some bodies had at the end of a step, or came to an impact with:
+    /// who looks now and then may never see it.
     pub(crate) fn largest_kinetic_energy(&self) -> f64 {
         self.system.counts().largest_kinetic_energy
     }
@@ -346,8 +346,9 @@ impl World {
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
     ///
     /// # Errors
-    /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever wants to go on beyond it
-    /// is told the same again. What must hold does not any more at that time. The time is not finite.
+    /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever
+    /// wants to go on beyond it is told the same again. What must hold does not any more at that time. The
+    /// time is not finite.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let outcome = self.advance_while(time, &mut |event| {
             on_event(event);
@@ -356,8 +357,9 @@ impl World {
         outcome.map(|_| ())
     }
 
-    /// The same, but no further than the first event of which `on_event` says [`ControlFlow::Break`]: the world is then at its time, and
-    /// the answer is that. What happens at once is told to the end; advancing on goes on as if there had been no stop.
+    /// The same, but no further than the first event of which `on_event` says [`ControlFlow::Break`]: the
+    /// world is then at its time, and the answer is that. What happens at once is told to the end; advancing
+    /// on goes on as if there had been no stop.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
@@ -382,8 +384,8 @@ impl World {
         self.conclude(outcome, reached)
     }
 
-    /// Tells of the impact after which the system cannot go on, if it has come to one; not for a system that had failed before,
-    /// for then it was told.
+    /// Tells of the impact after which the system cannot go on, if it has come to one; not for a system that
+    /// had failed before, for then it was told.
     pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
         if let Some(impact) = self.system.untold_impact() {
             write_impact(&mut self.told, impact);
@@ -404,7 +406,8 @@ impl World {
     }
 }
 
-/// Tells of an event that was handled, the impact in a buffer that is used again and again; whether somebody wants to stop there.
+/// Tells of an event that was handled, the impact in a buffer that is used again and again; whether somebody
+/// wants to stop there.
 pub(crate) fn tell(
     told: &mut Event,
     system: &RigidSystem,
@@ -440,7 +443,8 @@ fn contact_force(row: &RowForce) -> ContactForce {
     }
 }
 
-/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them; with room for what laws read.
+/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them; with room for
+/// what laws read.
 pub(crate) fn energy_of(
     bodies: &[Named],
     forces: &[Arc<dyn ForceLaw>],

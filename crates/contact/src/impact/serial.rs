@@ -1,7 +1,7 @@
 //! Rows solved one after another, until none closes.
 //!
-//! Each round takes one row as the focus, alone or with others, and lets it rebound: one that closes, or a bilateral one
-//! whose rate is not zero.
+//! Each round takes one row as the focus, alone or with others, and lets it rebound: one that closes, or a
+//! bilateral one whose rate is not zero.
 
 use super::Impact;
 use super::law::ImpactError;

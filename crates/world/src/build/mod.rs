@@ -15,8 +15,8 @@ impl World {
     /// Builds the world of a scene.
     ///
     /// # Errors
-    /// Values that break a rule, what is not simulated yet, shapes that cannot be, and bodies that overlap at the start; the
-    /// error names the field.
+    /// Values that break a rule, what is not simulated yet, shapes that cannot be, and bodies that overlap at
+    /// the start; the error names the field.
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
         scene.validate_world()?;
         scene.check_supported()?;

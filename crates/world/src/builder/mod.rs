@@ -21,8 +21,8 @@ use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
 
-/// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the start unless said
-/// otherwise.
+/// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the
+/// start unless said otherwise.
 const DEFAULT_START_ERROR: f64 = 1e-6;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
@@ -41,7 +41,8 @@ pub struct BodySpec {
     pub shape: Shape,
     /// Centre of mass in shape coordinates [m]; the shape's centroid if `None`.
     pub center_of_mass: Option<DVec2>,
-    /// Mass and moment of inertia about the centre of mass, which does not follow if that is moved; `None` for a fixed body.
+    /// Mass and moment of inertia about the centre of mass, which does not follow if that is moved; `None`
+    /// for a fixed body.
     pub inertia: Option<Inertia>,
     /// State at the start; the position is that of the centre of mass. A fixed body keeps neither velocity.
     pub state: BodyState,
@@ -159,8 +160,8 @@ impl WorldBuilder {
     /// Checks everything, aligns what is to be aligned, corrects small overlaps and errors, and builds the world.
     ///
     /// # Errors
-    /// Names that are not unique, numbers out of range, bodies that overlap, connectors that are off: the error names the
-    /// body or the connector, and the number.
+    /// Names that are not unique, numbers out of range, bodies that overlap, connectors that are off: the
+    /// error names the body or the connector, and the number.
     pub fn build(mut self) -> Result<World, WorldError> {
         self.check()?;
         self.align();
@@ -177,7 +178,8 @@ impl WorldBuilder {
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
-        // Connectors that contradict each other are together as nearly as the tolerance asks, however wide the zones of contacts.
+        // Connectors that contradict each other are together as nearly as the tolerance asks, however wide
+        // the zones of contacts.
         let derived = scales.tolerances(self.settings.tolerance);
         let rules = StartRules {
             tolerances: &tolerances,
@@ -249,8 +251,8 @@ impl WorldBuilder {
         })
     }
 
-    /// What to say if a step of a given length is too long for how fast a body is damped: what should decay grows then, wherever it is
-    /// integrated. Flights are in closed form.
+    /// What to say if a step of a given length is too long for how fast a body is damped: what should decay
+    /// grows then, wherever it is integrated. Flights are in closed form.
     fn step_warning(&self) -> Option<String> {
         let settings = &self.settings;
         let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
@@ -352,8 +354,8 @@ fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
     kinetic.sum::<f64>() + forces * size
 }
 
-/// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have at a speed that is
-/// rounding of their coordinates.
+/// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have
+/// at a speed that is rounding of their coordinates.
 fn lost_energy(bodies: &[StartParts], forces: f64, settings: &WorldSettings) -> f64 {
     let movable = || bodies.iter().filter(|(body, ..)| !body.is_fixed());
     let reach = movable().map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);

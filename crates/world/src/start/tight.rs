@@ -19,8 +19,8 @@ impl TightPairs {
         self.pairs.contains(&record.bodies())
     }
 
-    /// Lets the pairs of some records that are too near keep their gaps: first such as cannot be lifted even alone, then all.
-    /// Returns false if there are none that do not overlap.
+    /// Lets the pairs of some records that are too near keep their gaps: first such as cannot be lifted even
+    /// alone, then all. Returns false if there are none that do not overlap.
     pub(super) fn widen(
         &mut self,
         bodies: &[StartParts],

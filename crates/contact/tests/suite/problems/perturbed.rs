@@ -1,5 +1,5 @@
-//! Variations of the collected problems of bodies: every coefficient changed a little, so that redundant contacts become
-//! nearly redundant ones, which are harder.
+//! Variations of the collected problems of bodies: every coefficient changed a little, so that redundant
+//! contacts become nearly redundant ones, which are harder.
 
 use halfgap_contact::{Auto, Problem, Solution, SolveError, Solver};
 
