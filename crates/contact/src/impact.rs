@@ -57,7 +57,7 @@ pub struct Impact {
     bound: f64,
     /// What is left has resisted small impulses.
     at_last: bool,
-    /// What takes many pivots is given up.
+    /// What takes many pivots is given up, at last as well as before.
     is_trial: bool,
     /// How many complementarity problems were solved.
     solves: u64,

@@ -200,8 +200,10 @@ mod tests {
         let mut world = pendulum();
         world.start.energy += 1.0;
         let before = world.statistics().steps;
+        assert!(world.sentry.is_sound, "it has just been looked at");
         world.advance_to(LATER + 1e-3, &mut |_| ()).expect("nobody looks");
         assert!(world.statistics().steps - before < SEGMENTS);
+        assert!(!world.sentry.is_sound, "nobody knows");
     }
 
     /// A disc that is about to bounce off a floor, where all that it does counts as slow.
