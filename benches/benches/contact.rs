@@ -3,14 +3,16 @@
 //! `cargo bench -p halfgap-benches --bench contact [-- FILTER]` prints a table in Markdown. Every time is the median of
 //! repeated solves, in microseconds, less what reading the clock takes:
 //!
-//! * cold: the automatic choice, from nothing but a workspace that has seen problems of the size, though not this matrix;
+//! * cold: the automatic choice, from nothing but a workspace that has seen problems of the size, though not
+//!   this matrix;
 //! * next: cold and warm with the next step's right-hand side, warm from the answer of this step and with its factor;
-//! * J: the same with every coefficient of J changed by up to 1e-3 of itself, so that no factor can be reused, not even one
-//!   that was kept from another solve: between two solves of this J comes one of a J that was changed otherwise;
+//! * J: the same with every coefficient of J changed by up to 1e-3 of itself, so that no factor can be
+//!   reused, not even one that was kept from another solve: between two solves of this J comes one of a J
+//!   that was changed otherwise;
 //! * clarabel: velocity form, building the solver and solving, tolerances 1e-12.
 //!
-//! Then, with `-- held` or without a filter, the parts of `HeldRows` on chains and pyramids; with `-- impact` or without a
-//! filter, impacts by each law, rows given anew. Each time is the least mean of some batches.
+//! Then, with `-- held` or without a filter, the parts of `HeldRows` on chains and pyramids; with `-- impact`
+//! or without a filter, impacts by each law, rows given anew. Each time is the least mean of some batches.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on should stop")]
 
 use std::hint::black_box;
@@ -263,8 +265,8 @@ fn measure(name: &str, file: &ContactFile) -> String {
     )
 }
 
-/// The problem with the next right-hand side, every coefficient changed by up to 1e-3 of itself, by a series of numbers from its
-/// place `first` on.
+/// The problem with the next right-hand side, every coefficient changed by up to 1e-3 of itself, by a series
+/// of numbers from its place `first` on.
 fn perturbed(file: &ContactFile, first: usize) -> Problem {
     let RowsField { triplets, .. } = file.j.as_ref().unwrap();
     let golden = f64::midpoint(5.0_f64.sqrt(), 1.0);

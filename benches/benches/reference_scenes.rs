@@ -1,8 +1,8 @@
 //! What do the scenes of the reference engine cost, and what did they cost there?
 //!
-//! `cargo bench -p halfgap-benches --bench reference_scenes [-- FILTER]` measures each scene from start to end, stepping
-//! only: without parsing and set-up. Then it prints a table in Markdown, with the time of the reference engine beside ours
-//! and which of them are a twentieth of it or less.
+//! `cargo bench -p halfgap-benches --bench reference_scenes [-- FILTER]` measures each scene from start to
+//! end, stepping only: without parsing and set-up. Then it prints a table in Markdown, with the time of the
+//! reference engine beside ours and which of them are a twentieth of it or less.
 
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main, measurement::WallTime};
 use halfgap::World;
@@ -10,8 +10,8 @@ use halfgap::scene::Scene;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Scenes and the time [ms] that myPhysicsLab engine2D (commit 4b0bb8e, TypeScript on node 20) takes for them on a virtual
-/// machine with two cores: the median of several runs, good to a factor of 2.
+/// Scenes and the time [ms] that myPhysicsLab engine2D (commit 4b0bb8e, TypeScript on node 20) takes for them
+/// on a virtual machine with two cores: the median of several runs, good to a factor of 2.
 const REFERENCE_MS: [(&str, f64); 78] = [
     ("apps__billiards_offset", 35.6),
     ("apps__cart_pendulum", 43.5),

@@ -1,8 +1,8 @@
 //! What must hold whatever the scene: runs a scene step by step and looks.
 //!
-//! No panic, no number that is none, no penetration, no energy from nothing, connectors together, contacts that touch and push,
-//! and an end within the budget: finished, or a clean error. Everything is judged from outside: distances by the geometry alone,
-//! energy from the states.
+//! No panic, no number that is none, no penetration, no energy from nothing, connectors together, contacts
+//! that touch and push, and an end within the budget: finished, or a clean error. Everything is judged from
+//! outside: distances by the geometry alone, energy from the states.
 
 use crate::touching::wrong_contact;
 use halfgap::force::{Moving, Snapshot, Wrench, Wrenches};
@@ -16,22 +16,23 @@ use std::time::{Duration, Instant};
 
 /// States looked at in each run.
 const LOOKS: u32 = 50;
-/// Stops from one look to the next, at which only the clock and the energy are read: what goes on without any event is told from
-/// what hangs, and bodies that pass close by each other turn much energy over in no time.
+/// Stops from one look to the next, at which only the clock and the energy are read: what goes on without any
+/// event is told from what hangs, and bodies that pass close by each other turn much energy over in no time.
 const STOPS: u32 = 40;
-/// How far the energy books may be from closing, in tolerances (and one more for each step) and parts of the energy turned
-/// over.
+/// How far the energy books may be from closing, in tolerances (and one more for each step) and parts of the
+/// energy turned over.
 const ENERGY_TOLERANCES: f64 = 1e4;
 const ENERGY_ROUNDING: f64 = 1e-9;
-/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin slowly. More
-/// is a blow that was taken for one.
+/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin
+/// slowly. More is a blow that was taken for one.
 const CAPTURED: f64 = 5e-2;
 /// How far a connector may be off, in tolerances and in roundings of the coordinates.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 
-/// Part of the duration that goes by in the second half of the budget at least, if the run does not crawl. What seems to gets
-/// so many times the budget to come on after all: light bodies between heavy ones rattle for a while, and nothing is wrong.
+/// Part of the duration that goes by in the second half of the budget at least, if the run does not crawl.
+/// What seems to gets so many times the budget to come on after all: light bodies between heavy ones rattle
+/// for a while, and nothing is wrong.
 const CRAWLS: f64 = 1e-5;
 const PATIENCE: u32 = 4;
 
@@ -215,7 +216,8 @@ impl Purse {
         }
     }
 
-    /// Panics with [`Spent`] once too much was, where the run is at a time [s]; before that, what crawls gets more, once.
+    /// Panics with [`Spent`] once too much was, where the run is at a time [s]; before that, what crawls gets
+    /// more, once.
     fn spend(&mut self, time: f64) {
         let wall = self.started.elapsed();
         let half_way = self.half_way;
@@ -243,10 +245,12 @@ impl Purse {
 struct Inspector {
     /// Pairs that may not penetrate.
     pairs: Vec<(BodyId, BodyId)>,
-    /// What each connector is, and how far [m] it may be off beside its tolerance: ropes and stops are taut within their zone.
+    /// What each connector is, and how far [m] it may be off beside its tolerance: ropes and stops are taut
+    /// within their zone.
     connectors: Vec<(&'static str, f64)>,
     tolerance: f64,
-    /// How far [m] slow bodies sink where contacts carry impulses only, beside a part of their own size; `None` where they carry forces.
+    /// How far [m] slow bodies sink where contacts carry impulses only, beside a part of their own size;
+    /// `None` where they carry forces.
     sinks: Option<f64>,
     /// The scene says itself what is slow: how much captures take is its own affair.
     slow_is_given: bool,
@@ -409,9 +413,9 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     enough
 }
 
-/// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of what a weight or another force does along
-/// what is within the tolerance of a body's size: where a spring presses on what is held, steps err by that much and
-/// projections take it back, though nothing moves.
+/// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of what a weight or another
+/// force does along what is within the tolerance of a body's size: where a spring presses on what is held,
+/// steps err by that much and projections take it back, though nothing moves.
 fn no_energy(scene: &Scene, world: &World) -> f64 {
     let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
     let reach = world.bodies().filter(|&body| !world.is_fixed(body)).map(|body| world.shape(body).reach());

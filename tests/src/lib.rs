@@ -1,7 +1,7 @@
 //! Scenarios that cross the layers of halfgap, and the scenes that they run.
 //!
-//! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and looks (`touching` at contacts),
-//! `shrink` makes small what fails, `random` is where the numbers come from.
+//! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and looks
+//! (`touching` at contacts), `shrink` makes small what fails, `random` is where the numbers come from.
 
 pub mod generate;
 pub mod invariants;

@@ -135,7 +135,8 @@ pub fn advance(world: &mut World, time: f64) {
     world.advance_to(time, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// Advances a world, and returns the time [s] at which the last contact has come to rest, with the bounces that were cut off.
+/// Advances a world, and returns the time [s] at which the last contact has come to rest, with the bounces
+/// that were cut off.
 ///
 /// # Panics
 /// If it stops early: the test fails.

@@ -1,7 +1,7 @@
 //! What must hold of contacts: whoever is said to touch does so, and pushes.
 //!
-//! A contact whose end is missed goes on beyond the ends of its edges, or holds its bodies together. Neither penetrates, nor
-//! does it cost energy.
+//! A contact whose end is missed goes on beyond the ends of its edges, or holds its bodies together. Neither
+//! penetrates, nor does it cost energy.
 
 use halfgap::{ContactForce, World};
 
@@ -10,8 +10,8 @@ const ZONES: f64 = 4.0;
 /// Part of all forces on the bodies of a contact with which it may seem to pull.
 const PULL: f64 = 1e-6;
 
-/// The kind of what is wrong with a contact, if anything is, and what was seen; with the rounding of coordinates [m], and a
-/// force [N] that tells nothing.
+/// The kind of what is wrong with a contact, if anything is, and what was seen; with the rounding of
+/// coordinates [m], and a force [N] that tells nothing.
 pub(crate) fn wrong_contact(world: &World, rounding: f64, no_force: f64) -> Option<(&'static str, String)> {
     let rows = world.contact_forces();
     let mut contacts = rows.iter().filter(|row| row.connector.is_none());
@@ -32,7 +32,8 @@ fn not_touching(world: &World, contact: &ContactForce, rounding: f64) -> Option<
     })
 }
 
-/// Contacts of the same two bodies count together: where there are more than are needed, forces of single ones say nothing.
+/// Contacts of the same two bodies count together: where there are more than are needed, forces of single
+/// ones say nothing.
 fn pulling(
     world: &World,
     contact: &ContactForce,
@@ -59,7 +60,8 @@ mod tests {
     use super::*;
     use crate::world_of;
 
-    /// What is wrong with a contact of two discs of radius 1 m whose centres are so far apart [m], with such a force [N].
+    /// What is wrong with a contact of two discs of radius 1 m whose centres are so far apart [m], with such
+    /// a force [N].
     fn wrong(apart: f64, force: f64) -> Option<&'static str> {
         let disc = "shape = { disc = { radius = 1.0 } }\nmass = 1.0\n";
         let world = world_of(&format!(

@@ -1,6 +1,8 @@
 //! Generated scenes of bodies that fly and collide: what must hold does.
 //!
 //! The example `fuzz` runs scenes of all kinds, as many as one likes.
+//!
+//! A binary of its own: what keeps panics quiet here would keep those of other tests quiet, too.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{Finding, RunError, World};
@@ -210,8 +212,8 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     ),
 ];
 
-/// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or masses too far apart. The
-/// engine says so itself.
+/// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or
+/// masses too far apart. The engine says so itself.
 const BEYOND_ROUNDING: &[(u64, &str)] = &[
     (20_433, "bodies that attract each other pass at micrometres, 70 km from the origin"),
     (1_903_810, "a tiny body on two ropes that whips as they come to one line"),
@@ -234,8 +236,8 @@ fn what_rounding_decides_ends_in_an_error() {
     }
 }
 
-/// At their dead point a pin and a slot ask for angles of a millionth, and 13 km from the origin coordinates do not hold that:
-/// whether the energy books close is luck. If they do not, the run tells.
+/// At their dead point a pin and a slot ask for angles of a millionth, and 13 km from the origin coordinates
+/// do not hold that: whether the energy books close is luck. If they do not, the run tells.
 #[test]
 fn books_that_rounding_opens_are_told() {
     let json = scene_of_seed(4_202_738).to_string();
@@ -277,8 +279,8 @@ fn ropes_are_taut_within_a_coarse_zone() {
 
 #[test]
 fn what_takes_over_from_a_contact_that_has_sunk_is_seen() {
-    // Blocks fit from wall to wall: rows that contradict each other drift, and a block that rolled from one corner to the next
-    // along its wall went through it. What else happens in such a jam is not looked at.
+    // Blocks fit from wall to wall: rows that contradict each other drift, and a block that rolled from one
+    // corner to the next along its wall went through it. What else happens in such a jam is not looked at.
     let scene =
         Scene::parse(&variation_of_seed(14_724).to_string(), SceneFormat::Json).expect("it is a scene");
     let mut world = World::from_scene(&scene).expect("it can be built");
@@ -359,7 +361,8 @@ fn what_was_broken_once_in_variations_holds() {
     require(VARIED_BROKEN, variation_of_seed, |verdict| *verdict == Verdict::Finished);
 }
 
-/// Blocks between walls, the lightest of which weighs a millionth of its neighbour; it may overlap the floor by less than the gap.
+/// Blocks between walls, the lightest of which weighs a millionth of its neighbour; it may overlap the floor
+/// by less than the gap.
 #[test]
 fn a_light_block_between_heavy_ones_that_lean_a_little_gets_the_impulses_that_it_takes() {
     let verdict = trial(&variation_of_seed(511).to_string(), PATIENT);
@@ -403,8 +406,8 @@ fn nothing_comes_apart_where_contacts_carry_impulses_only() {
 fn what_is_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks() {
     /// A hundred for each of its steps.
     const MOST: u64 = 10_000;
-    // A block that turns by 45 rad/s lies against a disc: what was stopped fired again when it had sunk by what can just be told, two
-    // million times.
+    // A block that turns by 45 rad/s lies against a disc: what was stopped fired again when it had sunk by
+    // what can just be told, two million times.
     let scene = briefly(impulses_of_seed(50_300_060)).to_string();
     let scene = Scene::parse(&scene, SceneFormat::Json).expect("scenes of seeds are scenes");
     let mut world = World::from_scene(&scene).expect("it can be built");
@@ -423,8 +426,8 @@ fn what_strong_forces_press_into_each_other_ends_a_run_that_would_go_on_for_hour
     assert!(matches!(outcome, Err(RunError::Pressed { .. })), "{outcome:?}");
 }
 
-/// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but its books, which are
-/// not looked at.
+/// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but
+/// its books, which are not looked at.
 fn require_sound(scene: &Value, what: &str) {
     let scene = Scene::parse(&scene.to_string(), SceneFormat::Json).expect("scenes of seeds are scenes");
     let mut world = World::from_scene(&scene).expect("it can be built");

@@ -3,9 +3,9 @@
 //! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
 //! [--merge FILE]... [--passes N] [--gas]`
 //!
-//! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an earlier table,
-//! and `--passes` goes through everything so many times: of equal runs the least time is kept, for a machine may be busy.
-//! `--gas` measures impacts per second of free bodies instead.
+//! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of
+//! an earlier table, and `--passes` goes through everything so many times: of equal runs the least time is
+//! kept, for a machine may be busy. `--gas` measures impacts per second of free bodies instead.
 
 use halfgap_report::scene::Scene;
 use halfgap_report::sweep::{Effort, Row, merge};

@@ -12,8 +12,8 @@ const ENGINES: [&str; 3] = ["halfgap", "rapier", "box2d"];
 /// second.
 type Bar = [Option<(f64, char)>; 5];
 
-/// An independent suite's measurement of the field, on a core of its own machine. Siconos event-driven, MuJoCo with RK4 in
-/// reduced coordinates, Chipmunk.
+/// An independent suite's measurement of the field, on a core of its own machine. Siconos event-driven,
+/// MuJoCo with RK4 in reduced coordinates, Chipmunk.
 const BARS: [(&str, Bar); 10] = [
     ("ball_bounce", bar([0.057, 0.105, 0.105, 0.105, 0.123], b"CSSSS")),
     ("two_discs_e1", bar([0.028; 5], b"SSSSS")),

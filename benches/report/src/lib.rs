@@ -1,8 +1,9 @@
 //! Speed against error: halfgap and its peers on scenes whose answers are known.
 //!
-//! `scene` is the neutral description, `scenes` a file each, `reference` how answers are computed independently of every
-//! engine, `engines` a file each, `measure` one run, `sweep` all of them, `csv` the table of runs, `levels` the times per level
-//! of error, `plot` the pictures, `gas` impacts per second. The bench `speed_vs_error` drives it:
+//! `scene` is the neutral description, `scenes` a file each, `reference` how answers are computed
+//! independently of every engine, `engines` a file each, `measure` one run, `sweep` all of them, `csv` the
+//! table of runs, `levels` the times per level of error, `plot` the pictures, `gas` impacts per second. The
+//! bench `speed_vs_error` drives it:
 //!
 //! ```text
 //! cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME]

@@ -1,8 +1,8 @@
 //! One run of one engine: how long, how wrong.
 //!
-//! Stepping alone is timed. A first pass stops at every time of the scene's grid for a look at penetration; then the run is
-//! repeated from its set-up, unless it is long, and the least of all times counts: what else the machine does can only add
-//! to it.
+//! Stepping alone is timed. A first pass stops at every time of the scene's grid for a look at penetration;
+//! then the run is repeated from its set-up, unless it is long, and the least of all times counts: what else
+//! the machine does can only add to it.
 
 use crate::engines::{Engine, EngineError};
 use crate::scene::Scene;

@@ -72,8 +72,8 @@ pub(crate) struct CheckOptions {
 pub(crate) struct SweepOptions {
     /// The scene, a .toml or .json file.
     pub(crate) scene: PathBuf,
-    /// The number to vary and its values: N of them from A to B, evenly, ends included. FIELD is a place in the scene, such as
-    /// body.ball.elasticity, body[0].position[1] or run.tolerance.
+    /// The number to vary and its values: N of them from A to B, evenly, ends included. FIELD is a place in
+    /// the scene, such as body.ball.elasticity, body[0].position[1] or run.tolerance.
     #[arg(long, value_name = "FIELD=A..B/N", allow_hyphen_values = true)]
     pub(crate) vary: Vary,
     /// Write the table with the states at the end to this CSV file.

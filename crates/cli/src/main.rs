@@ -1,7 +1,8 @@
 //! The `halfgap` command: runs, varies and checks scene files, and solves contact problems.
 //!
-//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `sweep` with `vary`, `solve`) that returns how it ended,
-//! `failure` turns what went wrong into messages and exit codes, `output` writes to standard output.
+//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `sweep` with
+//! `vary`, `solve`) that returns how it ended, `failure` turns what went wrong into messages and exit codes,
+//! `output` writes to standard output.
 
 mod args;
 mod check;

@@ -11,6 +11,17 @@ impl BodyId {
     /// The immovable background, to which connectors may tie a body: no body of the world, with the pose of the origin.
     pub const WORLD: BodyId = BodyId(u32::MAX);
 
+    /// The body at a place in a list of bodies.
+    ///
+    /// # Panics
+    /// If the list is so long, 2^32 - 1 bodies or more, that this would be the background or no number at all.
+    #[must_use]
+    #[inline]
+    pub fn from_index(index: usize) -> Self {
+        let number = u32::try_from(index).ok().filter(|&number| number != Self::WORLD.0);
+        Self(number.expect("bodies are fewer than 2^32 - 1"))
+    }
+
     /// True for the background.
     #[must_use]
     #[inline]

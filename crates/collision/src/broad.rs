@@ -1,13 +1,14 @@
 //! Which bodies are near each other: a dynamic tree of fat boxes.
 //!
-//! Each body has a box with room to move; only when it leaves the box is the tree touched. A query costs the logarithm of
-//! the number of bodies plus what it finds. The tree chooses where to insert by the least growth of half perimeters (J.
-//! Goldsmith and J. Salmon, "Automatic creation of object hierarchies for ray tracing", 1987), swaps a child with a niece
-//! where that makes boxes smaller (A. Kensler, "Tree rotations for improving bounding volume hierarchies", 2008), and
-//! lifts the higher child where it becomes lopsided, as an AVL tree does, so that its height stays logarithmic.
+//! Each body has a box with room to move; only when it leaves the box is the tree touched. A query costs the
+//! logarithm of the number of bodies plus what it finds. The tree chooses where to insert by the least growth
+//! of half perimeters (J. Goldsmith and J. Salmon, "Automatic creation of object hierarchies for ray
+//! tracing", 1987), swaps a child with a niece where that makes boxes smaller (A. Kensler, "Tree rotations
+//! for improving bounding volume hierarchies", 2008), and lifts the higher child where it becomes lopsided,
+//! as an AVL tree does, so that its height stays logarithmic.
 //!
-//! A node keeps the boxes of its children, and bodies have no nodes: with thousands of bodies what costs is how many places in memory are
-//! looked at.
+//! A node keeps the boxes of its children, and bodies have no nodes: with thousands of bodies what costs is
+//! how many places in memory are looked at.
 
 use crate::body::BodyId;
 use glam::DVec2;
@@ -132,14 +133,6 @@ impl BroadPhase {
         self.leaves.get(body.index())?.as_ref().map(|leaf| &leaf.bounds)
     }
 
-    /// Takes all boxes away; the tree keeps its room.
-    pub fn clear(&mut self) {
-        self.nodes.clear();
-        self.root = None;
-        self.free.clear();
-        self.leaves.clear();
-    }
-
     /// Gives a body its box [m], in place of the one it had.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
         if self.leaves.len() <= body.index() {
@@ -150,7 +143,8 @@ impl BroadPhase {
         self.insert(body, bounds, near);
     }
 
-    /// Takes a body's box away; nothing happens if it has none.
+    /// Takes a body's box away, as of one that leaves the scene, which none does in the layers above; nothing
+    /// happens if it has none.
     pub fn remove(&mut self, body: BodyId) {
         self.take_out(body);
     }
@@ -189,8 +183,8 @@ impl BroadPhase {
             found.extend(self.bounds(body).filter(|own| own.overlaps(bounds)).map(|_| body));
             return;
         }
-        // Level by level: which nodes come next is known long before their boxes have come from memory. What overlaps cannot
-        // be foretold: everything is written down, and kept if it does.
+        // Level by level: which nodes come next is known long before their boxes have come from memory. What
+        // overlaps cannot be foretold: everything is written down, and kept if it does.
         let (mut next, mut end, mut count) = (0, 1, 0);
         self.frontier.resize(self.frontier.len().max(FIRST_ROOM), 0);
         self.frontier[0] = root.0;
@@ -329,7 +323,8 @@ impl BroadPhase {
         self.hang(self.as_child(other), Slot::new(node, 1 - side));
     }
 
-    /// Rotates the higher child up if the two differ by much; returns the root of the subtree, which is to hang where the node did.
+    /// Rotates the higher child up if the two differ by much; returns the root of the subtree, which is to
+    /// hang where the node did.
     fn balance(&mut self, node: usize) -> usize {
         let [left, right] = self.nodes[node].children;
         let side = usize::from(right.height > left.height);

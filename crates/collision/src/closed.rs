@@ -1,8 +1,8 @@
 //! First contact of a feature pair whose gap is a quadratic in time.
 //!
-//! Two cases have closed forms: two centres in uniform relative motion, for which |d|^2 is a quadratic, and a centre on a
-//! parabola against a line that does not turn, for which the gap itself is one. A centre moves on its body's parabola if
-//! it is the centre of mass or if the body does not turn.
+//! Two cases have closed forms: two centres in uniform relative motion, for which |d|^2 is a quadratic, and a
+//! centre on a parabola against a line that does not turn, for which the gap itself is one. A centre moves on
+//! its body's parabola if it is the centre of mass or if the body does not turn.
 
 use crate::motion::{Motion, Polynomial};
 use crate::quadratic::{first_closing_by, first_closing_time};
@@ -49,7 +49,8 @@ impl Quadratic {
         }
     }
 
-    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative; infinite if there is none.
+    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative; infinite if
+    /// there is none.
     ///
     /// Whether two discs near each other meet cannot be foretold: apart from those that touch already, they are judged
     /// without branches.

@@ -19,8 +19,8 @@ pub struct Moment<'a> {
     pub moving: Moving,
 }
 
-/// Adds to `found` a record for every place where the two bodies are within `distance_tol` of each other, overlapping by
-/// at most `depth` [m]; the same place found twice is recorded once.
+/// Adds to `found` a record for every place where the two bodies are within `distance_tol` of each other,
+/// overlapping by at most `depth` [m]; the same place found twice is recorded once.
 pub fn detect_pair(
     a: &Moment<'_>,
     b: &Moment<'_>,
@@ -64,9 +64,9 @@ pub fn detect_features_of_pair(
     );
 }
 
-/// The record of one pair of features, wherever on them its contact is and however far they are apart: of a pair that a
-/// search says is in contact. `None` if the two cannot touch inside their ranges, as corners so near each other that the
-/// direction between them is all rounding, and not such that they touch.
+/// The record of one pair of features, wherever on them its contact is and however far they are apart: of a
+/// pair that a search says is in contact. `None` if the two cannot touch inside their ranges, as corners so
+/// near each other that the direction between them is all rounding, and not such that they touch.
 #[must_use]
 pub fn record_features(
     [a, b]: [&Moment<'_>; 2],
@@ -149,9 +149,9 @@ pub fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tol
 
 /// True if the contact lies within both features, or outside by so little that it cannot be told.
 ///
-/// A vertex outside of its normal cone is not the nearest point of its body: its neighbour along an edge is. While the
-/// neighbour is nearer by less than the accuracy, both touch: so a block lands flat on two corners. An angle outside of a
-/// range makes up the accuracy over the feature's lever.
+/// A vertex outside of its normal cone is not the nearest point of its body: its neighbour along an edge is.
+/// While the neighbour is nearer by less than the accuracy, both touch: so a block lands flat on two corners.
+/// An angle outside of a range makes up the accuracy over the feature's lever.
 fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &Tolerances) -> bool {
     let excess = if sample.primary_is_a {
         [sample.excess_primary, sample.excess_normal]
@@ -163,8 +163,9 @@ fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &T
     sample.overrun <= tolerances.accuracy && leans(0) && leans(1)
 }
 
-/// Lengths [m] over which angles outside of the ranges of two features that touch become distances: the levers of both, but that
-/// of a corner on a line is no longer than the line. So far at most the two bodies lie flat on each other.
+/// Lengths [m] over which angles outside of the ranges of two features that touch become distances: the
+/// levers of both, but that of a corner on a line is no longer than the line. So far at most the two bodies
+/// lie flat on each other.
 #[must_use]
 pub fn contact_levers(sides: [(&Shape, FeatureId); 2]) -> [f64; 2] {
     let [own, other] = sides.map(|(shape, id)| shape.lever(id));

@@ -13,11 +13,12 @@ pub struct EstimatePoint {
     pub normal_velocity: f64,
 }
 
-/// Estimates when the distance reaches `target_gap` [m]: between `earlier`, the state after the back-up, and `later`, the
-/// state at which the collision was detected, with the acceleration that the two velocities imply.
+/// Estimates when the distance reaches `target_gap` [m]: between `earlier`, the state after the back-up, and
+/// `later`, the state at which the collision was detected, with the acceleration that the two velocities
+/// imply.
 ///
-/// The distance at `later` is not used. `None` if by this estimate the target is not reached in between, which can happen
-/// although the later distance is below it; the event search then brackets.
+/// The distance at `later` is not used. `None` if by this estimate the target is not reached in between,
+/// which can happen although the later distance is below it; the event search then brackets.
 #[must_use]
 pub fn estimate_target_time(earlier: EstimatePoint, later: EstimatePoint, target_gap: f64) -> Option<f64> {
     let span = later.time - earlier.time;

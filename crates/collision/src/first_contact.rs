@@ -1,7 +1,8 @@
 //! When do two moving shapes first come so near that a feature pair closes to its target gap?
 //!
-//! Nothing is missed: the search moves through windows of time, in each of which bounds on the motion leave only feature
-//! pairs that can come near; each of these is decided by a closed form or by a march that never passes a contact.
+//! Nothing is missed: the search moves through windows of time, in each of which bounds on the motion leave
+//! only feature pairs that can come near; each of these is decided by a closed form or by a march that never
+//! passes a contact.
 
 use crate::closed::{of_centers, quadratic};
 use crate::detect::pair_tolerances;
@@ -13,8 +14,8 @@ use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
 /// Part of the accuracy by which a corner may lean off a line and still fires.
 const LEAN_SHARE: f64 = 1.0 / 16.0;
 
-/// Part of the accuracy by which a contact may lie beyond the end of a line and still fires. The end is then farther away
-/// than the line by the square of this: nothing to be seen.
+/// Part of the accuracy by which a contact may lie beyond the end of a line and still fires. The end is then
+/// farther away than the line by the square of this: nothing to be seen.
 const OVERRUN_SHARE: f64 = 1.0 / 1024.0;
 
 /// Windows that are searched after a march that came to the end of its steps, each as long as it came.
@@ -32,7 +33,8 @@ pub struct MovingShape<'a, M> {
 }
 
 impl<M: Motion> MovingShape<'_, M> {
-    /// Largest distance [m] of a point whose place depends on how the shape is turned: none of a disc about the centre of mass.
+    /// Largest distance [m] of a point whose place depends on how the shape is turned: none of a disc about
+    /// the centre of mass.
     fn turning_reach(&self) -> f64 {
         if self.shape.centered_disc().is_some() { 0.0 } else { self.shape.reach() }
     }
@@ -56,11 +58,11 @@ pub struct SearchSettings {
     pub crowded: usize,
     /// Windows of one call of [`search_step`] in which any features are near each other.
     pub windows: u32,
-    /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper ones lie on the
-    /// far sides of their bodies.
+    /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper
+    /// ones lie on the far sides of their bodies.
     pub depth: f64,
-    /// A march tells of what lies at its target or below and opens by no more than this [m/s], and, if it is not zero, of
-    /// what has not left its target in all its steps: it would crawl along it.
+    /// A march tells of what lies at its target or below and opens by no more than this [m/s], and, if it is
+    /// not zero, of what has not left its target in all its steps: it would crawl along it.
     pub rest: f64,
 }
 
@@ -96,10 +98,12 @@ pub enum Search {
     NoneBefore(f64),
 }
 
-/// Finds the first time in [0, `span`), `span` finite [s], at which a feature pair of the two shapes is at or below its target gap and closes.
+/// Finds the first time in [0, `span`), `span` finite [s], at which a feature pair of the two shapes is at or
+/// below its target gap and closes.
 ///
-/// Pairs that start at their target and open do not count until they close again. Total: ends with a contact or with
-/// `NoneBefore(span)`; of thresholds, or motions at either end, that are not finite nothing is proven: `NoneBefore(0.0)`.
+/// Pairs that start at their target and open do not count until they close again. Total: ends with a contact
+/// or with `NoneBefore(span)`; of thresholds, or motions at either end, that are not finite nothing is
+/// proven: `NoneBefore(0.0)`.
 #[must_use]
 pub fn first_contact<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
@@ -145,8 +149,8 @@ pub struct FeatureRule {
     pub target: Option<f64>,
 }
 
-/// [`first_contact`] of two discs about their centres of mass, given as parabola and radius [m], without a look at their
-/// shapes; `None` if it has no closed form.
+/// [`first_contact`] of two discs about their centres of mass, given as parabola and radius [m], without a
+/// look at their shapes; `None` if it has no closed form.
 #[must_use]
 #[inline]
 pub fn disc_contact(
@@ -259,7 +263,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         for (index_a, a) in features_a.iter().enumerate() {
             for (index_b, b) in features_b.iter().enumerate() {
                 let Some(kind) = pair_kind(a, b) else { continue };
-                let ids = [feature_id(index_a), feature_id(index_b)];
+                let ids = [FeatureId::from_index(index_a), FeatureId::from_index(index_b)];
                 let Some(pair) = self.pair(kind, ids, a, b) else { continue };
                 if let Some(contact) =
                     self.closed_form(&pair, ids, from)?.filter(|found| found.time < progress.clear)
@@ -468,16 +472,12 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
 
 /// Angle [rad/m] by which a corner may lean off a line, for each metre of the accuracy; nothing for all else.
 ///
-/// Edges that lie flat on each other are parallel up to rounding: their corners are now within, now outside of their cones.
-/// A bound well above rounding keeps the search from asking at every tick of the clock. No corner fires too early by it: the
-/// next corner along the edge is nearer then.
+/// Edges that lie flat on each other are parallel up to rounding: their corners are now within, now outside
+/// of their cones. A bound well above rounding keeps the search from asking at every tick of the clock. No
+/// corner fires too early by it: the next corner along the edge is nearer then.
 fn slack(feature: &Feature, lever: f64, other: &Feature) -> f64 {
     match (feature, other) {
         (Feature::Round(round), Feature::Line(_)) if round.radius == 0.0 => LEAN_SHARE / lever,
         _ => 0.0,
     }
-}
-
-fn feature_id(index: usize) -> FeatureId {
-    FeatureId(u32::try_from(index).unwrap_or(u32::MAX))
 }

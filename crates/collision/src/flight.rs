@@ -35,8 +35,8 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// The flight from a state with the given acceleration [m/s^2] and rates [1/s] at which damping takes the linear and
-    /// the angular velocity.
+    /// The flight from a state with the given acceleration [m/s^2] and rates [1/s] at which damping takes the
+    /// linear and the angular velocity.
     #[must_use]
     pub fn new(start: BodyState, acceleration: DVec2, linear_rate: f64, angular_rate: f64) -> Self {
         let start_rotation = Rotation::from_angle(start.angle);

@@ -1,7 +1,7 @@
 //! How a gap changes: its rate, its Jacobian, and the part of its acceleration that velocities alone cause.
 //!
-//! With arms U1 = cA - xA and U2 = cB - xB from the centres of mass (line: b - xB, b the foot), u the relative velocity of
-//! the centres (line: against the material point at b) and p = n.(-wA^2 U1 + wB^2 U2):
+//! With arms U1 = cA - xA and U2 = cB - xB from the centres of mass (line: b - xB, b the foot), u the
+//! relative velocity of the centres (line: against the material point at b) and p = n.(-wA^2 U1 + wB^2 U2):
 //!
 //! * g' = J v with J = [n, U1 x n, -n, -(U2 x n)] over v = (vA, wA, vB, wB);
 //! * g'' = J v' + gamma; centre to centre gamma = p + s (|u|^2 - (n.u)^2)/|d|, centre to line

@@ -10,11 +10,13 @@
 //!
 //! # Code map
 //!
-//! `motion` and `flight` say where a body is during an interval, `body` what it is. `record` is the collision record,
-//! with its `tolerances`, its `zone` predicates and its time `estimate`; `kinematics` gives the gap's rate, Jacobian and acceleration
-//! term. `detect` finds the records of two bodies at one moment and `merge` drops doubles. `first_contact` finds when
-//! two moving bodies first close to their target gap: by `closed` forms (roots of a `quadratic`) where motions are polynomial, by the `march`
-//! along second-order bounds otherwise. `connector` ties bodies by rows that are gaps too. `broad` keeps the pairs that are near enough to matter.
+//! `motion` and `flight` say where a body is during an interval, `body` what it is. `record` is the collision
+//! record, with its `tolerances`, its `zone` predicates and its time `estimate`; `kinematics` gives the gap's
+//! rate, Jacobian and acceleration term. `detect` finds the records of two bodies at one moment and `merge`
+//! drops doubles. `first_contact` finds when two moving bodies first close to their target gap: by `closed`
+//! forms (roots of a `quadratic`) where motions are polynomial, by the `march` along second-order bounds
+//! otherwise. `connector` ties bodies by rows that are gaps too. `broad` keeps the pairs that are near enough
+//! to matter.
 
 #![forbid(unsafe_code)]
 

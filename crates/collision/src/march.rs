@@ -1,9 +1,9 @@
 //! First contact of a feature pair along any motions, by marching with second-order bounds.
 //!
-//! At a time t the gap less its target, c, and its rate v are known, and over the window its acceleration is bounded from
-//! below by -K. Then c + v s - K s^2/2 > 0 proves that nothing happens before the first root s: the march steps there and
-//! asks again. It never passes a contact and, since the bound touches the gap to second order, it converges to a
-//! transversal one as Newton's method does, from before.
+//! At a time t the gap less its target, c, and its rate v are known, and over the window its acceleration is
+//! bounded from below by -K. Then c + v s - K s^2/2 > 0 proves that nothing happens before the first root s:
+//! the march steps there and asks again. It never passes a contact and, since the bound touches the gap to
+//! second order, it converges to a transversal one as Newton's method does, from before.
 //!
 //! A bound on an acceleration keeps its direction as far as the normal can turn in the window, so that what both bodies
 //! have in common, or have along the contact, does not count.
@@ -11,13 +11,14 @@
 //! Over a window, with a_rel and u bounding the relative acceleration and velocity of the two centres:
 //!
 //! * vertices and convex arcs: the distance of the centres is convex but for their acceleration, K = a_rel;
-//! * inside a concave arc H = R^2 - |d|^2 replaces the gap, which is singular at the centre: H'' >= -2 (u^2 + |d| a_rel);
+//! * inside a concave arc H = R^2 - |d|^2 replaces the gap, which is singular at the centre: H'' >= -2 (u^2 +
+//!   |d| a_rel);
 //! * a line that turns with wB about the centre of mass xB: with E = cA - xB the gap is n.E less constants, so that
 //!   K = (|alphaB| + wB^2) |E| + 2 |wB| |E'| + |E''|. The place of the foot along the line obeys the same bound.
 //!
-//! A pair whose contact point lies outside of its features does nothing before that point can come within them; a pair
-//! deeper than `depth` lies on the far side of a body (its gap is negative, but nothing touches) and does nothing before
-//! it can come back.
+//! A pair whose contact point lies outside of its features does nothing before that point can come within
+//! them; a pair deeper than `depth` lies on the far side of a body (its gap is negative, but nothing touches)
+//! and does nothing before it can come back.
 //!
 //! Source: the one-sided bound is conservative advancement (B. Mirtich, "Impulse-based dynamic simulation of rigid body
 //! systems", 1996, 2.3) carried to second order.
@@ -378,7 +379,8 @@ impl Look {
         self.height < -depth
     }
 
-    /// True if the gap alone tells that nothing happens for so long [s]: where the contact point is does not matter then.
+    /// True if the gap alone tells that nothing happens for so long [s]: where the contact point is does not
+    /// matter then.
     #[inline]
     fn is_clear_for(&self, ahead: f64) -> bool {
         self.value > self.value_rounding && first_descent(self.value, self.rate, self.curvature) >= ahead
@@ -389,8 +391,8 @@ impl Look {
         !self.is_behind(depth) && self.value <= self.value_rounding && self.outside_for.is_none()
     }
 
-    /// So, and not opening. A rate that is only rounding does not open: what rests there must be told, or the march would
-    /// crawl along it.
+    /// So, and not opening. A rate that is only rounding does not open: what rests there must be told, or the
+    /// march would crawl along it.
     fn is_closing(&self, depth: f64) -> bool {
         self.touches(depth) && self.rate <= self.rate_rounding
     }
@@ -437,8 +439,9 @@ fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, slack:
     }
 }
 
-/// Rounding [rad] of the direction between two centres. What is outside of its features by more has been so, for centres that
-/// all but coincide were farther apart before: corners that pass through each other have come from where they do not touch.
+/// Rounding [rad] of the direction between two centres. What is outside of its features by more has been so,
+/// for centres that all but coincide were farther apart before: corners that pass through each other have
+/// come from where they do not touch.
 pub(crate) fn direction_rounding(center_a: DVec2, center_b: DVec2) -> f64 {
     let size = center_a.abs().max(center_b.abs()).max_element();
     rounding(1.0) + quotient(rounding(size), center_a.distance(center_b)).min(UNKNOWN_DIRECTION)

@@ -17,14 +17,14 @@ const UNKNOWN_SHARE: f64 = 4.0;
 /// Part of the accuracy by which a contact may lie outside of its features and counts as within.
 const HAIR: f64 = 1.0 / 64.0;
 
-/// True if two records are the same physical collision: the same two bodies touch at one place along one normal. Rows of
-/// connectors are never the same as anything.
+/// True if two records are the same physical collision: the same two bodies touch at one place along one
+/// normal. Rows of connectors are never the same as anything.
 ///
 /// Places are one when they lie within `distance_tol` of each other: that is what cannot be told apart.
 #[must_use]
 pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     let bodies = |c: &Collision| {
-        let (p, n) = (c.parties.primary.body, c.parties.normal.body);
+        let [p, n] = c.bodies();
         (p.min(n), p.max(n))
     };
     if a.connector().is_some() || b.connector().is_some() {
@@ -44,15 +44,16 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     parallel && apart <= near
 }
 
-/// Sine of the angle between the normals of one spot that is beyond an edge, but for the accuracy, and found within another, too.
+/// Sine of the angle between the normals of one spot that is beyond an edge, but for the accuracy, and found
+/// within another, too.
 fn overhang(a: &Collision, b: &Collision, apart: f64) -> f64 {
     let is_one_beyond = (beyond(a) > 0.0) != (beyond(b) > 0.0);
     let is_near = apart <= a.tolerances.accuracy.max(b.tolerances.accuracy);
     if is_one_beyond && is_near { OVERHANG } else { 0.0 }
 }
 
-/// Rounding [rad] of the normal of a record: that of two corners is the direction between them, as a search saw it and as it is
-/// measured now.
+/// Rounding [rad] of the normal of a record: that of two corners is the direction between them, as a search
+/// saw it and as it is measured now.
 fn unknown(record: &Collision) -> f64 {
     if record.parties.detector != Detector::CornerCorner {
         return 0.0;
@@ -61,16 +62,17 @@ fn unknown(record: &Collision) -> f64 {
     UNKNOWN_SHARE * direction_rounding(a, b)
 }
 
-/// Angle [rad] between the normals of one spot found on both sides of a seam: over an arc's radius it makes up twice the
-/// accuracy, by which detection lets a contact lie outside of its feature.
+/// Angle [rad] between the normals of one spot found on both sides of a seam: over an arc's radius it makes
+/// up twice the accuracy, by which detection lets a contact lie outside of its feature.
 fn lean(a: &Collision, b: &Collision) -> f64 {
     let radii = [a, b].map(|c| [c.geometry.radius_primary, c.geometry.radius_normal]);
     let curved = radii.into_iter().flatten().flatten().map(f64::abs).filter(|&radius| radius > 0.0);
     2.0 * a.tolerances.accuracy.max(b.tolerances.accuracy) / curved.fold(f64::INFINITY, f64::min)
 }
 
-/// Drops records that are the same physical collision as a more exact one: the one within its edges wins, then edge-edge
-/// over vertex-edge over corner-corner, then the lesser distance, then the earlier place in the list. Keeps the order.
+/// Drops records that are the same physical collision as a more exact one: the one within its edges wins,
+/// then edge-edge over vertex-edge over corner-corner, then the lesser distance, then the earlier place in
+/// the list. Keeps the order.
 pub fn merge_collisions(records: &mut Vec<Collision>) {
     let mut kept = 0;
     for index in 0..records.len() {
@@ -87,8 +89,8 @@ pub fn merge_collisions(records: &mut Vec<Collision>) {
     records.truncate(kept);
 }
 
-/// By how much a contact lies outside of its features; nothing if it is so little that it may be rounding. The normal of
-/// two corners that lie on each other is all rounding: they must not win by a hair.
+/// By how much a contact lies outside of its features; nothing if it is so little that it may be rounding.
+/// The normal of two corners that lie on each other is all rounding: they must not win by a hair.
 fn beyond(record: &Collision) -> f64 {
     let outside = record.geometry.outside;
     if outside > HAIR * record.tolerances.accuracy { outside } else { 0.0 }

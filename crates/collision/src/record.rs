@@ -1,4 +1,8 @@
 //! The collision record: everything that is known of one place where two bodies touch or are about to.
+//!
+//! It is made for whoever uses this crate alone, to write an advance of their own. So it also holds and
+//! answers what the layers above find in other ways, or do not ask for: the first detection with the estimate
+//! that follows from it, `must_handle` and `updated`, curvature, arms, most predicates of `zone`.
 
 use crate::body::BodyId;
 use crate::connector::{Connector, ConnectorId, ConnectorSample};
@@ -296,7 +300,7 @@ impl Collision {
     /// If it was noted before: the first detection stays.
     pub fn note_detection(&mut self) -> Result<(), CollisionError> {
         if let Some(detection) = self.detection {
-            let (primary, normal) = (self.parties.primary.body.0, self.parties.normal.body.0);
+            let [BodyId(primary), BodyId(normal)] = self.bodies();
             return Err(CollisionError::AlreadyDetected { primary, normal, time: detection.time });
         }
         self.detection = Some(Detection {
@@ -345,10 +349,17 @@ impl Collision {
         });
     }
 
+    /// The primary and the normal body.
+    #[must_use]
+    #[inline]
+    pub fn bodies(&self) -> [BodyId; 2] {
+        [self.parties.primary.body, self.parties.normal.body]
+    }
+
     /// True if the body takes part.
     #[must_use]
     pub fn involves_body(&self, body: BodyId) -> bool {
-        self.parties.primary.body == body || self.parties.normal.body == body
+        self.bodies().contains(&body)
     }
 
     /// True if the given edge of the body takes part.

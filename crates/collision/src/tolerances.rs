@@ -19,8 +19,8 @@ impl Tolerances {
     /// A fit is tight when its clearance is less than this many target gaps; its target is then that part of it.
     pub const TIGHT_FIT: f64 = 4.0;
 
-    /// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates that are only
-    /// rounding pass.
+    /// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates
+    /// that are only rounding pass.
     pub const SINK_SHARE: f64 = 1.0 / 8.0;
 
     /// Distance [m] by which a contact without force may sink before it fires again.

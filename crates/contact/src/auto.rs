@@ -73,7 +73,7 @@ impl Auto {
     ) -> Result<(), SolveError> {
         let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
         if islands <= 1 {
-            return self.methods.solve(problem, warm, solution, self.settings.selection);
+            return self.methods.solve(problem, warm, solution);
         }
         solution.reset(problem.len(), Method::Auto);
         self.carries.clear();
@@ -82,7 +82,7 @@ impl Auto {
             match self.solve_island(problem, island, warm, solution) {
                 // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
                 Err(SolveError::Infeasible(_)) => {
-                    return self.methods.solve(problem, warm, solution, self.settings.selection);
+                    return self.methods.solve(problem, warm, solution);
                 }
                 other => other?,
             }
@@ -93,7 +93,7 @@ impl Auto {
             return Ok(());
         }
         // Growth is judged against the offsets of all rows: an island's forces may be too small for it.
-        self.methods.solve(problem, warm, solution, self.settings.selection)
+        self.methods.solve(problem, warm, solution)
     }
 
     fn solve_island(
@@ -113,7 +113,7 @@ impl Auto {
             self.by_island.push(Methods::new(self.settings).expect("the settings were checked before"));
         }
         let methods = &mut self.by_island[slot];
-        let result = methods.solve(problem_part, start, &mut self.part, self.settings.selection);
+        let result = methods.solve(problem_part, start, &mut self.part);
         let rows = self.islands.rows(island);
         result?;
         for (&row, &force) in rows.iter().zip(&self.part.force) {
@@ -149,13 +149,12 @@ impl Methods {
         problem: &Problem,
         warm: Option<&WarmStart>,
         solution: &mut Solution,
-        selection: ForceSelection,
     ) -> Result<(), SolveError> {
         if !problem.is_symmetric() {
             return self.lemke.solve(problem, solution);
         }
         let start = warm.map_or(Start::Nothing, Start::Earlier);
-        let may_hand_over = problem.has_bodies() && selection != ForceSelection::LeastNorm;
+        let may_hand_over = problem.has_bodies() && self.settings.selection != ForceSelection::LeastNorm;
         // What was handed over a step ago is so again: the redundancy lies in the rows, which are the same.
         let was_handed_over = std::mem::take(&mut self.was_handed_over);
         let again = may_hand_over && was_handed_over && warm.is_some() && self.proximal.is_loaded(problem);

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use crate::order::RowOrder;
 use crate::problem::Problem;
+use crate::settings::DOUBTFUL;
 use crate::skyline::Skyline;
 use crate::system::System;
 
@@ -14,10 +15,6 @@ const OPEN: u32 = u32::MAX;
 
 /// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
 const LOST: f64 = 0.25;
-
-/// Part of its square below which what is left of a row may be no more than rounding, enlarged by closed rows of which as little as
-/// passes for independent was left.
-const DOUBTFUL: f64 = 1e-4;
 
 /// Rounding of what is left of a row: so much times 1 + |z|², where z times the closed rows are closest to it.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
@@ -65,8 +62,8 @@ pub(crate) struct ClosedRows {
     doubts: bool,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
-    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; what forces then
-    /// lack is left to refinement.
+    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed;
+    /// what forces then lack is left to refinement.
     pub(crate) spread: f64,
     /// Whether there was such a raise in the last solve.
     pub(crate) was_spread: bool,
@@ -132,8 +129,8 @@ impl ClosedRows {
         self.position[row] != OPEN
     }
 
-    /// Finds how an open row relates to the closed ones, for [`close`](Self::close) or
-    /// [`null_direction`](Self::null_direction).
+    /// Finds how an open row relates to the closed ones, for [`close`](Self::close) or, if it depends on
+    /// them, for the null direction by which [`Shift`](crate::dependent::Shift) reconciles them.
     pub(crate) fn consider(&mut self, row: usize) -> Relation {
         let closed = self.len();
         // Only what an earlier row left is not zero.
@@ -150,14 +147,15 @@ impl ClosedRows {
         Relation { dependent: relation.dependent || (doubts && self.is_doubtful(relation)), ..relation }
     }
 
-    /// True if it is bilateral rows that the row found doubtful nearly depends on: of contacts it takes less than it has itself.
+    /// True if it is bilateral rows that the row found doubtful nearly depends on: of contacts it takes less
+    /// than it has itself.
     fn depends_on_bilateral(&self) -> bool {
         let mut shares = self.shares.iter().zip(&self.rows);
         shares.all(|(share, &row)| self.free[row] || share.abs() < 1.0)
     }
 
-    /// Rounding of the Schur complement of the row just considered: that of Â, enlarged where the closed rows nearly depend
-    /// on each other.
+    /// Rounding of the Schur complement of the row just considered: that of Â, enlarged where the closed rows
+    /// nearly depend on each other.
     fn rounding(&mut self, closed: usize) -> f64 {
         let shares = &mut self.shares;
         shares.clear();
@@ -211,9 +209,9 @@ impl ClosedRows {
         independent
     }
 
-    /// Closes the bilateral rows as far as they are independent, those of which little is left after all others: of one that is closed
-    /// too early those that depend on it leave nothing but its rounding, enlarged to what passes for independent. Returns whether
-    /// every one was.
+    /// Closes the bilateral rows as far as they are independent, those of which little is left after all
+    /// others: of one that is closed too early those that depend on it leave nothing but its rounding,
+    /// enlarged to what passes for independent. Returns whether every one was.
     pub(crate) fn close_bilateral(&mut self) -> bool {
         let mut independent = true;
         for least in [DOUBTFUL, 0.0] {

@@ -45,7 +45,8 @@ impl Shift {
         self.taken.iter().fold(self.rest, |m: f64, t| m.max(t.abs())) / scale
     }
 
-    /// Counts what the closed rows leave of bilateral ones, which they may contradict although these depend on them but nearly.
+    /// Counts what the closed rows leave of bilateral ones, which they may contradict although these depend
+    /// on them but nearly.
     pub(crate) fn count_rest(&mut self, closed: &ClosedRows) {
         let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
         let taken = |row: usize| self.taken.get(row).copied().unwrap_or(0.0);

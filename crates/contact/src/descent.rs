@@ -1,17 +1,18 @@
 //! From forces that do not pull to those of the answer, many rows at a time.
 //!
-//! In a heap the closed rows carry each other: one row wrong among them turns the sign of a hundred forces, so that an
-//! exchange of all wrong rows leads astray, and pivots mend them one by one. The forces minimise f.(Af + 2b)/2 over f >= 0.
-//! From any such forces, those of the rows that carry one, or would close without, go towards the least value with these
-//! rows closed; whichever would pull on the way opens, and the rest goes on. Every such pass lowers the value, so that
-//! none comes back. It is the method of C. Lawson, R. Hanson, "Solving Least Squares Problems", 1974, chapter 23, in which rows
-//! close many at once. A row that depends on others keeps its force during a pass; at the end these forces are moved to
-//! independent rows, each along its null direction. Pivots mend what is left. Where rows open one by one on the way, as those of
-//! a pyramid that nearly depend on each other, another method is faster, and it stops there if it may.
+//! In a heap the closed rows carry each other: one row wrong among them turns the sign of a hundred forces,
+//! so that an exchange of all wrong rows leads astray, and pivots mend them one by one. The forces minimise
+//! f.(Af + 2b)/2 over f >= 0. From any such forces, those of the rows that carry one, or would close without,
+//! go towards the least value with these rows closed; whichever would pull on the way opens, and the rest
+//! goes on. Every such pass lowers the value, so that none comes back. It is the method of C. Lawson, R.
+//! Hanson, "Solving Least Squares Problems", 1974, chapter 23, in which rows close many at once. A row that
+//! depends on others keeps its force during a pass; at the end these forces are moved to independent rows,
+//! each along its null direction. Pivots mend what is left. Where rows open one by one on the way, as those
+//! of a pyramid that nearly depend on each other, another method is faster, and it stops there if it may.
 
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::DualActiveSet;
-use crate::start::WELL;
+use crate::settings::WELL;
 
 /// One in so many closed rows that pull, and so many at least, are more than blocks can mend.
 const MANY: usize = 16;
@@ -43,8 +44,8 @@ impl DualActiveSet {
         is_plain && closed.force.len() >= FEWEST_ROWS && !closed.free.contains(&true)
     }
 
-    /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other afterwards. A closed
-    /// force may pull, if only by rounding.
+    /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other
+    /// afterwards. A closed force may pull, if only by rounding.
     pub(crate) fn descend(&mut self) {
         let mut force = std::mem::take(&mut self.admissible);
         self.start.fill(false);
@@ -93,8 +94,8 @@ impl DualActiveSet {
         any
     }
 
-    /// Closes the marked rows, as far as they are independent; all of them anew, in the order that keeps the factor narrow, if
-    /// they are many or it is wide.
+    /// Closes the marked rows, as far as they are independent; all of them anew, in the order that keeps the
+    /// factor narrow, if they are many or it is wide.
     fn close_pushing(&mut self) {
         let closed = &self.closed;
         let fresh = (0..self.start.len()).filter(|&row| self.start[row] && !closed.is_closed(row)).count();
@@ -113,8 +114,8 @@ impl DualActiveSet {
         }
     }
 
-    /// Takes the closed forces to where the closed accelerations are zero; rows whose force runs out on the way open. Only
-    /// the closed accelerations are followed.
+    /// Takes the closed forces to where the closed accelerations are zero; rows whose force runs out on the
+    /// way open. Only the closed accelerations are followed.
     fn go_to_face(&mut self, force: &mut [f64]) {
         while !self.is_out_of_patience() {
             let closed = &mut self.closed;
@@ -161,8 +162,8 @@ impl DualActiveSet {
 }
 
 impl ClosedRows {
-    /// Adds the step, times a length, to forces of the closed rows, no farther than until the first runs out: how far, and the
-    /// position of that row.
+    /// Adds the step, times a length, to forces of the closed rows, no farther than until the first runs out:
+    /// how far, and the position of that row.
     fn go_along_step(&self, force: &mut [f64], limit: f64) -> (f64, Option<usize>) {
         let (mut length, mut first) = (limit, None);
         for (at, &row) in self.rows.iter().enumerate() {
@@ -188,8 +189,8 @@ mod tests {
     use crate::solver::Solver;
     use crate::warm::WarmStart;
 
-    /// Discs of 1 kg in rows of so many, each on two of the row below, in directions that vary by some tenths of a radian;
-    /// those at the ends of a row lean on walls.
+    /// Discs of 1 kg in rows of so many, each on two of the row below, in directions that vary by some tenths
+    /// of a radian; those at the ends of a row lean on walls.
     fn heap(across: usize, rows: usize) -> Problem {
         let mut problem = Problem::new();
         let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 8.0 };

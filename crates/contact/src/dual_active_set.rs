@@ -35,9 +35,9 @@ pub(crate) const REFINED: f64 = 0.125;
 /// Part that a dependent row must have in a closed one, in units of its own, to take its place.
 const LARGER: f64 = 2.0;
 
-/// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of one of them for
-/// little. So many times it may: of rows that all but depend on each other now this, now that one closes by more than
-/// noise, for ever.
+/// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of
+/// one of them for little. So many times it may: of rows that all but depend on each other now this, now that
+/// one closes by more than noise, for ever.
 const SLIGHT: f64 = 100.0;
 const MOST_SLIGHT: usize = 10;
 
@@ -90,13 +90,30 @@ pub(crate) enum HandOver {
 pub(crate) struct Attempt {
     /// Least Schur complement of an independent row.
     pub(crate) dependence: f64,
-    /// Whether a row of which no more than rounding is left counts as dependent, too: where no other attempt follows, and forces are
-    /// to be modest.
+    /// Whether a row of which no more than rounding is left counts as dependent, too: where no other attempt
+    /// follows, and forces are to be modest.
     pub(crate) doubts: bool,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     pub(crate) contradiction: f64,
     /// Whether what is left of bilateral rows that nearly depend on others counts as a contradiction, too.
     pub(crate) is_last: bool,
+}
+
+/// The ways to treat rows that are dependent or nearly so.
+#[derive(Clone, Copy, Debug)]
+struct Attempts {
+    /// As the settings say contradictions are to be treated.
+    first: Attempt,
+    /// Nearly dependent rows as independent ones, with forces as large as that takes.
+    strict: Attempt,
+    /// In the least-squares sense, whatever is left of bilateral rows.
+    last: Attempt,
+}
+
+impl Attempts {
+    fn in_order(self) -> [Attempt; 3] {
+        [self.first, self.strict, self.last]
+    }
 }
 
 /// How the pivoting ended.
@@ -130,7 +147,7 @@ impl DualActiveSet {
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
         }
         let mut failure = None;
-        for attempt in self.attempts() {
+        for attempt in self.attempts().in_order() {
             let error = match self.attempt(problem, warm, solution, attempt) {
                 Ok(()) if self.owes_to_contacts(solution) => {
                     // What is within rounding of the rows as given comes before least squares.
@@ -173,8 +190,7 @@ impl DualActiveSet {
         start: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        let [_, strict, _] = self.attempts();
-        self.attempt(problem, start, solution, strict)
+        self.attempt(problem, start, solution, self.attempts().strict)
     }
 
     /// As [`run`](Self::run), but stops where many pivots are in sight on a large problem, or were made, and says so.
@@ -215,18 +231,19 @@ impl DualActiveSet {
         is_out
     }
 
-    /// The ways to treat rows that are dependent or nearly so, in order.
-    fn attempts(&self) -> [Attempt; 3] {
+    /// The ways to treat rows that are dependent or nearly so.
+    fn attempts(&self) -> Attempts {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
         let usual = Attempt { dependence, doubts: false, contradiction: as_given, is_last: false };
         let strict = Attempt { dependence: least_dependence, ..usual };
         let least_squares = Attempt { contradiction: inconsistency, ..usual };
         let last = Attempt { is_last: true, ..least_squares };
-        match self.settings.contradiction {
-            Contradiction::SolveExactly => [usual, strict, last],
-            Contradiction::LeastSquares => [least_squares, strict, last],
-        }
+        let first = match self.settings.contradiction {
+            Contradiction::SolveExactly => usual,
+            Contradiction::LeastSquares => least_squares,
+        };
+        Attempts { first, strict, last }
     }
 
     fn attempt(
@@ -309,11 +326,11 @@ impl DualActiveSet {
         }
     }
 
-    /// Closes the bilateral row that moves most although it depends on closed ones, in place of the one in which it has the
-    /// largest part, if that exceeds `LARGER`. The closed rows are then further from dependent on each other, by that factor
-    /// at least, and magnify the rounding of their forces less (M. Gu, S. Eisenstat, "Efficient algorithms for computing a
-    /// strong rank-revealing QR factorization", SIAM Journal on Scientific Computing 17, 1996, 848-869). Returns whether it
-    /// did.
+    /// Closes the bilateral row that moves most although it depends on closed ones, in place of the one in
+    /// which it has the largest part, if that exceeds `LARGER`. The closed rows are then further from
+    /// dependent on each other, by that factor at least, and magnify the rounding of their forces less (M.
+    /// Gu, S. Eisenstat, "Efficient algorithms for computing a strong rank-revealing QR factorization", SIAM
+    /// Journal on Scientific Computing 17, 1996, 848-869). Returns whether it did.
     fn exchange_connector(&mut self, noise: f64) -> bool {
         let closed = &mut self.closed;
         let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
@@ -362,8 +379,8 @@ impl DualActiveSet {
             let full = if relation.dependent {
                 f64::INFINITY
             } else {
-                // Where rounding has made an acceleration that came to zero positive, the force goes back, but not to where
-                // it would pull.
+                // Where rounding has made an acceleration that came to zero positive, the force goes back,
+                // but not to where it would pull.
                 (-self.closed.acceleration[row] / relation.complement).max(-self.closed.force[row])
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
@@ -392,8 +409,8 @@ impl DualActiveSet {
         self.slight_swaps > MOST_SLIGHT
     }
 
-    /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on each other, by
-    /// the reciprocal of the least part that one of them leaves of its square.
+    /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on
+    /// each other, by the reciprocal of the least part that one of them leaves of its square.
     fn rounding_of_response(&self) -> f64 {
         let closed = &self.closed;
         let largest = closed.step[..closed.len()].iter().fold(1.0, |m: f64, z| m.max(z.abs()));
@@ -522,8 +539,8 @@ mod tests {
             problem.add_row(&Row::new(body, [0.0, 1.0, arm], -together - own)).expect("a row");
         }
         let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
-        let [usual, ..] = solver.attempts();
-        assert!(solver.attempt(&problem, Start::Nothing, &mut solution, usual).is_err());
+        let first = solver.attempts().first;
+        assert!(solver.attempt(&problem, Start::Nothing, &mut solution, first).is_err());
         assert!(solver.pivots < 40, "{} pivots", solver.pivots);
         solver.solve(&problem, &mut solution).expect("two independent rows");
         let errors = [0, 1].map(|row: usize| (solution.force[row] / FORCES[row] - 1.0).abs());

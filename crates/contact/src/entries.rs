@@ -1,7 +1,7 @@
 //! The entries of A = J M⁻¹ Jᵀ for rows of bodies, each formed once from products whose places are known.
 //!
-//! Contacts keep their bodies from step to step while coefficients change, so the places are found once and kept as long as
-//! the same columns appear in the same rows.
+//! Contacts keep their bodies from step to step while coefficients change, so the places are found once and
+//! kept as long as the same columns appear in the same rows.
 
 use std::ops::Range;
 
@@ -43,8 +43,8 @@ pub(crate) struct Entries {
 }
 
 impl Entries {
-    /// Forms the entries of these rows if rows of the same columns were seen before, for places that serve but once are not
-    /// worth finding. Returns whether there are entries.
+    /// Forms the entries of these rows if rows of the same columns were seen before, for places that serve
+    /// but once are not worth finding. Returns whether there are entries.
     pub(crate) fn load(&mut self, bodies: &BodyRows) -> bool {
         let listed = self.prepare(bodies);
         let BodyRows { rows, inverse_mass } = bodies;

@@ -1,27 +1,27 @@
-//! Forces of a fixed set of rows held as equations: A f = -b with A = J M⁻¹ Jᵀ, solved again and again as J and b change.
+//! Forces of a fixed set of rows held as equations: A f = -b with A = J M⁻¹ Jᵀ, solved again and again as J
+//! and b change.
 //!
-//! That is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. So what depends
-//! on the structure alone is found once: an order of the rows that keeps the factor narrow (see `order`), and which
-//! pairs of rows share a body. A = L D Lᵀ is stored by rows from their first nonzero on, which for a chain of joints is a
-//! few entries a row: A. George, J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4.
+//! That is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. So
+//! what depends on the structure alone is found once: an order of the rows that keeps the factor narrow (see
+//! `order`), and which pairs of rows share a body. A = L D Lᵀ is stored by rows from their first nonzero on,
+//! which for a chain of joints is a few entries a row: A. George, J. Liu, "Computer Solution of Large Sparse
+//! Positive Definite Systems", 1981, chapter 4.
 //!
-//! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot and no
-//! force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of the terms A_ij f_j. Where
-//! earlier rows leave little of one, as of a heavy body on a light one, that is much beside what moves the heavy one, and a
-//! step of refinement follows: a comes from the motions of the bodies, whose rounding all rows share.
+//! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot
+//! and no force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of
+//! the terms A_ij f_j. Where earlier rows leave little of one, as of a heavy body on a light one, that is
+//! much beside what moves the heavy one, and a step of refinement follows: a comes from the motions of the
+//! bodies, whose rounding all rows share.
 
 mod dependence;
 mod refining;
 mod structure;
 
 use crate::order::RowOrder;
-use crate::settings::Settings;
+use crate::settings::{DOUBTFUL, Settings};
 use crate::skyline::dot;
 use refining::Refining;
 use structure::Shared;
-
-/// Part of a row's square below which what earlier rows leave of it is measured with care.
-const DOUBTFUL: f64 = 1e-4;
 
 /// Part of a row's square below which what earlier rows leave of it is not told from rounding of their forces.
 const RESOLVED: f64 = 1e-13;
@@ -145,8 +145,8 @@ impl HeldRows {
         self.root.is_empty()
     }
 
-    /// New coefficients (primary x, y \[1\], rotation \[m\], normal the same) of every row. Returns how many rows depend on
-    /// others, which take no force.
+    /// New coefficients (primary x, y \[1\], rotation \[m\], normal the same) of every row. Returns how many
+    /// rows depend on others, which take no force.
     ///
     /// # Panics
     ///
@@ -234,8 +234,8 @@ impl HeldRows {
         }
     }
 
-    /// Finds the forces with A f = -b: those that hold all rows at a = A f + b = 0. Rows that depend on others have none;
-    /// their a is 0 as far as their b agrees.
+    /// Finds the forces with A f = -b: those that hold all rows at a = A f + b = 0. Rows that depend on
+    /// others have none; their a is 0 as far as their b agrees.
     ///
     /// # Panics
     ///
@@ -256,8 +256,8 @@ impl HeldRows {
         self.refining = refining;
     }
 
-    /// As [`solve`](Self::solve), but what soft rows lack is not made good: a millionth of what they hold, and more of that in which
-    /// they all but depend on each other. For who comes back with what is left.
+    /// As [`solve`](Self::solve), but what soft rows lack is not made good: a millionth of what they hold,
+    /// and more of that in which they all but depend on each other. For who comes back with what is left.
     ///
     /// # Panics
     ///

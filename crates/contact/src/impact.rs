@@ -1,14 +1,14 @@
 //! Impacts: closing rows in, impulses along their normals out.
 //!
-//! With the Delassus matrix A = J M^-1 J^T (n, n) [1/kg] the rates b [m/s] of the rows become A j + b by impulses j >= 0
-//! [N s]. An impact law says which impulses: each row that closes faster than its `velocity_tol`, when it is solved or when
-//! the impact began, is to open again at its elasticity times that speed, a slower one is to stop. Bilateral rows (connectors) have impulses of either sign and end
-//! at rest.
+//! With the Delassus matrix A = J M^-1 J^T (n, n) [1/kg] the rates b [m/s] of the rows become A j + b by
+//! impulses j >= 0 [N s]. An impact law says which impulses: each row that closes faster than its
+//! `velocity_tol`, when it is solved or when the impact began, is to open again at its elasticity times that
+//! speed, a slower one is to stop. Bilateral rows (connectors) have impulses of either sign and end at rest.
 //!
-//! Energy never grows. Impulses j that take the rates from b to b' change it by sum j (b + b')/2: a row that closes at
-//! b < 0 and ends at b' = -e b adds j (1 - e) b/2 <= 0, a row held at rest nothing. So a problem may hold rows that close or
-//! rest, but not rows that open; only without elasticity, b' = 0 throughout, may it hold any (then it is the projection
-//! onto the admissible motions, in the measure of energy).
+//! Energy never grows. Impulses j that take the rates from b to b' change it by sum j (b + b')/2: a row that
+//! closes at b < 0 and ends at b' = -e b adds j (1 - e) b/2 <= 0, a row held at rest nothing. So a problem
+//! may hold rows that close or rest, but not rows that open; only without elasticity, b' = 0 throughout, may
+//! it hold any (then it is the projection onto the admissible motions, in the measure of energy).
 //!
 //! | module | what |
 //! |---|---|
@@ -57,7 +57,7 @@ pub struct Impact {
     bound: f64,
     /// What is left has resisted small impulses.
     at_last: bool,
-    /// What takes many pivots is given up.
+    /// What takes many pivots is given up, at last as well as before.
     is_trial: bool,
     /// How many complementarity problems were solved.
     solves: u64,
@@ -107,9 +107,9 @@ impl Impact {
         self.scratch.carried.clear();
     }
 
-    /// Takes from each row an impulse [N s] that it carries anyway, as the force of a contact does over some time. What is
-    /// resolved afterwards brings back as much of it as is needed: in all, a row that is not bilateral may then have an
-    /// impulse down to minus that.
+    /// Takes from each row an impulse [N s] that it carries anyway, as the force of a contact does over some
+    /// time. What is resolved afterwards brings back as much of it as is needed: in all, a row that is not
+    /// bilateral may then have an impulse down to minus that.
     ///
     /// # Panics
     /// If there is not one impulse per row.
@@ -134,16 +134,16 @@ impl Impact {
         &self.rates
     }
 
-    /// Impulse of each row [N s], at least 0 for a row that is not bilateral, but for what it was [unloaded](Self::unload) by.
-    /// Redundant rows leave a choice; the rates do not depend on it.
+    /// Impulse of each row [N s], at least 0 for a row that is not bilateral, but for what it was
+    /// [unloaded](Self::unload) by. Redundant rows leave a choice; the rates do not depend on it.
     #[must_use]
     pub fn impulses(&self) -> &[f64] {
         &self.impulses
     }
 
-    /// Greatest closing speed, or rate of a bilateral row [m/s], that the impact may have left: 1e-12 of its fastest
-    /// rate, or the rounding of its impulses; where rows are so nearly dependent that rounding makes them contradict each
-    /// other, what that leaves, at most 1e-5 of that rate.
+    /// Greatest closing speed, or rate of a bilateral row [m/s], that the impact may have left: 1e-12 of its
+    /// fastest rate, or the rounding of its impulses; where rows are so nearly dependent that rounding makes
+    /// them contradict each other, what that leaves, at most 1e-5 of that rate.
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.bound

@@ -6,11 +6,12 @@
 //! u = Ĵᵀ f,   a = Ĵ u + b̂,   f_i a_i = μ   (f_i > 0, a_i > 0),   a = -δ (f - f before)  on bilateral rows
 //! ```
 //!
-//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = f/a: positive definite however redundant the contacts are, and
-//! as sparse as the bodies' neighbourhoods. A step predicts how far μ can fall and corrects for what is quadratic. Which rows are closed where
-//! many contacts nearly depend on each other takes an active set a pivot each; here it takes some twenty steps whatever their
-//! number. Source: S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM Journal on
-//! Optimization 2, 1992; for quadratic programs, J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., algorithm 16.4.
+//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = f/a: positive definite however
+//! redundant the contacts are, and as sparse as the bodies' neighbourhoods. A step predicts how far μ can
+//! fall and corrects for what is quadratic. Which rows are closed where many contacts nearly depend on each
+//! other takes an active set a pivot each; here it takes some twenty steps whatever their number. Source: S.
+//! Mehrotra, "On the implementation of a primal-dual interior point method", SIAM Journal on Optimization 2,
+//! 1992; for quadratic programs, J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., algorithm 16.4.
 //!
 //! This room finds forces near the answer, and nothing exact: the proximal method ends it.
 
@@ -54,8 +55,8 @@ pub(crate) struct InteriorPoint {
 }
 
 impl InteriorPoint {
-    /// Follows the path as far as it can, from the middle or from near `known` forces, scaled ones. Returns whether it came near the
-    /// end.
+    /// Follows the path as far as it can, from the middle or from near `known` forces, scaled ones. Returns
+    /// whether it came near the end.
     pub(crate) fn run(
         &mut self,
         system: &System,

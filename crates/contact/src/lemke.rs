@@ -1,10 +1,11 @@
 //! Lemke's method for general linear complementarity problems, such as contacts with friction.
 //!
-//! Follows C. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965, with
-//! lexicographic ties (see [`Dictionary`]) and a perturbed b, after scaling to a unit diagonal; the final basis is solved
-//! again from the original data, which undoes the perturbation and the digits that a dictionary loses with every pivot, and
-//! corrected where it is wrong by that. Ends either at a solution or on a ray; a ray that
-//! is a Farkas certificate proves that the inequalities alone have no solution, any other proves nothing.
+//! Follows C. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965,
+//! with lexicographic ties (see [`Dictionary`]) and a perturbed b, after scaling to a unit diagonal; the
+//! final basis is solved again from the original data, which undoes the perturbation and the digits that a
+//! dictionary loses with every pivot, and corrected where it is wrong by that. Ends either at a solution or
+//! on a ray; a ray that is a Farkas certificate proves that the inequalities alone have no solution, any
+//! other proves nothing.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, Par};
@@ -22,14 +23,16 @@ use crate::solver::{Method, Solver};
 /// dictionary after many pivots.
 const RAY: f64 = 1e-9;
 
-/// Growth that any solution would have, by a ray that is believed: of masses as far apart as 1e8 rounding leaves rays that are none.
+/// Growth that any solution would have, by a ray that is believed: of masses as far apart as 1e8 rounding
+/// leaves rays that are none.
 const SURE: f64 = 1e9;
 
 /// Sizes of the perturbation of b, in units of the scale, for one attempt each. On large redundant problems the exact
 /// rule for ties drowns in rounding; a small perturbation separates them, and its basis mostly serves b itself.
 const PERTURBATIONS: [f64; 4] = [1e-8, 0.0, 1e-6, 1e-4];
 
-/// How many rows of a final basis are changed, one by one, where the original data say that rounding chose the wrong one.
+/// How many rows of a final basis are changed, one by one, where the original data say that rounding chose
+/// the wrong one.
 const CORRECTIONS: usize = 8;
 
 /// Lemke's method with its buffers.
@@ -125,8 +128,9 @@ impl Lemke {
         End::Stopped
     }
 
-    /// Solves again with the final basis in the original data, and corrects it where that shows that a row should have been in
-    /// it or not: of what is nearly zero rounding has decided. True if the answer is accepted.
+    /// Solves again with the final basis in the original data, and corrects it where that shows that a row
+    /// should have been in it or not: of what is nearly zero rounding has decided. True if the answer is
+    /// accepted.
     fn polish(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
         let n = problem.len();
         let basic = self.dictionary.basic_rows().filter(|&(v, _)| v >= n && v < 2 * n).map(|(v, _)| v - n);
@@ -166,8 +170,8 @@ impl Lemke {
         closing.filter(|row| row.1 > 0.0).max_by(|p, q| p.1.total_cmp(&q.1))
     }
 
-    /// Solves A_CC f_C = -b_C of the basis in the original data, with refinement. The row that pulls most, and how much, as part
-    /// of the largest force.
+    /// Solves A_CC f_C = -b_C of the basis in the original data, with refinement. The row that pulls most,
+    /// and how much, as part of the largest force.
     fn solve_basis(&self, problem: &Problem, solution: &mut Solution) -> Option<(usize, f64)> {
         let active = &solution.active;
         let mut place = vec![usize::MAX; problem.len()];

@@ -4,9 +4,10 @@
 //! and a = 0 on bilateral ones (connectors). [`Problem`] holds the rows, [`Solution`] the forces with the evidence that
 //! they are right, [`Auto`] chooses a method; each method is also a [`Solver`] of its own, and so can yours be.
 //!
-//! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
-//! data before it is returned; every iteration has a cap; the same input gives a new solver the same bits, and one
-//! that has solved other problems before the same answer but for rounding; a warm solve of a size met before allocates nothing.
+//! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the
+//! original data before it is returned; every iteration has a cap; the same input gives a new solver the same
+//! bits, and one that has solved other problems before the same answer but for rounding; a warm solve of a
+//! size met before allocates nothing.
 //!
 //! | module | what |
 //! |---|---|
@@ -25,6 +26,8 @@
 //! | `json` | feature `json`: problems and answers as files |
 
 #![forbid(unsafe_code)]
+// Units are escaped in this crate, so that what is left in brackets is a link.
+#![warn(rustdoc::broken_intra_doc_links)]
 
 mod auto;
 mod body_factor;

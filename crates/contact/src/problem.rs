@@ -287,7 +287,8 @@ impl Problem {
         Ok(())
     }
 
-    /// Gives every row an identity for warm starts.
+    /// Gives every row an identity for warm starts; rows of bodies may have theirs from the start, by
+    /// [`Row::with_key`].
     ///
     /// # Errors
     ///
@@ -309,7 +310,8 @@ impl Problem {
         self.offset.is_empty()
     }
 
-    /// The right-hand side b [m/s²].
+    /// The offset b of a = A f + b: what contacts would do without their forces, an acceleration [m/s²], or
+    /// what an impulse must undo [m/s].
     pub fn offset(&self) -> &[f64] {
         &self.offset
     }
@@ -319,8 +321,8 @@ impl Problem {
         &self.bilateral
     }
 
-    /// Identities of the rows for warm starts: [`ContactKey::NONE`] for a row without one, and none at all for the rows after the
-    /// last that has one.
+    /// Identities of the rows for warm starts: [`ContactKey::NONE`] for a row without one, and none at all
+    /// for the rows after the last that has one.
     pub fn keys(&self) -> &[ContactKey] {
         &self.keys
     }
@@ -335,9 +337,9 @@ impl Problem {
         !matches!(self.matrix, Matrix::General(_))
     }
 
-    /// Columns and coefficients of a row, in ascending order, without zeros: of J where the rows are given as such (columns 3 k to
-    /// 3 k + 2 are x, y and rotation of body k), of A otherwise. With [`inverse_mass`](Self::inverse_mass) that is all a solver
-    /// of one's own needs.
+    /// Columns and coefficients of a row, in ascending order, without zeros: of J where the rows are given as
+    /// such (columns 3 k to 3 k + 2 are x, y and rotation of body k), of A otherwise. With
+    /// [`inverse_mass`](Self::inverse_mass) that is all a solver of one's own needs.
     ///
     /// # Panics
     ///

@@ -107,8 +107,8 @@ impl ProximalNewton {
         self.system.is_loaded(problem)
     }
 
-    /// As [`solve`](Solver::solve), beginning at what the interior-point method finds, from an earlier answer if there is one: where
-    /// many pivots or steps are in sight.
+    /// As [`solve`](Solver::solve), beginning at what the interior-point method finds, from an earlier answer
+    /// if there is one: where many pivots or steps are in sight.
     pub(crate) fn solve_inside(
         &mut self,
         problem: &Problem,
@@ -184,8 +184,8 @@ impl ProximalNewton {
         self.move_by_multipliers();
     }
 
-    /// Iterates from where it is to begin, or from inside where that does not end soon. Where nothing is found inside, a guess
-    /// is gone on with after all.
+    /// Iterates from where it is to begin, or from inside where that does not end soon. Where nothing is
+    /// found inside, a guess is gone on with after all.
     fn approach(&mut self, problem: &Problem, warm: Option<&WarmStart>, begin: Begin) {
         self.interior_steps = 0;
         if begin == Begin::Guess {

@@ -1,11 +1,11 @@
 //! The contact problem as a quadratic program in body space, solved by clarabel.
 //!
-//! min ½|u|² subject to Ĵ u + b̂ ≥ 0 (= 0 on bilateral rows) in the scaled quantities of [`System`]; the multipliers are
-//! the forces. In this form the objective is strictly convex however redundant the contacts are; the same problem in
-//! the forces is not. An A given by its entries is factored first, Â = Ĵ Ĵᵀ (Cholesky with diagonal pivoting). The
-//! interior-point answer is good to some 1e-4 to 1e-12, so its active set starts the pivoting method, which ends at an
-//! exact one. Source: P. Goulart, Y. Chen, "Clarabel: An interior-point solver for conic programs with quadratic
-//! objectives", arXiv 2405.12762, 2024.
+//! min ½|u|² subject to Ĵ u + b̂ ≥ 0 (= 0 on bilateral rows) in the scaled quantities of [`System`]; the
+//! multipliers are the forces. In this form the objective is strictly convex however redundant the contacts
+//! are; the same problem in the forces is not. An A given by its entries is factored first, Â = Ĵ Ĵᵀ
+//! (Cholesky with diagonal pivoting). The interior-point answer is good to some 1e-4 to 1e-12, so its active
+//! set starts the pivoting method, which ends at an exact one. Source: P. Goulart, Y. Chen, "Clarabel: An
+//! interior-point solver for conic programs with quadratic objectives", arXiv 2405.12762, 2024.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};

@@ -1,11 +1,12 @@
 //! Contacts that contradict each other by a little, satisfied as far as rounding of A allows.
 //!
-//! Contacts that depend on each other up to rounding and contradict each other by 1e-11 of the scale have no solution in
-//! modest forces. Whether they have one in large forces is decided by the last digits of A, which are rounding. What is
-//! within those digits is the problem with the diagonal of Â raised by δ, a few roundings: Â + δ is positive definite,
-//! so that there is one solution, and its forces leave accelerations δ f̂ in the original rows, a backward residual of at
-//! most δ. Forces are about the contradiction over δ, hence the bound on contradictions before this is tried. Source: the
-//! regularised problem of R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.6.
+//! Contacts that depend on each other up to rounding and contradict each other by 1e-11 of the scale have no
+//! solution in modest forces. Whether they have one in large forces is decided by the last digits of A, which
+//! are rounding. What is within those digits is the problem with the diagonal of Â raised by δ, a few
+//! roundings: Â + δ is positive definite, so that there is one solution, and its forces leave accelerations δ
+//! f̂ in the original rows, a backward residual of at most δ. Forces are about the contradiction over δ,
+//! hence the bound on contradictions before this is tried. Source: the regularised problem of R. Cottle,
+//! J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.6.
 
 use crate::dual_active_set::{Attempt, DualActiveSet, End};
 use crate::error::SolveError;

@@ -28,7 +28,7 @@ impl CollisionRow {
     pub fn of_collision(collision: &Collision, inertia: [Inertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
         Self {
-            bodies: [collision.parties.primary.body, collision.parties.normal.body],
+            bodies: collision.bodies(),
             jacobian,
             response: response(&jacobian, inertia),
             elasticity: collision.response.elasticity,
@@ -38,8 +38,8 @@ impl CollisionRow {
         }
     }
 
-    /// A row that comes from no collision record, as of a connector. The background ([`BodyId::WORLD`]) and other bodies
-    /// that nothing moves have an inertia of zeros.
+    /// A row that comes from no collision record, as of a connector. The background ([`BodyId::WORLD`]) and
+    /// other bodies that nothing moves have an inertia of zeros.
     #[must_use]
     pub fn new(
         bodies: [BodyId; 2],
@@ -75,8 +75,8 @@ impl CollisionRow {
         sum
     }
 
-    /// What a unit impulse along the row changes its rate by through each of its bodies alone [1/kg]; they add up to the row's own
-    /// coupling.
+    /// What a unit impulse along the row changes its rate by through each of its bodies alone [1/kg]; they
+    /// add up to the row's own coupling.
     #[must_use]
     pub(crate) fn shares(&self) -> [f64; 2] {
         [0, 3].map(|first: usize| (first..first + 3).map(|k| self.jacobian[k] * self.response[k]).sum())

@@ -3,13 +3,21 @@
 use crate::error::{SettingsError, SolveError};
 use crate::problem::Problem;
 
+/// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the
+/// forces, which of them are wrong means nothing. Pivots close what has less.
+pub(crate) const WELL: f64 = 1e-7;
+
+/// Part of its square below which what earlier rows leave of a row may be no more than rounding, enlarged by
+/// rows of which as little as passes for independent was left: it is measured with care.
+pub(crate) const DOUBTFUL: f64 = 1e-4;
+
 /// Leakage of a certificate whose rows depend on each other to the last digit.
 const SAME: f64 = 2.0 * f64::EPSILON;
 
 /// Thresholds and caps of the solvers. Each threshold is relative, so that none depends on the units of a problem.
 ///
-/// Rows are compared after scaling: with `s_i = sqrt(A_ii)` (1 where `A_ii = 0`) the scaled acceleration is `a_i / s_i`,
-/// the scaled force `s_i f_i`, and the *scale* of a problem is `max |b_i / s_i|`.
+/// Rows are compared after scaling: with `s_i = sqrt(A_ii)` (1 where `A_ii = 0`) the scaled acceleration is
+/// `a_i / s_i`, the scaled force `s_i f_i`, and the *scale* of a problem is `max |b_i / s_i|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Largest natural residual, in units of the scale, of an accepted answer.
@@ -28,18 +36,19 @@ pub struct Settings {
     /// The same for a second attempt, where rows taken for dependent contradict each other and may only be nearly
     /// dependent: a few roundings of 1.
     pub least_dependence: f64,
-    /// What the scaled diagonal of `A`, which is 1, is raised by where contacts contradict each other and are to be solved
-    /// as given: a few roundings, and the backward residual of the answer. Forces are about the contradiction over it.
+    /// What the scaled diagonal of `A`, which is 1, is raised by where contacts contradict each other and are
+    /// to be solved as given: a few roundings, and the backward residual of the answer. Forces are about the
+    /// contradiction over it.
     pub raise: f64,
     /// Contradiction between dependent rows, in units of the scale, up to which they are solved in the least-squares
     /// sense; beyond it the problem is infeasible.
     pub inconsistency: f64,
     /// An acceleration within this part of the scale of zero counts as zero while the solver looks for a next row.
     pub open_tolerance: f64,
-    /// A row whose offset b is below this part of the scale starts closed: contacts between bodies at rest on each other
-    /// have b = 0 but for small relative motions.
+    /// A row whose offset b is below this part of the scale starts closed: contacts between bodies at rest on
+    /// each other have b = 0 but for small relative motions.
     pub start_closed: f64,
-    /// The same, in units of the largest sum of terms that an acceleration is made of: a few roundings.
+    /// As `open_tolerance`, in units of the largest sum of terms that an acceleration is made of: a few roundings.
     pub rounding: f64,
     /// Cap on pivots, per row of the problem.
     pub pivots_per_row: usize,
@@ -87,12 +96,12 @@ pub enum ForceSelection {
     /// Whatever is found soonest: where many rows are redundant, all of them may carry force.
     #[default]
     Quickest,
-    /// Whatever the pivoting ends at: few rows carry force, and those do not depend on each other. For those who go on with the
-    /// rows that carry force, as an integrator does.
+    /// Whatever the pivoting ends at: few rows carry force, and those do not depend on each other. For those
+    /// who go on with the rows that carry force, as an integrator does.
     Vertex,
-    /// The least sum of squares of the scaled forces `s_i f_i` among those that hold the same rows at rest: symmetric scenes show
-    /// symmetric forces. Where masses are thousands of times apart, which rows are at rest is known to rounding only, and others
-    /// may hold them with less.
+    /// The least sum of squares of the scaled forces `s_i f_i` among those that hold the same rows at rest:
+    /// symmetric scenes show symmetric forces. Where masses are thousands of times apart, which rows are at
+    /// rest is known to rounding only, and others may hold them with less.
     LeastNorm,
 }
 
@@ -154,8 +163,9 @@ impl Settings {
         }
     }
 
-    /// Whether an error is a certificate that leaves no doubt: every solution would have forces beyond all bounds, or it is
-    /// bilateral rows, dependent to the last digit, that contradict each other by more than may be settled.
+    /// Whether an error is a certificate that leaves no doubt: every solution would have forces beyond all
+    /// bounds, or it is bilateral rows, dependent to the last digit, that contradict each other by more than
+    /// may be settled.
     pub(crate) fn is_proven(&self, error: &SolveError, problem: &Problem) -> bool {
         let SolveError::Infeasible(proof) = error else { return false };
         let is_bilateral = || proof.direction.iter().zip(problem.bilateral()).all(|(z, is)| *is || *z == 0.0);

@@ -12,8 +12,8 @@ pub struct Solution {
     pub force: Vec<f64>,
     /// Acceleration a = A f + b of each row [m/s²], or velocity [m/s] in an impact problem, from the original data.
     pub acceleration: Vec<f64>,
-    /// Rows the method ended with as closed (a = 0 enforced), ascending. With redundant contacts a subset of the rows at
-    /// a = 0, and a row in it may carry no force.
+    /// Rows the method ended with as closed (a = 0 enforced), ascending. With redundant contacts a subset of
+    /// the rows at a = 0, and a row in it may carry no force.
     pub active: Vec<usize>,
     /// Residuals of the forces in the original data.
     pub residuals: Residuals,

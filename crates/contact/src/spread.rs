@@ -1,44 +1,41 @@
 //! Forces spread over rows that depend on each other, instead of a choice among them.
 //!
-//! Where many contacts are redundant, as in a pyramid of blocks, the rows that would close are more than can be independent.
-//! Which of them carry the forces is then an arbitrary choice, and pivoting to one that has no negative force takes as many
-//! pivots as there are redundant rows. With the diagonal of the factor raised by a little all of them can be closed at once;
-//! the forces are then those of least norm, which weight mostly leaves positive, and what they lack is made good by
-//! refinement, the proximal point method in the forces: each step leaves δ/(δ + λ) of the accelerations in the direction of
-//! an eigenvalue λ of Â, and none are left in a direction of λ = 0 if the rows do not contradict each other. Source of the
-//! method: R. T. Rockafellar, "Monotone operators and the proximal point algorithm", SIAM Journal on Control and
+//! Where many contacts are redundant, as in a pyramid of blocks, the rows that would close are more than can
+//! be independent. Which of them carry the forces is then an arbitrary choice, and pivoting to one that has
+//! no negative force takes as many pivots as there are redundant rows. With the diagonal of the factor raised
+//! by a little all of them can be closed at once; the forces are then those of least norm, which weight
+//! mostly leaves positive, and what they lack is made good by refinement, the proximal point method in the
+//! forces: each step leaves δ/(δ + λ) of the accelerations in the direction of an eigenvalue λ of Â, and none
+//! are left in a direction of λ = 0 if the rows do not contradict each other. Source of the method: R. T.
+//! Rockafellar, "Monotone operators and the proximal point algorithm", SIAM Journal on Control and
 //! Optimization 14, 1976, 877-898.
 
 use crate::dual_active_set::{DualActiveSet, REFINED};
 use crate::settings::ForceSelection;
+use crate::start::{REDUNDANT, SUBSTANTIAL};
 
-/// What the diagonal of the factor is raised by: small beside the least eigenvalue of piles that is not zero, so that few
-/// steps of refinement are needed, large beside rounding.
+/// What the diagonal of the factor is raised by: small beside the least eigenvalue of piles that is not zero,
+/// so that few steps of refinement are needed, large beside rounding.
 const RAISE: f64 = 1e-9;
 
 /// Steps of refinement before it is given up.
 const STEPS: usize = 6;
 
-/// One in so many rows dependent is worth it.
-const REDUNDANT: usize = 5;
-
-/// One in so many rows independent at least: where fewer are (a box on a floor), pivots are cheap.
-const SUBSTANTIAL: usize = 4;
-
-/// Part of the scale below which the acceleration of a row that depends on closed ones is none, and one in so many of them
-/// that must have none: else they contradict the closed ones, and some must open.
+/// Part of the scale below which the acceleration of a row that depends on closed ones is none, and one in so
+/// many of them that must have none: else they contradict the closed ones, and some must open.
 const REST: f64 = 1e-4;
 const CONSISTENT: usize = 2;
 
-/// Sum of terms, in units of the scale, beyond which accelerations of dependent rows mean nothing: the closed ones nearly
-/// depend on each other, as in a chain on a floor.
+/// Sum of terms, in units of the scale, beyond which accelerations of dependent rows mean nothing: the closed
+/// ones nearly depend on each other, as in a chain on a floor.
 const UNUSABLE: f64 = 1e6;
 
 /// Exchanges that may leave no fewer rows wrong, and how many rows at most are exchanged one by one.
 const TRIES: usize = 2;
 const FEW: usize = 6;
 
-/// One in so many rows wrong with all closed, at most: else they are not redundant, but nearly so, and forces are large.
+/// One in so many rows wrong with all closed, at most: else they are not redundant, but nearly so, and forces
+/// are large.
 const WRONG: usize = 4;
 
 impl DualActiveSet {
@@ -60,14 +57,14 @@ impl DualActiveSet {
                 || (0..self.start.len()).filter(rests).count() * CONSISTENT >= flagged - closed)
     }
 
-    /// Closes all rows with a flag, redundant ones too, and exchanges wrong ones while that leaves fewer. If that does not
-    /// end well, no rows are closed.
+    /// Closes all rows with a flag, redundant ones too, and exchanges wrong ones while that leaves fewer. If
+    /// that does not end well, no rows are closed.
     pub(crate) fn spread_forces(&mut self) -> bool {
         self.try_spread(Self::exchange_spread)
     }
 
-    /// Whether forces were spread in the last solve, and can be so again, with the rows that are to start closed now. If not,
-    /// and that was tried, no rows are closed.
+    /// Whether forces were spread in the last solve, and can be so again, with the rows that are to start
+    /// closed now. If not, and that was tried, no rows are closed.
     pub(crate) fn is_still_spread(&mut self) -> bool {
         let was_spread = self.closed.was_spread && self.is_warm && self.closed.proximal == 0.0;
         (self.closed.spread > 0.0 || was_spread)
@@ -146,16 +143,7 @@ impl DualActiveSet {
         self.closed.solve_closed();
         self.closed.accelerate();
         // Accelerations are known but for the raise times the forces.
-        let limit = -self.noise() - RAISE * self.closed.terms;
-        let closed = &self.closed;
-        let mut wrong = 0;
-        for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
-            let is_closed = closed.is_closed(row);
-            let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
-            *start = is_closed != bad;
-            wrong += usize::from(bad);
-        }
-        wrong
+        self.mark_wrong(-self.noise() - RAISE * self.closed.terms)
     }
 
     /// Refines the forces until the closed rows are at rest. Returns whether they are, with all forces admissible.

@@ -9,19 +9,18 @@ use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::Infeasibility;
 use crate::problem::Problem;
+use crate::settings::WELL;
 use crate::warm::WarmStart;
 
-/// One in so many rows dependent makes a problem a very redundant one; fewer than one in so many independent, a simple
-/// one.
-const REDUNDANT: usize = 5;
-const SUBSTANTIAL: usize = 4;
+/// One in so many rows dependent makes a problem a very redundant one, where spreading forces or handing over
+/// is worth it.
+pub(crate) const REDUNDANT: usize = 5;
 
-/// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the forces,
-/// which of them are wrong means nothing. Pivots close what has less.
-pub(crate) const WELL: f64 = 1e-7;
+/// Fewer than one in so many rows independent make it a simple one (a box on a floor), where pivots are cheap.
+pub(crate) const SUBSTANTIAL: usize = 4;
 
-/// Pivots that are in sight are not waited for if they are so many times more work than there is patience for: some rows come
-/// right with others.
+/// Pivots that are in sight are not waited for if they are so many times more work than there is patience
+/// for: some rows come right with others.
 const SURELY: usize = 2;
 
 /// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
@@ -46,8 +45,9 @@ pub(crate) enum Start<'a> {
 }
 
 impl DualActiveSet {
-    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the factor narrow;
-    /// if some turn out dependent, they come first, so that what they contradict is each other.
+    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the
+    /// factor narrow; if some turn out dependent, they come first, so that what they contradict is each
+    /// other.
     pub(crate) fn find_start(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
         if self.exchange_blocks() {
             return None;
@@ -111,8 +111,8 @@ impl DualActiveSet {
         }));
     }
 
-    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row depends on
-    /// others and the bilateral rows did not come first.
+    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row
+    /// depends on others and the bilateral rows did not come first.
     pub(crate) fn exchange_blocks(&mut self) -> bool {
         if self.is_still_spread() {
             return true;
@@ -137,15 +137,7 @@ impl DualActiveSet {
                 self.closed.solve_closed();
                 self.closed.accelerate();
             }
-            let limit = -self.noise();
-            let mut wrong = 0;
-            let closed = &self.closed;
-            for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
-                let is_closed = closed.is_closed(row);
-                let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
-                *start = is_closed != bad;
-                wrong += usize::from(bad);
-            }
+            let wrong = self.mark_wrong(-self.noise());
             if self.may_hand_over && fewest == usize::MAX && wrong > 0 && self.is_redundant(flagged) {
                 self.handed_over = Some(HandOver::Redundant);
                 return true;
@@ -169,8 +161,24 @@ impl DualActiveSet {
         true
     }
 
-    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at least, are more than
-    /// there is patience for. Where few are closed, as of a box on a floor, a pivot rights many of them.
+    /// Flags, of the unilateral rows, those that should be closed instead of those that are: wrong is a
+    /// closed row whose force pulls, and an open one whose acceleration is below `limit`. Returns how many
+    /// are wrong.
+    pub(crate) fn mark_wrong(&mut self, limit: f64) -> usize {
+        let mut wrong = 0;
+        let closed = &self.closed;
+        for (row, start) in self.start.iter_mut().enumerate().filter(|(row, _)| !closed.free[*row]) {
+            let is_closed = closed.is_closed(row);
+            let bad = if is_closed { closed.force[row] < 0.0 } else { closed.acceleration[row] < limit };
+            *start = is_closed != bad;
+            wrong += usize::from(bad);
+        }
+        wrong
+    }
+
+    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at
+    /// least, are more than there is patience for. Where few are closed, as of a box on a floor, a pivot
+    /// rights many of them.
     fn look_ahead(&mut self, wrong: usize) {
         let is_much = self.patience.is_some_and(|patience| wrong * self.work_of_pivot() > SURELY * patience);
         if is_much && self.closed.len() * SUBSTANTIAL >= wrong {

@@ -354,8 +354,9 @@ impl System {
 
 #[cfg(feature = "qp")]
 impl System {
-    /// Rows Ĵ with Â = Ĵ Ĵᵀ as (column, value), and the number of columns: the rows of bodies themselves, or a factor of
-    /// Â by Cholesky with diagonal pivoting, ended where at most `dependence` is left of any diagonal entry.
+    /// Rows Ĵ with Â = Ĵ Ĵᵀ as (column, value), and the number of columns: the rows of bodies themselves, or
+    /// a factor of Â by Cholesky with diagonal pivoting, ended where at most `dependence` is left of any
+    /// diagonal entry.
     pub(crate) fn rows_or_factor(&self, dependence: f64) -> (Vec<Vec<(usize, f64)>>, usize) {
         let n = self.rows();
         let entries =

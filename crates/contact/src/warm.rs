@@ -1,7 +1,8 @@
 //! Carrying an answer over to the next problem.
 //!
-//! From step to step contacts appear and vanish, so rows are identified by their [`ContactKey`], or by their place where
-//! rows have none. A row not found starts closed or open by the sign of its offset, as in a solve from nothing.
+//! From step to step contacts appear and vanish, so rows are identified by their [`ContactKey`], or by their
+//! place where rows have none. A row not found starts closed or open by the sign of its offset, as in a solve
+//! from nothing.
 
 use crate::problem::{ContactKey, Problem};
 use crate::solution::Solution;
@@ -60,7 +61,8 @@ impl WarmStart {
         }
     }
 
-    /// Replaces what is remembered by a guess: for each row, by its place, whether it is closed, if anything is known of it.
+    /// Replaces what is remembered by a guess: for each row, by its place, whether it is closed, if anything
+    /// is known of it.
     pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, false);
         self.entries.clear();

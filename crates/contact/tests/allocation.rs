@@ -76,8 +76,8 @@ fn a_warm_solve_of_known_size_allocates_nothing() {
     }
 }
 
-/// Fills `problem` with boxes in a pyramid of so many layers at one step, each box of its own width: contacts that nearly depend on each
-/// other take many pivots, and are handed over.
+/// Fills `problem` with boxes in a pyramid of so many layers at one step, each box of its own width: contacts
+/// that nearly depend on each other take many pivots, and are handed over.
 fn fill_crooked(problem: &mut Problem, layers: usize, step: usize) {
     problem.clear();
     let (mut first_below, mut bodies) = (0, 0);

@@ -31,12 +31,12 @@ impl Shape {
         Self::polygon(&(0..sides).map(corner).collect::<Vec<_>>())
     }
 
-    /// The sector (pie slice) of a disc about the origin, between the angles `-sweep / 2` and `sweep / 2` [rad] from the
-    /// x axis; a full turn gives the disc. Its centroid is not the origin.
+    /// The sector (pie slice) of a disc about the origin, between the angles `-sweep / 2` and `sweep / 2`
+    /// [rad] from the x axis; a full turn gives the disc. Its centroid is not the origin.
     ///
     /// # Errors
-    /// A radius [m] that is not positive and finite, a sweep [rad] that is not positive or more than a full turn, or one
-    /// so near to a full turn that the straight edges touch.
+    /// A radius [m] that is not positive and finite, a sweep [rad] that is not positive or more than a full
+    /// turn, or one so near to a full turn that the straight edges touch.
     pub fn sector(radius: f64, sweep: f64) -> Result<Self, ShapeError> {
         check_length("radius", radius)?;
         if !(sweep > 0.0 && sweep <= TAU) {

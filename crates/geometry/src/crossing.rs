@@ -1,9 +1,10 @@
 //! Points in which two edges cross.
 //!
-//! Lines cross where each has the other's ends on both sides (and the crossing is on both, which only rounding denies); a line meets a circle half a chord to either side of the
-//! centre's foot; two circles meet on the radical line, whose offset is measured from the centre of the lesser circle
-//! (seen from the larger one a crossing is known only to rounding times the ratio of the radii). Edges that only touch
-//! may or may not be found to cross, as rounding has it: their distance is zero to rounding either way.
+//! Lines cross where each has the other's ends on both sides (and the crossing is on both, which only
+//! rounding denies); a line meets a circle half a chord to either side of the centre's foot; two circles meet
+//! on the radical line, whose offset is measured from the centre of the lesser circle (seen from the larger
+//! one a crossing is known only to rounding times the ratio of the radii). Edges that only touch may or may
+//! not be found to cross, as rounding has it: their distance is zero to rounding either way.
 
 use crate::arc::Arc;
 use crate::edge::Edge;

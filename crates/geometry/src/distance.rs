@@ -54,8 +54,8 @@ impl Shape {
     /// Finds the distance of the outlines of this shape at `pose` and another at its own pose, and a nearest pair of
     /// points.
     ///
-    /// Good to a few units in the last place of the shapes' size, of the radii of their arcs, and of their distance from each other: an arc
-    /// that is nearly straight is no better known than where its centre is.
+    /// Good to a few units in the last place of the shapes' size, of the radii of their arcs, and of their
+    /// distance from each other: an arc that is nearly straight is no better known than where its centre is.
     ///
     /// # Examples
     ///
@@ -90,8 +90,9 @@ impl Shape {
         }
     }
 
-    /// How this shape at `pose` lies to another at its own pose: the [`distance`](Self::distance)'s relation, for a part of the
-    /// time, since edges that do not meet need not be measured. What is at no finite pose is apart.
+    /// How this shape at `pose` lies to another at its own pose: the [`distance`](Self::distance)'s relation,
+    /// for a part of the time, since edges that do not meet need not be measured. What is at no finite pose
+    /// is apart.
     #[must_use]
     pub fn relation(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> Relation {
         let relative = pose.seen_from(other_pose);

@@ -6,6 +6,18 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FeatureId(pub u32);
 
+impl FeatureId {
+    /// The feature at a place in the list of a shape's features.
+    ///
+    /// # Panics
+    /// If the place is no number of 32 bits.
+    #[must_use]
+    #[inline]
+    pub fn from_index(index: usize) -> Self {
+        Self(u32::try_from(index).expect("a shape has fewer than 2^32 features"))
+    }
+}
+
 /// Which edge of a shape: its path and its place in the path as the shape runs it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeId {
@@ -220,8 +232,9 @@ impl DirectionRange {
         self.ends().map_or(0.0, |[from, to]| angle_between(from, direction).min(angle_between(to, direction)))
     }
 
-    /// An angle [rad] that a unit vector in the range is away from its ends, or less; none at all for one outside, and without
-    /// end for all directions. The straight way to an end is taken for the turn, which is longer.
+    /// An angle [rad] that a unit vector in the range is away from its ends, or less; none at all for one
+    /// outside, and without end for all directions. The straight way to an end is taken for the turn, which
+    /// is longer.
     #[must_use]
     #[inline]
     pub fn margin(&self, direction: DVec2) -> f64 {

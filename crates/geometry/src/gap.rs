@@ -5,9 +5,9 @@
 //! * centre to centre: s = -1 if a radius is concave, else +1; n = s d/|d|, g = s |d| - (rhoA + rhoB);
 //! * centre to line: n = the line's outward normal, b = foot of cA on it, g = n.(cA - b) - rhoA.
 //!
-//! A is the *primary* side, n points from the *normal* side B to A. Only a vertex or a convex arc of the lesser radius
-//! touches a concave arc inside its range, and one of the same radius, as if that were larger by 1e-12 of itself; concave against
-//! concave or a line is carried by the arc's end vertices.
+//! A is the *primary* side, n points from the *normal* side B to A. Only a vertex or a convex arc of the
+//! lesser radius touches a concave arc inside its range, and one of the same radius, as if that were larger
+//! by 1e-12 of itself; concave against concave or a line is carried by the arc's end vertices.
 //!
 //! Sources: D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH '94, 23-34,
 //! appendix; E. Neumann, "Curved Edge Physics", 2015.
@@ -38,12 +38,12 @@ pub enum PairKind {
     LineRound,
 }
 
-/// Play, as a part of the radius, of an arc in a hollow of the same radius up to as much: shapes are drawn so, and without any there
-/// would be no direction in which they touch.
+/// Play, as a part of the radius, of an arc in a hollow of the same radius up to as much: shapes are drawn
+/// so, and without any there would be no direction in which they touch.
 const LEAST_PLAY: f64 = 1e-12;
 
-/// The sum of the signed radii of two features [m], whose size is the distance of their centres where they touch; of an arc in a
-/// hollow that just fits, that of a hollow a little larger.
+/// The sum of the signed radii of two features [m], whose size is the distance of their centres where they
+/// touch; of an arc in a hollow that just fits, that of a hollow a little larger.
 #[must_use]
 #[inline]
 pub fn touching_distance(a: &RoundFeature, b: &RoundFeature) -> f64 {
@@ -194,8 +194,8 @@ impl GapSample {
         Some(sample)
     }
 
-    /// As [`GapSample::measure`] for features continued without end: their ranges of directions are not looked at, and both
-    /// excesses are 0. Angles cost more than everything else.
+    /// As [`GapSample::measure`] for features continued without end: their ranges of directions are not
+    /// looked at, and both excesses are 0. Angles cost more than everything else.
     #[must_use]
     #[inline(always)]
     pub fn measure_unbounded(a: &Feature, pose_a: &Pose, b: &Feature, pose_b: &Pose) -> Option<Self> {

@@ -21,8 +21,8 @@ pub struct NearestPoint {
 impl Shape {
     /// Finds the point of the outline nearest to a point [m] in body coordinates.
     ///
-    /// The sign of the distance is that of [`contains`](Self::contains). Where several points of the outline are equally
-    /// near, one of them is given: the same one each time.
+    /// The sign of the distance is that of [`contains`](Self::contains). Where several points of the outline
+    /// are equally near, one of them is given: the same one each time.
     ///
     /// # Examples
     ///

@@ -32,7 +32,8 @@ pub struct RayHit {
     pub distance: f64,
     /// Where it is [m].
     pub point: DVec2,
-    /// Outward unit normal of the edge there: it points against a ray that enters the solid and along one that leaves it.
+    /// Outward unit normal of the edge there: it points against a ray that enters the solid and along one
+    /// that leaves it.
     pub normal: DVec2,
     /// The edge that is met.
     pub edge: EdgeId,

@@ -44,7 +44,8 @@ impl Shape {
     /// End points and arc radii may be off by 1e-6 of the shape's size, and are then made exact.
     ///
     /// # Errors
-    /// Open, empty, crossing or degenerate paths: the error names path and edge. Sizes whose fourth powers are no numbers.
+    /// Open, empty, crossing or degenerate paths: the error names path and edge. Sizes whose fourth powers
+    /// are no numbers.
     pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
         let shape = Self::from_oriented(build_outline(specs)?);
         if shape.parts.mass.is_sound() {
@@ -161,8 +162,8 @@ impl Shape {
         &self.parts.features[id.0 as usize]
     }
 
-    /// Length [m] over which an angle outside of a feature's range becomes a distance: an arc's radius, the shorter of the
-    /// two edges at a vertex, a line's length.
+    /// Length [m] over which an angle outside of a feature's range becomes a distance: an arc's radius, the
+    /// shorter of the two edges at a vertex, a line's length.
     #[must_use]
     #[inline]
     pub fn lever(&self, feature: FeatureId) -> f64 {
@@ -175,7 +176,8 @@ impl Shape {
         self.parts.sources[id.0 as usize]
     }
 
-    /// The corners at the two ends of an edge; `None` where the outline goes on smoothly or turns inwards, and for a vertex.
+    /// The corners at the two ends of an edge; `None` where the outline goes on smoothly or turns inwards,
+    /// and for a vertex.
     #[must_use]
     pub fn ends_of(&self, feature: FeatureId) -> [Option<FeatureId>; 2] {
         let Some(EdgeId { path, edge }) = self.whole_edge(feature) else { return [None; 2] };
@@ -185,13 +187,12 @@ impl Shape {
             let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
             // Features are in the order of their edges, a vertex before the edge that starts at it.
             let place = self.parts.sources.partition_point(|source| source < &corner);
-            (self.parts.sources.get(place) == Some(&corner))
-                .then(|| FeatureId(u32::try_from(place).unwrap_or(u32::MAX)))
+            (self.parts.sources.get(place) == Some(&corner)).then(|| FeatureId::from_index(place))
         })
     }
 
-    /// True if the outline goes on straight and smoothly beyond an arc that bulges outwards, at the end that is nearer to a direction
-    /// from its centre [body coordinates]; false of all other features.
+    /// True if the outline goes on straight and smoothly beyond an arc that bulges outwards, at the end that
+    /// is nearer to a direction from its centre [body coordinates]; false of all other features.
     #[must_use]
     pub fn goes_on_straight(&self, arc: FeatureId, direction: DVec2) -> bool {
         let FeatureSource { path, edge, kind } = self.source(arc);
@@ -220,7 +221,7 @@ impl Shape {
         let whole = |edge: u32| {
             let corner = FeatureSource { path, edge, kind: FeatureKind::Vertex };
             let place = self.parts.sources.partition_point(|source| source <= &corner);
-            FeatureId(u32::try_from(place).unwrap_or(u32::MAX))
+            FeatureId::from_index(place)
         };
         Some([before, edge].map(whole))
     }

@@ -1,9 +1,10 @@
 //! Sine and cosine of an angle at once, the same bits on every machine.
 //!
-//! Poses ask for little else, so this is made to be short: no branch but the one for angles of many turns, which `libm`
-//! takes. The angle is reduced to an eighth of a turn either way in two parts (W. J. Cody and W. Waite, "Software Manual
-//! for the Elementary Functions", 1980, ch. 8), where the Taylor series are summed pairwise. Near multiples of a quarter turn the
-//! small one of the two is exact to rounding of 1, not of itself: to a rotation that is all the same.
+//! Poses ask for little else, so this is made to be short: no branch but the one for angles of many turns,
+//! which `libm` takes. The angle is reduced to an eighth of a turn either way in two parts (W. J. Cody and W.
+//! Waite, "Software Manual for the Elementary Functions", 1980, ch. 8), where the Taylor series are summed
+//! pairwise. Near multiples of a quarter turn the small one of the two is exact to rounding of 1, not of
+//! itself: to a rotation that is all the same.
 
 use std::f64::consts::FRAC_2_PI;
 

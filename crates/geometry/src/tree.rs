@@ -44,16 +44,18 @@ pub struct FeatureTree {
     leaves: Vec<usize>,
 }
 
-/// Two trees of no more leaves are compared leaf by leaf: those of one with the root of the other, then what is left of both
-/// with each other.
+/// Two trees of no more leaves are compared leaf by leaf: those of one with the root of the other, then what
+/// is left of both with each other.
 const FEW: usize = 16;
 
 impl FeatureTree {
     /// The tree over the features, each in its box.
     pub(crate) fn build(features: &[Feature], boxes: &[Aabb]) -> Self {
-        let id = |index: usize| FeatureId(u32::try_from(index).unwrap_or(u32::MAX));
-        let mut items: Vec<Item> =
-            boxes.iter().enumerate().map(|(index, &bounds)| Item { id: id(index), bounds }).collect();
+        let mut items: Vec<Item> = boxes
+            .iter()
+            .enumerate()
+            .map(|(index, &bounds)| Item { id: FeatureId::from_index(index), bounds })
+            .collect();
         let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()), leaves: Vec::new() };
         if !items.is_empty() {
             tree.add(&mut items, features);

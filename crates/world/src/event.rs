@@ -93,7 +93,7 @@ pub struct ContactEvent {
     pub time: f64,
     /// Between whom, where and how strong.
     pub contact: ContactForce,
-    /// How long [s] the bounces would have gone on that were too slow or too low to be resolved, of a single contact that
-    /// begins: the time of rest is this much later.
+    /// How long [s] the bounces would have gone on that were too slow or too low to be resolved, of a single
+    /// contact that begins: the time of rest is this much later.
     pub bouncing: Option<f64>,
 }

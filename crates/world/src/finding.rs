@@ -17,11 +17,11 @@ const CONNECTOR_TOLERANCES: f64 = 10.0;
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 /// How deep bodies may overlap, in target gaps.
 const GAPS: f64 = 1.0;
-/// Where steps have a given length, and err by what they err, so many times as much may be off, and bodies may overlap so much
-/// more deeply.
+/// Where steps have a given length, and err by what they err, so many times as much may be off, and bodies
+/// may overlap so much more deeply.
 const ROUGHLY: f64 = 10.0;
-/// Where nothing is promised: part of the largest coordinate by which a connector may be off, and of the energy turned over that the
-/// books may lack. Anybody would see more.
+/// Where nothing is promised: part of the largest coordinate by which a connector may be off, and of the
+/// energy turned over that the books may lack. Anybody would see more.
 const PLAINLY: f64 = 1e-2;
 /// So many times the room that bodies have to sink between impulses may be used up, where contacts carry no forces.
 const SINKING: f64 = 1.25;
@@ -31,13 +31,13 @@ const BOOKS_ROUNDINGS: f64 = 1e6 * f64::EPSILON;
 /// Books that lack so many tolerances, and one more for every other step, are another scene's.
 const ASTRAY: f64 = 5e3;
 const ASTRAY_PER_STEP: f64 = 0.5;
-/// What forces do along so many target gaps is not told from rounding: far from the origin gaps are as wide as that asks for, and
-/// each event may err by a part of one.
+/// What forces do along so many target gaps is not told from rounding: far from the origin gaps are as wide
+/// as that asks for, and each event may err by a part of one.
 const ROUGH: f64 = 3e4;
 /// Part of the energy that is usual in a scene for which the energy turned over is taken at least.
 const SELDOM: f64 = 1e-2;
-/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin slowly. More is a
-/// blow that was taken for one.
+/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin
+/// slowly. More is a blow that was taken for one.
 const CAPTURED: f64 = 5e-2;
 
 /// Something that does not hold in a run.
@@ -131,8 +131,12 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// Looks whether connectors are together and bodies apart.
+    /// Looks whether connectors are together and bodies apart, unless the sentry has just done so and found
+    /// that they are.
     pub(crate) fn look(&mut self, world: &World) {
+        if world.sentry.is_sound {
+            return;
+        }
         let mut found = Vec::new();
         world.find_connectors_off(&mut found);
         world.find_overlaps(&mut self.near, &mut found);
@@ -181,11 +185,11 @@ impl Finding {
 }
 
 impl World {
-    /// Looks whether connectors are together, bodies are apart, and the energy books close, as the settings promise; where they
-    /// promise nothing, whether that is plain to see. Empty if all is well.
+    /// Looks whether connectors are together, bodies are apart, and the energy books close, as the settings
+    /// promise; where they promise nothing, whether that is plain to see. Empty if all is well.
     ///
-    /// `turned_over` is the energy [J] that the run has moved: the largest kinetic energy, change of the potential energy
-    /// and work of force laws that was seen.
+    /// `turned_over` is the energy [J] that the run has moved: the largest kinetic energy, change of the
+    /// potential energy and work of force laws that was seen.
     #[must_use]
     pub fn findings(&self, turned_over: f64) -> Vec<Finding> {
         Findings::default().at_end(self, turned_over)
@@ -197,8 +201,9 @@ impl World {
         self.connectors_off(if is_projected { self.leniency() * share } else { PLAINLY }, findings);
     }
 
-    /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut within their zone, and
-    /// where contacts carry impulses only, by as much as bodies sink in a step and are put back.
+    /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut
+    /// within their zone, and where contacts carry impulses only, by as much as bodies sink in a step and are
+    /// put back.
     fn connectors_off(&self, share: f64, findings: &mut Vec<Finding>) {
         if self.connectors().is_empty() {
             return;
@@ -246,7 +251,8 @@ impl World {
     fn find_open_books(&self, turned_over: f64, findings: &mut Vec<Finding>) {
         let of_steps = BOOKS_ERRORS * self.rigid_settings().steps.local_error;
         let share = if self.keeps_to_tolerance() { of_steps } else { PLAINLY };
-        // Errors of steps are relative to what is usual, as is rounding; where nothing moves or falls, that is of what rounding moves.
+        // Errors of steps are relative to what is usual, as is rounding; where nothing moves or falls, that
+        // is of what rounding moves.
         let scales = &self.sentry.scales;
         let least = SELDOM * scales.usual;
         let books = Books::from(&self.ledger());
@@ -266,8 +272,9 @@ impl World {
         self.rigid_settings().impulse_step.is_none().then_some(books.projections.abs())
     }
 
-    /// Whether the books are open by far more than what is told, or captures take a good part of all energy. Who looks seldom does
-    /// not see all energy that is turned over: in part it is taken for what is usual in such a scene.
+    /// Whether the books are open by far more than what is told, or captures take a good part of all energy.
+    /// Who looks seldom does not see all energy that is turned over: in part it is taken for what is usual in
+    /// such a scene.
     pub(crate) fn books_astray(&self, books: &Books, turned_over: f64) -> Option<Finding> {
         let Sentry { scales, is_watchful, slow_is_given, .. } = &self.sentry;
         if scales.usual == 0.0 {

@@ -59,10 +59,11 @@ impl Intervention {
 }
 
 impl World {
-    /// Does something to bodies at the present time, all at once and in the order given. Connectors and contacts against which
-    /// they then move respond by the world's impact law, as an [`Impact`](crate::Impact) that is told of: an impulse on the
-    /// lowest of a stack is felt by all of it, and a velocity that connectors do not allow does not come about. Velocities that
-    /// belong together, as those of a linkage, are given in one call.
+    /// Does something to bodies at the present time, all at once and in the order given. Connectors and
+    /// contacts against which they then move respond by the world's impact law, as an
+    /// [`Impact`](crate::Impact) that is told of: an impulse on the lowest of a stack is felt by all of it,
+    /// and a velocity that connectors do not allow does not come about. Velocities that belong together, as
+    /// those of a linkage, are given in one call.
     ///
     /// Thresholds and steps follow the scales of the world as it was built: say so there if what comes is much faster
     /// ([`WorldSettings::usual_speed`](crate::WorldSettings::usual_speed)).
@@ -83,8 +84,9 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// A body that is fixed, or not there, or a number that is not finite: then nothing is done. The impact, or the forces after it, cannot
-    /// be found: then there is no going on, as after such an error of [`advance_to`](Self::advance_to).
+    /// A body that is fixed, or not there, or a number that is not finite: then nothing is done. The impact,
+    /// or the forces after it, cannot be found: then there is no going on, as after such an error of
+    /// [`advance_to`](Self::advance_to).
     pub fn intervene(
         &mut self,
         interventions: &[Intervention],
@@ -103,7 +105,10 @@ impl World {
             None => ControlFlow::Continue(()),
         });
         let reached = self.system.now();
-        self.conclude(outcome, reached, has_failed, &mut go_on).map(|_| ())
+        if !has_failed {
+            self.tell_last_words(&mut go_on);
+        }
+        self.conclude(outcome, reached).map(|_| ())
     }
 
     fn check_intervention(&self, intervention: &Intervention) -> Result<(), RunError> {

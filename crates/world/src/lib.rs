@@ -1,9 +1,10 @@
 //! Exact, fast 2D rigid-body mechanics with true circular arcs.
 //!
-//! A [`World`] is bodies in motion: built in code by a [`WorldBuilder`], or (feature `scene`, on by default) from a scene
-//! file. It advances from event to event: what is read in between changes nothing. Bodies fly, collide, rest and slide on
-//! each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move them; [`Event`]s tell of impacts and of contacts
-//! that begin and end, [`World::intervene`] strikes bodies, [`World::contact_forces`] of what holds, [`World::ledger`] of where the energy went. Friction is not
+//! A [`World`] is bodies in motion: built in code by a [`WorldBuilder`], or (feature `scene`, on by default)
+//! from a scene file. It advances from event to event: what is read in between changes nothing. Bodies fly,
+//! collide, rest and slide on each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move
+//! them; [`Event`]s tell of impacts and of contacts that begin and end, [`World::intervene`] strikes bodies,
+//! [`World::contact_forces`] of what holds, [`World::ledger`] of where the energy went. Friction is not
 //! simulated yet.
 //!
 //! *Invariant*: this crate prints nothing, and leaves geometry, collisions, contacts and events to the layers below.

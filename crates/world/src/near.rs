@@ -22,11 +22,11 @@ struct Boxed {
 }
 
 impl NearPairs {
-    /// Pairs of bodies whose boxes overlap, sorted; not those of two fixed bodies, nor those that pass through each other. For
-    /// each body its box, and whether it is fixed.
+    /// Pairs of bodies whose boxes overlap, sorted; not those of two fixed bodies, nor those that pass
+    /// through each other. For each body its box, and whether it is fixed.
     ///
-    /// A sweep along the longer side of the scene: D. Baraff, "Dynamic simulation of non-penetrating rigid bodies", thesis,
-    /// Cornell University 1992, 8.2.
+    /// A sweep along the longer side of the scene: D. Baraff, "Dynamic simulation of non-penetrating rigid
+    /// bodies", thesis, Cornell University 1992, 8.2.
     pub(crate) fn find(
         &mut self,
         boxes: impl Iterator<Item = (Aabb, bool)>,

@@ -8,9 +8,12 @@ use halfgap_collision::{SearchSettings, Tolerances};
 /// The corner of a body that turns while it falls may be faster than its centre.
 const SINKING: f64 = 4.0;
 
-/// The settings of the advance.
-pub(crate) fn rigid_settings(settings: &WorldSettings, scales: &Scales) -> RigidSettings {
-    let tolerances = tolerances(settings, scales);
+/// The settings of the advance, with the thresholds of touching that [`tolerances`] gives.
+pub(crate) fn rigid_settings(
+    settings: &WorldSettings,
+    scales: &Scales,
+    tolerances: Tolerances,
+) -> RigidSettings {
     let method = method(settings.integrator);
     let derived = RigidSettings::with_tolerances(settings.tolerance, tolerances, scales, method);
     RigidSettings {

@@ -6,16 +6,15 @@ use crate::ledger::{Books, Turnover};
 use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
+use crate::sentry::LOOKS;
 use crate::world::{Energy, World};
 use std::time::{Duration, Instant};
 
 /// An output this part of a step before the end is the end.
 const LAST_STEP_SHARE: f64 = 1e-6;
-/// Part of a run after which its progress is told where no output is kept: the clock is read as often, which in a run of a
-/// few impacts costs as much as they do.
+/// Part of a run after which its progress is told where no output is kept: the clock is read as often, which
+/// in a run of a few impacts costs as much as they do.
 const PROGRESS_SHARE: f64 = 1.0 / 50.0;
-/// Looks on the way, where all is recorded, at what does not hold.
-const LOOKS: f64 = 50.0;
 
 /// What a run keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,7 +103,8 @@ pub struct RunReport {
     pub start_energy: Energy,
     /// Why it stopped early, if it did.
     pub error: Option<RunError>,
-    /// What does not hold at the end, or where it stopped; where all is recorded, what was seen not to hold on the way, too.
+    /// What does not hold at the end, or where it stopped; where all is recorded, what was seen not to hold
+    /// on the way, too.
     pub findings: Vec<Finding>,
     /// Time [s] spent on stepping alone.
     pub wall_seconds: f64,
@@ -112,8 +112,9 @@ pub struct RunReport {
 
 /// Runs a world as planned; `progress` is called now and then with the part that is done, 0 to 1.
 ///
-/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped. A plan with an output
-/// step that is not positive, or stops out of order, is reported as an error before anything moves.
+/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped. A plan
+/// with an output step that is not positive, or stops out of order, is reported as an error before anything
+/// moves.
 pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> RunReport {
     let mut recording = Recording::new(plan.title.clone(), world);
     recording.frames.push(recording.frame_of(world));
@@ -147,6 +148,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
         }
+        // The sentry looks as often, but not where steps err by what they err.
         if wanted && done(now, plan) >= looks / LOOKS {
             findings.look(world);
             looks += 1.0;

@@ -59,8 +59,8 @@ pub enum RunError {
         /// Name of its body.
         body: String,
     },
-    /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink, and collide again and
-    /// again within a step.
+    /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink,
+    /// and collide again and again within a step.
     #[error(
         "at {time} s \"{primary}\" and \"{normal}\" are pressed into each other and collide without end: {events} times within a \
          time_step of {} s, a shorter one lets them sink less",
@@ -118,8 +118,8 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Steps have become so short that those for all the time that is to be simulated would never come to an end, and nothing
-    /// happens meanwhile.
+    /// Steps have become so short that those for all the time that is to be simulated would never come to an
+    /// end, and nothing happens meanwhile.
     #[error(
         "at {time} s {} goes on in steps of {} s{}: for {duration} s that would be {} of them",
         quoted(bodies), Rounded(*step), under(laws), Rounded(duration / step)

@@ -1,8 +1,9 @@
 //! The sentry: stops a world that does not hold together any more.
 //!
-//! What a run finds out about itself ([`Finding`]) is told at its end. But a connector that has come apart, bodies that lie in
-//! one another, or energy from nowhere mean that all that follows is another scene's: there the advance ends with an error.
-//! It is looked at where an advance stops, as often as costs next to nothing.
+//! What a run finds out about itself ([`Finding`]) is told at its end. But a connector that has come apart,
+//! bodies that lie in one another, or energy from nowhere mean that all that follows is another scene's:
+//! there the advance ends with an error. It is looked at where an advance stops, as often as costs next to
+//! nothing.
 
 use crate::finding::Finding;
 use crate::ledger::{Books, Turnover};
@@ -15,9 +16,10 @@ use halfgap_collision::Moving;
 
 /// Segments of motion from one look to the next, beside one for each body.
 const SEGMENTS: u64 = 16;
-/// Where it is known how long the world will run, it is looked at so many times on the way, however few segments it makes, and a
-/// stop that rounding puts a little before such a time is one, too.
-const LOOKS: f64 = 50.0;
+/// Where it is known how long the world will run, it is looked at so many times on the way, however few
+/// segments it makes.
+pub(crate) const LOOKS: f64 = 50.0;
+/// A stop that rounding puts this part of the time between two looks before such a time is one, too.
 const EARLY: f64 = 1e-6;
 
 /// What the sentry remembers, and room for its looks.
@@ -38,6 +40,9 @@ pub(crate) struct Sentry {
     /// How many of the looks of a known duration are behind, and whether none of them was left out.
     looks: f64,
     pub(crate) is_watchful: bool,
+    /// The last advance ended with a look, which found connectors together and bodies apart: they are so
+    /// still, for nothing moves without another advance.
+    pub(crate) is_sound: bool,
     room: Room,
 }
 
@@ -74,6 +79,7 @@ impl Sentry {
             looked: 0,
             looks: 0.0,
             is_watchful: duration > 0.0,
+            is_sound: false,
             room: Room::default(),
         }
     }
@@ -88,6 +94,7 @@ impl World {
         let segments = self.steps();
         let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
         let is_due = self.is_look_due();
+        self.sentry.is_sound = false;
         if outcome.is_ok() && is_soon && !is_due || !self.keeps_to_tolerance() {
             return outcome;
         }
@@ -99,6 +106,7 @@ impl World {
         self.sentry.turnover.note_kinetic(kinetic);
         let found = self.astray(&books, &mut room.near);
         self.sentry.room = room;
+        self.sentry.is_sound = found.is_none();
         match found {
             Some(finding) => Err(RunError::Astray { time: self.time(), finding }),
             None => outcome,
@@ -204,8 +212,10 @@ mod tests {
         let mut world = pendulum();
         world.start.energy += 1.0;
         let before = world.statistics().steps;
+        assert!(world.sentry.is_sound, "it has just been looked at");
         world.advance_to(LATER + 1e-3, &mut |_| ()).expect("nobody looks");
         assert!(world.statistics().steps - before < SEGMENTS);
+        assert!(!world.sentry.is_sound, "nobody knows");
     }
 
     /// A disc that is about to bounce off a floor, where all that it does counts as slow.

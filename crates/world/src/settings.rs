@@ -23,13 +23,13 @@ pub struct ToleranceOverrides {
 pub struct WorldSettings {
     /// Time at the start [s].
     pub start_time: f64,
-    /// How long the world will run [s], if that is known: steps that would never come to its end are told as an error. No less
-    /// than a single advance asks for.
+    /// How long the world will run [s], if that is known: steps that would never come to its end are told as
+    /// an error. No less than a single advance asks for.
     pub duration: Option<f64>,
     /// Relative accuracy asked for.
     pub tolerance: f64,
-    /// A speed [m/s] that is usual in the world, where its start does not tell: thresholds and errors of velocity are relative to it, or
-    /// to what the start tells if that is more.
+    /// A speed [m/s] that is usual in the world, where its start does not tell: thresholds and errors of
+    /// velocity are relative to it, or to what the start tells if that is more.
     pub usual_speed: Option<f64>,
     /// Thresholds given in place of derived ones.
     pub overrides: ToleranceOverrides,
@@ -59,8 +59,8 @@ pub struct WorldSettings {
 /// How motion under forces is integrated where it has no closed form.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// Dormand and Prince, order 8, adaptive; where a higher order gains nothing, between events that come fast one after another
-    /// and along rails through points, order 5 in its place.
+    /// Dormand and Prince, order 8, adaptive; where a higher order gains nothing, between events that come
+    /// fast one after another and along rails through points, order 5 in its place.
     #[default]
     Dop853,
     /// Dormand and Prince, order 5, adaptive.

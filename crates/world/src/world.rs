@@ -107,16 +107,21 @@ pub(crate) struct Start {
     pub(crate) energy: f64,
 }
 
+/// What a world is made of, for its builder.
+pub(crate) struct WorldParts {
+    pub(crate) system: RigidSystem,
+    pub(crate) bodies: Vec<Named>,
+    pub(crate) forces: Vec<Arc<dyn ForceLaw>>,
+    pub(crate) connectors: Vec<Connector>,
+    pub(crate) now: Time,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) start: Start,
+    pub(crate) sentry: Sentry,
+}
+
 impl World {
-    pub(crate) fn new(
-        system: RigidSystem,
-        bodies: Vec<Named>,
-        (forces, connectors): (Vec<Arc<dyn ForceLaw>>, Vec<Connector>),
-        now: Time,
-        warnings: Vec<String>,
-        start: Start,
-        sentry: Sentry,
-    ) -> Self {
+    pub(crate) fn new(parts: WorldParts) -> Self {
+        let WorldParts { system, bodies, forces, connectors, now, warnings, start, sentry } = parts;
         let told = Event::Impact(Impact::default());
         let mut world = Self { system, bodies, forces, connectors, now, warnings, start, told, sentry };
         world.sentry.turnover = Turnover::new(world.energy());
@@ -137,7 +142,7 @@ impl World {
 
     /// All bodies, in the order in which they were added.
     pub fn bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
-        (0..u32::try_from(self.bodies.len()).unwrap_or(u32::MAX)).map(BodyId)
+        (0..self.bodies.len()).map(BodyId::from_index)
     }
 
     /// The body of a name.
@@ -326,8 +331,8 @@ impl World {
         }
     }
 
-    /// The largest kinetic energy [J] that some bodies had at the end of a step, or came to an impact with: who looks now and then may
-    /// never see it.
+    /// The largest kinetic energy [J] that some bodies had at the end of a step, or came to an impact with:
+    /// who looks now and then may never see it.
     pub(crate) fn largest_kinetic_energy(&self) -> f64 {
         self.system.counts().largest_kinetic_energy
     }
@@ -342,8 +347,9 @@ impl World {
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
     ///
     /// # Errors
-    /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever wants to go on beyond it
-    /// is told the same again. What must hold does not any more at that time. The time is not finite.
+    /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever
+    /// wants to go on beyond it is told the same again. What must hold does not any more at that time. The
+    /// time is not finite.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let outcome = self.advance_while(time, &mut |event| {
             on_event(event);
@@ -352,8 +358,9 @@ impl World {
         outcome.map(|_| ())
     }
 
-    /// The same, but no further than the first event of which `on_event` says [`ControlFlow::Break`]: the world is then at its time, and
-    /// the answer is that. What happens at once is told to the end; advancing on goes on as if there had been no stop.
+    /// The same, but no further than the first event of which `on_event` says [`ControlFlow::Break`]: the
+    /// world is then at its time, and the answer is that. What happens at once is told to the end; advancing
+    /// on goes on as if there had been no stop.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
@@ -372,29 +379,36 @@ impl World {
         let outcome = advance_while(system, until, |system, handled| tell(told, system, *handled, on_event));
         let reached =
             if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.system.now() };
-        self.conclude(outcome, reached, has_failed, on_event)
+        if !has_failed {
+            self.tell_last_words(on_event);
+        }
+        self.conclude(outcome, reached)
     }
 
-    /// Takes note of how far the system has come, with its last words if it cannot go on.
-    pub(crate) fn conclude(
-        &mut self,
-        outcome: Result<ControlFlow<()>, AdvanceError>,
-        reached: Time,
-        has_failed: bool,
-        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<()>, RunError> {
-        if let Some(impact) = self.system.untold_impact().filter(|_| !has_failed) {
+    /// Tells of the impact after which the system cannot go on, if it has come to one; not for a system that
+    /// had failed before, for then it was told.
+    pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
+        if let Some(impact) = self.system.untold_impact() {
             write_impact(&mut self.told, impact);
             // There is no going on.
             let _ = on_event(&self.told);
         }
+    }
+
+    /// Takes note of how far the system has come, and looks whether all still holds together.
+    pub(crate) fn conclude(
+        &mut self,
+        outcome: Result<ControlFlow<()>, AdvanceError>,
+        reached: Time,
+    ) -> Result<ControlFlow<()>, RunError> {
         self.now = self.now.max(reached);
         let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));
         self.stand_guard(outcome)
     }
 }
 
-/// Tells of an event that was handled, the impact in a buffer that is used again and again; whether somebody wants to stop there.
+/// Tells of an event that was handled, the impact in a buffer that is used again and again; whether somebody
+/// wants to stop there.
 pub(crate) fn tell(
     told: &mut Event,
     system: &RigidSystem,
@@ -430,7 +444,8 @@ fn contact_force(row: &RowForce) -> ContactForce {
     }
 }
 
-/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them; with room for what laws read.
+/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them; with room for
+/// what laws read.
 pub(crate) fn energy_of(
     bodies: &[Named],
     forces: &[Arc<dyn ForceLaw>],
@@ -438,7 +453,7 @@ pub(crate) fn energy_of(
     state_of: impl Fn(BodyId) -> BodyState,
     room: &mut Vec<Moving>,
 ) -> Energy {
-    let ids = (0..u32::try_from(bodies.len()).unwrap_or(u32::MAX)).map(BodyId);
+    let ids = (0..bodies.len()).map(BodyId::from_index);
     let mut energy = Energy::default();
     for (body, named) in ids.clone().zip(bodies) {
         let Named { inertia: Some(inertia), gravity, .. } = named else { continue };

@@ -1,7 +1,9 @@
-//! Scenes from seeds: a dozen bodies at most, of all shapes, tied and pushed in all ways, with extreme but legal numbers.
+//! Scenes from seeds: a dozen bodies at most, of all shapes, tied and pushed in all ways, with extreme but
+//! legal numbers.
 //!
-//! A scene is made as JSON, as a file would hold it: what a seed makes can be written down, run by the command and made
-//! smaller. `shapes` makes the shapes, `ties` the connectors and forces; `variations` changes the reference scenes instead.
+//! A scene is made as JSON, as a file would hold it: what a seed makes can be written down, run by the
+//! command and made smaller. `shapes` makes the shapes, `ties` the connectors and forces; `variations`
+//! changes the reference scenes instead.
 
 mod shapes;
 mod ties;
@@ -21,8 +23,8 @@ const ROUND_ROOM: f64 = 0.6;
 const FLOOR: f64 = 0.85;
 const SCALED: f64 = 0.2;
 const FAR_AWAY: f64 = 0.05;
-/// Zones that one can see: the target gap in parts of the smallest body's radius, the accuracy in parts of that, and what is slow
-/// in parts of an ordinary speed.
+/// Zones that one can see: the target gap in parts of the smallest body's radius, the accuracy in parts of
+/// that, and what is slow in parts of an ordinary speed.
 const COARSE_GAP: f64 = 5e-3;
 const COARSE_ACCURACY: f64 = 0.6;
 const COARSE_SPEED: f64 = 0.2;
@@ -120,8 +122,8 @@ pub fn billiard_of_seed(seed: u64) -> Value {
     scene
 }
 
-/// The scene of a seed as older engines would run it: with a zone in which things touch that one can see, and in half of all
-/// scenes with a speed that is slow for whatever moves.
+/// The scene of a seed as older engines would run it: with a zone in which things touch that one can see, and
+/// in half of all scenes with a speed that is slow for whatever moves.
 #[must_use]
 pub fn coarse_of_seed(seed: u64) -> Value {
     let mut scene = scene_of_seed(seed);
@@ -136,7 +138,8 @@ pub fn coarse_of_seed(seed: u64) -> Value {
     scene
 }
 
-/// The scene of a seed with contacts that carry impulses only, in steps in which most bodies move by little of their size.
+/// The scene of a seed with contacts that carry impulses only, in steps in which most bodies move by little
+/// of their size.
 #[must_use]
 pub fn impulses_of_seed(seed: u64) -> Value {
     let mut scene = scene_of_seed(seed);

@@ -1,5 +1,5 @@
-//! Reference scenes with other numbers: places, speeds, masses, laws. What they are made of is what people build by hand: flush
-//! blocks, symmetric heaps, chains, gears, rails.
+//! Reference scenes with other numbers: places, speeds, masses, laws. What they are made of is what people
+//! build by hand: flush blocks, symmetric heaps, chains, gears, rails.
 
 use super::{LAWS, ONCE_FROM};
 use crate::random::Random;

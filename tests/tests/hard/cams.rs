@@ -1,5 +1,5 @@
-//! A cam with a roller on it: the contact goes round base, flanks and nose, and every flank meets the roller from behind half
-//! a turn later, as far as its line goes on without end.
+//! A cam with a roller on it: the contact goes round base, flanks and nose, and every flank meets the roller
+//! from behind half a turn later, as far as its line goes on without end.
 
 use super::within;
 use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};

@@ -14,8 +14,8 @@ fn a_ball_rests_when_its_geometric_series_ends_at_every_tolerance() {
         let mut world = shop.build();
         // Half a second down, then bounces of 2 v/g with v halved each time: 0.5 + 0.5 + 0.25 + ... s.
         let rest = rest_time(&mut world, 5.0);
-        // Caught below the velocity tolerance v: what is left of the series is 2 v/(g (1 - e)) at most. The gap makes each
-        // fall shorter by its size over the speed.
+        // Caught below the velocity tolerance v: what is left of the series is 2 v/(g (1 - e)) at most. The
+        // gap makes each fall shorter by its size over the speed.
         let caught = 2.0 * world.tolerances().velocity_tol / (GRAVITY * 0.5);
         let what = format!("ball bounces to rest at tolerance {tolerance:.0e}: time [s]");
         within(&what, rest - 1.5, caught + 100.0 * world.tolerances().target_gap);

@@ -10,7 +10,8 @@ const TOLERANCE: f64 = 1e-10;
 
 #[test]
 fn a_disc_slides_from_line_to_convex_arc_and_leaves_where_theory_says() {
-    // A rounded block: its top is straight, its corner an arc of 1 m. The disc comes along the top too slowly to fly off.
+    // A rounded block: its top is straight, its corner an arc of 1 m. The disc comes along the top too slowly
+    // to fly off.
     let mut shop = Workshop::new(TOLERANCE);
     let hill = Shape::rounded_block(6.0, 6.0, 1.0).expect("a fine block");
     shop.fixed("hill", hill, DVec2::new(-3.0, -3.0));

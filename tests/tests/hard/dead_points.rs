@@ -8,8 +8,8 @@ use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc}
 const WORLD: BodyId = BodyId::WORLD;
 const TOLERANCES: [f64; 4] = [1e-5, 1e-8, 1e-10, 1e-12];
 
-/// A bar that hangs 1 m from the middle of its upper end and swings against a wall that is flush with its side, from an angle
-/// [rad] at 1 rad/s.
+/// A bar that hangs 1 m from the middle of its upper end and swings against a wall that is flush with its
+/// side, from an angle [rad] at 1 rad/s.
 fn door(tolerance: f64, angle: f64, elasticity: f64) -> (World, BodyId) {
     let mut shop = Workshop::weightless(tolerance);
     shop.fixed("wall", block(1.0, 6.0), DVec2::new(-0.55, -1.0));

@@ -1,5 +1,5 @@
-//! What is passed for a moment only, within one long step: a stop that a bead just reaches, a joint or an end that is passed by
-//! little before the motion turns back.
+//! What is passed for a moment only, within one long step: a stop that a bead just reaches, a joint or an end
+//! that is passed by little before the motion turns back.
 
 use super::{impacts, within};
 use halfgap::World;
@@ -37,8 +37,8 @@ fn a_bead_that_just_reaches_its_stop_is_turned_back_by_it() {
     }
 }
 
-/// A bead on a level rail that goes on in the top of a hill of radius 0.1 m, from which it is pulled away: it would turn back
-/// so far [m] beyond the joint if the rail went on level.
+/// A bead on a level rail that goes on in the top of a hill of radius 0.1 m, from which it is pulled away: it
+/// would turn back so far [m] beyond the joint if the rail went on level.
 fn thrown_to_a_joint(depth: f64) -> World {
     let speed = -(2.0 * (0.5 + depth)).sqrt();
     world_of(&format!(

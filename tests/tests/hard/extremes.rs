@@ -49,7 +49,8 @@ fn cap(radius: f64) -> Shape {
     Shape::from_paths(&[PathSpec { start: DVec2::new(-5.0, -1.0), edges }]).expect("a cap")
 }
 
-/// Height [m] of a block above where it rests, and the energy [J] that is not accounted for, 3 s after it fell on a cap at an angle [rad].
+/// Height [m] of a block above where it rests, and the energy [J] that is not accounted for, 3 s after it
+/// fell on a cap at an angle [rad].
 fn on_a_cap(radius: f64, tolerance: f64, angle: f64) -> (f64, f64) {
     let mut shop = Workshop::new(tolerance);
     let middle = cap(radius).mass_properties().centroid;
@@ -221,7 +222,8 @@ fn a_weight_a_million_times_as_heavy_rests_on_a_light_block() {
     );
 }
 
-/// A ball that bounces by 0.8 on a floor of a width [m], 1 m below it, with a spin [rad/s]; far above flies a bullet at a speed [m/s], if it does.
+/// A ball that bounces by 0.8 on a floor of a width [m], 1 m below it, with a spin [rad/s]; far above flies a
+/// bullet at a speed [m/s], if it does.
 fn bounce_beside(tolerance: f64, spin: f64, width: f64, bullet: f64) -> f64 {
     let mut shop = Workshop::new(tolerance);
     shop.fixed("floor", block(width, 2.0), DVec2::new(0.0, -1.0));

@@ -8,7 +8,8 @@ use halfgap_tests::mechanism::{Workshop, at_rest, block, disc, thrown};
 /// By how much a path misses or meets [m].
 const MARGIN: f64 = 1e-12;
 
-/// A disc flies past a fixed one at the distance at which they fire, plus a margin: the impacts, and the velocity after.
+/// A disc flies past a fixed one at the distance at which they fire, plus a margin: the impacts, and the
+/// velocity after.
 fn past_a_disc(margin: f64) -> (usize, DVec2) {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("post", disc(1.0), DVec2::ZERO);
@@ -96,8 +97,8 @@ fn a_ball_that_turns_back_1e_12_before_the_floor_never_touches_it() {
         let mut world = shop.build();
         let count = impacts(&mut world, 2.0);
         assert_eq!(count, expected, "margin {margin}");
-        // Past the wall it would be back where it was at the speed it had. Reflected, it is spared the 1e-12 m there and
-        // back: 2 sqrt(2 margin) s.
+        // Past the wall it would be back where it was at the speed it had. Reflected, it is spared the 1e-12
+        // m there and back: 2 sqrt(2 margin) s.
         let spared = if margin < 0.0 { 2.0 * (2.0 * MARGIN).sqrt() } else { 0.0 };
         let state = world.state(ball);
         let what =

@@ -37,8 +37,8 @@ fn the_energy_books_close_to_the_tolerance() {
 
 #[test]
 fn an_event_where_forces_grow_beyond_all_bounds_costs_no_energy() {
-    // Where the corners that hold a shuttle from both sides come to lie opposite each other, the whole step passes astride; a part of
-    // it that ended there would not.
+    // Where the corners that hold a shuttle from both sides come to lie opposite each other, the whole step
+    // passes astride; a part of it that ended there would not.
     let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
     for tolerance in [1e-7, 1e-8, 1e-11, 1e-12] {
         let what = format!(
@@ -177,8 +177,8 @@ fn what_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
 
 #[test]
 fn centres_that_meet_at_the_gap_of_a_contact_stop_the_run() {
-    // Half discs lie flat on each other, with their centres of mass on the flats: as they slide, the centres pull each other
-    // to where only the target gap is between them.
+    // Half discs lie flat on each other, with their centres of mass on the flats: as they slide, the centres
+    // pull each other to where only the target gap is between them.
     let half = "shape = { outline = { paths = [{ start = [0.5, 0.0], edges = [\n\
                 { arc = { to = [-0.5, 0.0], center = [0.0, 0.0] } }, { line = [0.5, 0.0] }] }] } }\n\
                 mass = 1.0\nelasticity = 0.0\ncenter_of_mass = [0.0, 0.0]\n";
@@ -204,8 +204,9 @@ fn centres_that_meet_at_the_gap_of_a_contact_stop_the_run() {
 
 #[test]
 fn the_books_of_an_impact_close_at_the_end_of_a_lever() {
-    // A body of a millimetre turns about a pin and carries a disc at the end of an arm of 7 m: it hits the floor with an
-    // impulse ten thousand times that of the disc, and what is rounding of its turning moves the disc by more.
+    // A body of a millimetre turns about a pin and carries a disc at the end of an arm of 7 m: it hits the
+    // floor with an impulse ten thousand times that of the disc, and what is rounding of its turning moves
+    // the disc by more.
     let mut world = world_of(LEVER);
     advance(&mut world, 0.02);
     let ledger = world.ledger();
@@ -267,7 +268,8 @@ fn run_to_the_end(scene: &str) -> halfgap::RunReport {
 
 #[test]
 fn books_are_weighed_by_what_goes_on_between_looks() {
-    // Whoever looks once a period sees a disc on a spring at rest each time, and of two on long orbits how slow they are far apart.
+    // Whoever looks once a period sees a disc on a spring at rest each time, and of two on long orbits how
+    // slow they are far apart.
     let spring = "format = \"halfgap-scene-1\"\ntitle = \"spring\"\nrun = { duration = 400.0 }\n\
         [[body]]\nname = \"disc\"\nmass = 1.0\nposition = [1.0, 0.0]\nshape = { disc = { radius = 0.1 } }\n\
         [[force]]\nspring = { a = { body = \"world\", point = [0, 0] }, b = { body = \"disc\", point = [0, 0] }, rest_length = 0.0, \

@@ -39,8 +39,8 @@ fn parallelogram_at(tolerance: f64, cranks: usize, angle: f64) -> (World, BodyId
     (shop.build(), bars[0])
 }
 
-/// The period of a parallelogram [s]: the coupler (1 kg) moves with the cranks' ends, without turning; each crank (1 kg, 1 by
-/// 0.1 m) turns about its end.
+/// The period of a parallelogram [s]: the coupler (1 kg) moves with the cranks' ends, without turning; each
+/// crank (1 kg, 1 by 0.1 m) turns about its end.
 fn period_of(cranks: usize, amplitude: f64) -> f64 {
     let count = cranks as f64;
     let moment = 1.0 + count * ((1.0 + 0.01) / 12.0 + 0.25);
@@ -168,8 +168,8 @@ fn a_parallelogram_with_a_redundant_crank_swings_as_one_pendulum() {
 
 #[test]
 fn a_parallelogram_through_its_dead_point_ends_with_an_error_or_keeps_its_energy() {
-    // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each other. Let go
-    // near the top, it goes through that point on its way down.
+    // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each
+    // other. Let go near the top, it goes through that point on its way down.
     let (mut world, crank) = parallelogram(2, 3.0);
     let energy = world.energy().total();
     let mut worst: f64 = 0.0;
@@ -197,8 +197,8 @@ fn a_parallelogram_goes_through_its_dead_points_without_losing_energy() {
     within("parallelogram, 20 s through its dead points: energy, relative", worst, 1e-9);
 }
 
-/// A weightless parallelogram of cranks of 1 m, the second of them fifty times as heavy, that turns at 2 rad/s from where its cranks
-/// stand across by an angle [rad]; all is turned by another.
+/// A weightless parallelogram of cranks of 1 m, the second of them fifty times as heavy, that turns at 2
+/// rad/s from where its cranks stand across by an angle [rad]; all is turned by another.
 fn turning_parallelogram(tolerance: f64, across: f64, turned: f64) -> (World, BodyId) {
     const SPIN: f64 = 2.0;
     let mut shop = Workshop::weightless(tolerance);
@@ -239,7 +239,8 @@ fn a_parallelogram_turns_on_through_its_dead_points_whatever_the_tolerance() {
     }
 }
 
-/// Three wheels on one coupling rod under gravity, which turn from a crank angle [rad] on; all is turned by another, and shifted.
+/// Three wheels on one coupling rod under gravity, which turn from a crank angle [rad] on; all is turned by
+/// another, and shifted.
 fn coupled_wheels(tolerance: f64, [crank, turned]: [f64; 2], shift: DVec2) -> (Workshop, BodyId) {
     const SPIN: f64 = 3.0;
     let turn = |v: DVec2| DVec2::from_angle(turned).rotate(v);

@@ -118,8 +118,8 @@ fn two_needles_that_meet_point_to_point_keep_energy_and_momentum() {
     within("needles point to point: energy [J]", world.energy().kinetic - 1.0, 1e-13);
 }
 
-/// Where a block of 1 m comes to that falls for a time [s] in a channel between walls, wider than itself by a clearance [m], and how
-/// far that is off [m]. All is turned by an angle [rad] about the origin and shifted.
+/// Where a block of 1 m comes to that falls for a time [s] in a channel between walls, wider than itself by a
+/// clearance [m], and how far that is off [m]. All is turned by an angle [rad] about the origin and shifted.
 fn off_through_channel(
     (tolerance, elasticity): (f64, f64),
     (clearance, height): (f64, f64),
@@ -172,8 +172,9 @@ fn a_block_falls_through_a_channel_as_wide_as_itself() {
 
 #[test]
 fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else() {
-    // A disc falls into a groove with a round bottom, 5e-10 m wider than itself, and bounces there. What opens fires again at its own target,
-    // which in such a fit is a part of its clearance: at that of others it would fire all the time.
+    // A disc falls into a groove with a round bottom, 5e-10 m wider than itself, and bounces there. What
+    // opens fires again at its own target, which in such a fit is a part of its clearance: at that of others
+    // it would fire all the time.
     let (disc, bottom) = (0.06742892346340036, 0.06742892396340036);
     let mut world = world_of(&format!(
         "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 0.6, tolerance = 1e-5 }}\n\
@@ -195,8 +196,9 @@ fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else(
 
 #[test]
 fn discs_that_part_slowly_within_their_target_zone_take_no_steps_of_their_own() {
-    // Three discs run round in a ring one behind the other, each a little faster than the last. Bounds on how they turn do not tell
-    // that they part: each pair fires again and again, and what it is told about that must outlast what the other pair does.
+    // Three discs run round in a ring one behind the other, each a little faster than the last. Bounds on how
+    // they turn do not tell that they part: each pair fires again and again, and what it is told about that
+    // must outlast what the other pair does.
     const TARGET: f64 = 1e-9;
     const RADIUS: f64 = 0.1;
     const PARTING: f64 = 1e-9;

@@ -1,5 +1,5 @@
-//! A light body between a wall and a heavy one that closes on it: it rattles ever faster until it has turned the heavy one
-//! back, in hundreds of impacts within what is no time for anything else.
+//! A light body between a wall and a heavy one that closes on it: it rattles ever faster until it has turned
+//! the heavy one back, in hundreds of impacts within what is no time for anything else.
 
 use super::{impacts, within};
 use halfgap::World;
@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 const LIGHT: f64 = 1.0;
 const HEAVY: f64 = 2.5;
 
-/// A light disc of 1 kg at rest between a wall and a heavy one that closes on it with 1 m/s. Far away a body falls, so that the
-/// scene has an acceleration.
+/// A light disc of 1 kg at rest between a wall and a heavy one that closes on it with 1 m/s. Far away a body
+/// falls, so that the scene has an acceleration.
 fn rattle(heavy: f64) -> World {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("wall", block(1.0, 4.0), DVec2::new(-0.5, 0.0));
@@ -23,14 +23,16 @@ fn rattle(heavy: f64) -> World {
     shop.build()
 }
 
-/// Impacts until the heavy disc leaves are the digits of pi where it is 100^k times as heavy (G. Galperin, "Playing pool with
-/// pi", Regular and Chaotic Dynamics 8, 2003): in velocities weighed by the roots of the masses, the two impacts of a round
-/// turn the motion by twice the angle whose tangent is the root of the ratio.
+/// Impacts until the heavy disc leaves are the digits of pi where it is 100^k times as heavy (G. Galperin,
+/// "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003): in velocities weighed by the roots of the
+/// masses, the two impacts of a round turn the motion by twice the angle whose tangent is the root of the
+/// ratio.
 #[test]
 fn a_light_disc_between_a_wall_and_a_heavy_one_counts_the_digits_of_pi() {
     for (heavy, digits) in [(1e4, 314), (1e6, 3141), (1e8, 31415)] {
         let mut world = rattle(heavy);
-        // The heavy disc turns back once and is then as fast as before; the light one, slower, may take its time for the last.
+        // The heavy disc turns back once and is then as fast as before; the light one, slower, may take its
+        // time for the last.
         let count = impacts(&mut world, 20.0);
         assert_eq!(count, digits, "{heavy:e} times as heavy");
         let body = world.find("heavy").expect("it is there");

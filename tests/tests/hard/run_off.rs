@@ -10,8 +10,8 @@ use std::path::Path;
 
 #[test]
 fn a_block_that_slides_off_a_wedge_bounces_off_the_floor() {
-    // Its lower corner comes to the floor where the wedge ends: the contact of the two runs off at the moment of the blow.
-    // Nothing takes energy.
+    // Its lower corner comes to the floor where the wedge ends: the contact of the two runs off at the moment
+    // of the blow. Nothing takes energy.
     for angle in [1.0_f64, 1.1, 1.3] {
         let mut shop = Workshop::new(1e-8);
         shop.fixed("floor", block(8.0, 0.2), DVec2::new(0.0, -0.1));
@@ -28,8 +28,9 @@ fn a_block_that_slides_off_a_wedge_bounces_off_the_floor() {
     }
 }
 
-/// A block lies on the rounds of two of its corners when a disc falls on it: it turns over the flat between them, and where a body
-/// may be a millimetre off it stands on one by the time that the other comes down. Both hold it then.
+/// A block lies on the rounds of two of its corners when a disc falls on it: it turns over the flat between
+/// them, and where a body may be a millimetre off it stands on one by the time that the other comes down.
+/// Both hold it then.
 #[test]
 fn a_block_with_round_corners_comes_to_rest_in_few_blows_as_one_with_sharp_ones() {
     for radius in [0.0, 0.1, 0.25, 0.4] {

@@ -1,5 +1,5 @@
-//! Seams between surfaces that are nearly level with each other: what slides over them goes on, for two contacts whose normals
-//! hardly differ hold a body altogether if both are stopped.
+//! Seams between surfaces that are nearly level with each other: what slides over them goes on, for two
+//! contacts whose normals hardly differ hold a body altogether if both are stopped.
 
 use super::within;
 use halfgap::geometry::DVec2;
@@ -106,8 +106,8 @@ fn a_block_slides_over_crates_that_stand_side_by_side() {
     }
 }
 
-/// A block slides from a fixed table onto carts beside it, all as high as the table: each stands its gap above the floor, as the
-/// block does above the table, so that its corner comes at the height of theirs.
+/// A block slides from a fixed table onto carts beside it, all as high as the table: each stands its gap
+/// above the floor, as the block does above the table, so that its corner comes at the height of theirs.
 #[test]
 fn a_block_slides_from_a_table_onto_carts_of_the_same_height() {
     for (tolerance, way, room) in [(1e-6, 1.0, 0.0), (1e-8, -1.0, 0.0), (1e-8, 1.0, 0.1), (1e-10, -1.0, 0.1)]
@@ -128,8 +128,8 @@ fn a_block_slides_from_a_table_onto_carts_of_the_same_height() {
     }
 }
 
-/// Two blocks lie side by side, a third across both. It hops by what counts as contact, and touches both by corners whose normals
-/// hardly differ: to stop them all would stop it.
+/// Two blocks lie side by side, a third across both. It hops by what counts as contact, and touches both by
+/// corners whose normals hardly differ: to stop them all would stop it.
 #[test]
 fn a_block_that_hops_a_little_goes_on_to_slide_over_two_that_hardly_differ_in_slope() {
     for angle in [8e-5, -8e-5, 1e-5, -1e-3] {

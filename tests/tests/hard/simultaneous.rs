@@ -5,8 +5,8 @@ use halfgap::geometry::DVec2;
 use halfgap::{BodyId, BodyState, ImpactLaw, ToleranceOverrides, WorldBuilder, WorldSettings};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 
-/// A block that falls with a tilt such that one corner is by a length [m] higher than the other; rows of its first impact,
-/// and its spin [rad/s] after it.
+/// A block that falls with a tilt such that one corner is by a length [m] higher than the other; rows of its
+/// first impact, and its spin [rad/s] after it.
 fn land_tilted(higher: f64) -> (usize, f64) {
     let mut shop = Workshop::new(1e-8);
     let overrides = ToleranceOverrides { target_gap: Some(1e-6), ..ToleranceOverrides::default() };
@@ -147,7 +147,8 @@ fn a_symmetric_fall_into_a_wedge_stays_symmetric() {
 
 #[test]
 fn elastic_discs_that_follow_each_other_within_the_zone_of_a_wall_lose_nothing() {
-    // The first comes back from the wall, is sent there again by the second before it has left the zone, and comes back once more.
+    // The first comes back from the wall, is sent there again by the second before it has left the zone, and
+    // comes back once more.
     for tolerance in [1e-2, 1e-3, 1e-6, 1e-8, 1e-10] {
         for law in [ImpactLaw::Hybrid, ImpactLaw::Simultaneous] {
             let gap = 1.5e-3 * tolerance;

@@ -1,5 +1,5 @@
-//! Bodies so light that what slows them acts at once: their motion is slow, but an explicit method would have to follow what
-//! decays within a microsecond. Each case counts the steps.
+//! Bodies so light that what slows them acts at once: their motion is slow, but an explicit method would have
+//! to follow what decays within a microsecond. Each case counts the steps.
 
 use super::within;
 use halfgap::force::{Dashpot, Spring};
@@ -57,8 +57,8 @@ fn a_light_block_is_driven_through_syrup_along_a_floor() {
 
 #[test]
 fn a_pendulum_in_syrup_creeps_down() {
-    // Without inertia k l^2 a' = -g l sin a, so tan(a/2) decays at g/(k l); inertia changes the rate by about g/(k^2 l) of
-    // itself, and the start from rest shifts the time by 1/k: 1e-11 both.
+    // Without inertia k l^2 a' = -g l sin a, so tan(a/2) decays at g/(k l); inertia changes the rate by about
+    // g/(k^2 l) of itself, and the start from rest shifts the time by 1/k: 1e-11 both.
     let (length, mass, rate, time, start): (f64, f64, f64, f64, f64) = (1.0, 1e-3, 1e6, 1e5, 2.0);
     let mut shop = Workshop::new(1e-9);
     let bob =
@@ -77,9 +77,9 @@ fn a_pendulum_in_syrup_creeps_down() {
 
 #[test]
 fn a_light_body_on_a_stiff_spring_follows_a_heavy_one_where_rounding_is_told() {
-    // m x'' + c x' + k (x - place) = 0 with m = 1.6 mg: beside the decay at 1e6 a second, forces are so steep that what
-    // rounding of the places makes of the velocity is more than the tolerance allows, however short a step of an explicit
-    // method.
+    // m x'' + c x' + k (x - place) = 0 with m = 1.6 mg: beside the decay at 1e6 a second, forces are so steep
+    // that what rounding of the places makes of the velocity is more than the tolerance allows, however short
+    // a step of an explicit method.
     let (damping, stiffness, length) = (1.9, 9000.0, 1.9);
     let mut shop = Workshop::weightless(3e-12);
     let moving = BodyState { angular_velocity: -2.0, ..thrown(1.6, -0.5, DVec2::new(-1.8, -0.4)) };
@@ -99,8 +99,8 @@ fn a_light_body_on_a_stiff_spring_follows_a_heavy_one_where_rounding_is_told() {
 
 #[test]
 fn a_spring_far_from_the_origin_is_not_followed_through_rounding() {
-    // Places are known to 6e-11 m, of which the spring makes 2e-5 m/s^2: more than the tolerance allows in 3e-7 s, but not more
-    // than that place is worth in the 2e-3 s in which the spring acts.
+    // Places are known to 6e-11 m, of which the spring makes 2e-5 m/s^2: more than the tolerance allows in
+    // 3e-7 s, but not more than that place is worth in the 2e-3 s in which the spring acts.
     let (mass, rate, far, stretch, time) = (0.25, 600.0, 3e5, 0.01, 1.0);
     let length = 5.0;
     let mut shop = Workshop::weightless(1e-12);
@@ -120,7 +120,8 @@ fn a_spring_far_from_the_origin_is_not_followed_through_rounding() {
 
 #[test]
 fn a_dot_whose_spin_has_decayed_does_not_spin_between_steps() {
-    // The spin decays at 2e6 a second; then nothing shows that an explicit step that is fine for the spring is too long.
+    // The spin decays at 2e6 a second; then nothing shows that an explicit step that is fine for the spring
+    // is too long.
     let (mass, radius, damping, spin) = (1.5, 1e-3, 1.5, 0.4);
     let mut shop = Workshop::weightless(1e-11);
     let turning = BodyState { angular_velocity: spin, ..thrown(-3.9, 2.9, DVec2::new(2.2, 1.2)) };

@@ -32,7 +32,8 @@ pub struct Box2d {
     pub substeps: i32,
     /// Segments for a full circle where an outline has arcs.
     pub segments: usize,
-    /// All lengths are multiplied by this. Its slop of 5 mm and other lengths are built in: at 100, they are a hundredth.
+    /// All lengths are multiplied by this. Its slop of 5 mm and other lengths are built in: at 100, they are
+    /// a hundredth.
     pub scale: f32,
 }
 
@@ -245,8 +246,8 @@ impl Session for Running {
     }
 }
 
-/// The library itself, with its settings for all worlds. It writes a line to standard output wherever a disc meets many segments
-/// at once, which is no fault.
+/// The library itself, with its settings for all worlds. It writes a line to standard output wherever a disc
+/// meets many segments at once, which is no fault.
 fn foundation() -> Result<&'static Foundation, EngineError> {
     if let Some(foundation) = Foundation::get() {
         return Ok(foundation);

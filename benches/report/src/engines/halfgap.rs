@@ -76,12 +76,8 @@ fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
     })
 }
 
-fn id(body: usize) -> BodyId {
-    BodyId(u32::try_from(body).unwrap_or(u32::MAX))
-}
-
 fn anchor(end: &End) -> Anchor {
-    Anchor { body: end.body.map_or(BodyId::WORLD, id), point: end.point }
+    Anchor { body: end.body.map_or(BodyId::WORLD, BodyId::from_index), point: end.point }
 }
 
 fn connector_kind(connector: &Connector) -> Result<ConnectorKind, EngineError> {

@@ -15,8 +15,8 @@ const STOCK_STEP: f64 = 1.0 / 60.0;
 pub enum Tuning {
     /// All else as it comes.
     Stock,
-    /// No slop, no recycled contacts; contacts looked for ahead and their softness in proportion to the step, so that they
-    /// vanish with it.
+    /// No slop, no recycled contacts; contacts looked for ahead and their softness in proportion to the step,
+    /// so that they vanish with it.
     Accurate,
 }
 

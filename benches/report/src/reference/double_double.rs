@@ -1,7 +1,7 @@
 //! Numbers of 31 digits: the unevaluated sum of two doubles.
 //!
-//! T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971), 224-242; the
-//! product's error is taken from a fused multiply-add.
+//! T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971),
+//! 224-242; the product's error is taken from a fused multiply-add.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

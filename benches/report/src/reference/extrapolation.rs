@@ -1,8 +1,9 @@
 //! Integration of `y' = f(y)` by extrapolated midpoint steps.
 //!
-//! The modified midpoint rule with 2, 4, ..., 16 substeps has an error in even powers of the substep, so extrapolation in its
-//! square gives order 16. W. B. Gragg, "On extrapolation algorithms for ordinary initial value problems", SIAM J. Numer.
-//! Anal. 2 (1965), 384-403; E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", II.9.
+//! The modified midpoint rule with 2, 4, ..., 16 substeps has an error in even powers of the substep, so
+//! extrapolation in its square gives order 16. W. B. Gragg, "On extrapolation algorithms for ordinary initial
+//! value problems", SIAM J. Numer. Anal. 2 (1965), 384-403; E. Hairer, S. P. Nørsett, G. Wanner, "Solving
+//! Ordinary Differential Equations I", II.9.
 
 /// Columns of the extrapolation table.
 const COLUMNS: usize = 8;

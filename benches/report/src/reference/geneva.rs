@@ -1,16 +1,18 @@
 //! A Geneva drive without friction: when it dwells, when it indexes, and how far it has turned at any time.
 //!
-//! Crank and wheel turn about pivots at a distance c. The pin, a disc at the crank's radius r, has a play of d to either wall of
-//! a slot. Seen from the wheel's pivot it is at P(phi) = (c - r cos phi, r sin phi), with the crank at phi from the line of
-//! pivots. While it touches a wall, the slot is at psi = arg P -+ asin(d/|P|), the sign minus for the wall ahead of it and plus for
-//! that behind; without play this is the psi = atan(sin phi/(c/r - cos phi)) of the textbooks. From y = +-d, with y the pin's
-//! distance from the middle of the slot and x that along it, psi' = r cos(phi + psi)/x.
+//! Crank and wheel turn about pivots at a distance c. The pin, a disc at the crank's radius r, has a play of
+//! d to either wall of a slot. Seen from the wheel's pivot it is at P(phi) = (c - r cos phi, r sin phi), with
+//! the crank at phi from the line of pivots. While it touches a wall, the slot is at psi = arg P -+
+//! asin(d/|P|), the sign minus for the wall ahead of it and plus for that behind; without play this is the
+//! psi = atan(sin phi/(c/r - cos phi)) of the textbooks. From y = +-d, with y the pin's distance from the
+//! middle of the slot and x that along it, psi' = r cos(phi + psi)/x.
 //!
-//! With r + d = c sin(pi/n) the crank is square to the slot where pin and slot meet and where they part: the wheel starts from
-//! rest without a shock and is left at rest, with the next slot in place. In between, energy gives the crank's rate and quadrature the
-//! time. The wall ahead is let go where psi' is largest, for there the wheel would have to be pulled on; both bodies then
-//! turn evenly until the wall behind catches the pin, in an impact without elasticity. That costs the same part of the
-//! energy at every index, after which the crank goes through the dwell at an even, lower rate.
+//! With r + d = c sin(pi/n) the crank is square to the slot where pin and slot meet and where they part: the
+//! wheel starts from rest without a shock and is left at rest, with the next slot in place. In between,
+//! energy gives the crank's rate and quadrature the time. The wall ahead is let go where psi' is largest, for
+//! there the wheel would have to be pulled on; both bodies then turn evenly until the wall behind catches the
+//! pin, in an impact without elasticity. That costs the same part of the energy at every index, after which
+//! the crank goes through the dwell at an even, lower rate.
 
 use super::one_freedom::OneFreedom;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

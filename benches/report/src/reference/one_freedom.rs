@@ -1,7 +1,8 @@
 //! Mechanisms with one degree of freedom that never turn back.
 //!
-//! Energy gives the rate of the coordinate as a function of the coordinate alone; the time is then an integral, taken by
-//! Gauss's rule on pieces that end where the rate has kinks, and solved for the coordinate by Newton's method.
+//! Energy gives the rate of the coordinate as a function of the coordinate alone; the time is then an
+//! integral, taken by Gauss's rule on pieces that end where the rate has kinks, and solved for the coordinate
+//! by Newton's method.
 
 /// Points of the rule on each piece.
 const POINTS: usize = 12;

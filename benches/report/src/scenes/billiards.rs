@@ -1,7 +1,8 @@
 //! Billiards of one disc, fully elastic: in a square, about a round scatterer (Sinai), in a stadium (Bunimovich).
 //!
-//! The square is unfolded in closed form. The two others magnify errors by a factor at each bounce off a curve, so their
-//! answers are traced in numbers of 31 digits; how much a nudge of the start grows tells what they are good to.
+//! The square is unfolded in closed form. The two others magnify errors by a factor at each bounce off a
+//! curve, so their answers are traced in numbers of 31 digits; how much a nudge of the start grows tells what
+//! they are good to.
 
 use crate::reference::double_double::Double;
 use crate::scene::{Body, Check, Scene, Shape};

@@ -1,5 +1,5 @@
-//! The `exact__*` scenes of the tests without friction, whose states are known to 1e-13: closed forms, or integrated far
-//! tighter in minimal coordinates.
+//! The `exact__*` scenes of the tests without friction, whose states are known to 1e-13: closed forms, or
+//! integrated far tighter in minimal coordinates.
 
 use crate::scene::{Body, Check, Connector, End, Inertia, Scene, Shape};
 use glam::DVec2;

@@ -1,7 +1,8 @@
 //! A Geneva drive: the pin of a crank enters a slot of a wheel, turns it by a sixth, and leaves it at rest.
 //!
-//! The slots are true edges, a little wider than the pin, and end where the crank is square to them. Nothing locks the wheel in
-//! its dwell: it rests because it was left at rest. How the answer is known is said with the reference.
+//! The slots are true edges, a little wider than the pin, and end where the crank is square to them. Nothing
+//! locks the wheel in its dwell: it rests because it was left at rest. How the answer is known is said with
+//! the reference.
 
 use crate::reference::geneva::Geneva;
 use crate::scene::{Body, Check, Connector, End, Inertia, Scene, Shape};
@@ -74,8 +75,9 @@ pub(super) fn scene() -> Scene {
         .with_reference("closed form of the slot's angle, energy and quadrature", error)
 }
 
-/// Round the wheel: along each slot and its rim, then straight to the next. The pin touches nothing but the slots' walls, so that
-/// straight lines will do for the rest, and engines of segments have the wheel as it is.
+/// Round the wheel: along each slot and its rim, then straight to the next. The pin touches nothing but the
+/// slots' walls, so that straight lines will do for the rest, and engines of segments have the wheel as it
+/// is.
 fn outline(drive: &Geneva) -> PathSpec {
     let half = PIN + drive.play;
     // Where the crank is square to the slot.

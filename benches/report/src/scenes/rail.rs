@@ -1,7 +1,8 @@
 //! A bead on a cycloid, the curve of quickest descent, on which every swing takes the same time.
 //!
-//! The arc length from the lowest point swings like a spring: `s = s0 cos(w t)` with `w^2 = g / 4a`. The rail is the cubic
-//! spline through points of the cycloid; with `h` between them it is off by `h^4 / 384` times the fourth derivative.
+//! The arc length from the lowest point swings like a spring: `s = s0 cos(w t)` with `w^2 = g / 4a`. The rail
+//! is the cubic spline through points of the cycloid; with `h` between them it is off by `h^4 / 384` times
+//! the fourth derivative.
 
 use crate::scene::{Body, Check, Connector, Scene};
 use glam::DVec2;

@@ -26,8 +26,8 @@ impl BoxTree {
         self.boxes[0]
     }
 
-    /// Visits pieces from near to far until the squared distance [m^2] that `visit` returns, the least it has found so far,
-    /// rules out the rest.
+    /// Visits pieces from near to far until the squared distance [m^2] that `visit` returns, the least it has
+    /// found so far, rules out the rest.
     #[inline]
     pub(super) fn visit_nearest(&self, point: DVec2, visit: &mut impl FnMut(usize) -> f64) {
         let mut least = f64::INFINITY;

@@ -3,7 +3,8 @@
 use super::path::Foot;
 use glam::DVec2;
 
-/// A step along a curve is sound as long as half of what the curve turns by, bent as it is where it starts, is less [rad].
+/// A step along a curve is sound as long as half of what the curve turns by, bent as it is where it starts,
+/// is less [rad].
 const SOUND_TURN: f64 = 0.25;
 /// Later terms of a series are trusted as long as they change the step by less than this part.
 const SOUND_CORRECTION: f64 = 0.5;
@@ -80,11 +81,12 @@ impl Jet {
 
     /// The step to the parameter at which a point is nearest; `None` if the distance is not convex here, or no number.
     ///
-    /// With e the way to the point and t1, t2, t3 slope, bend and twist, half of the squared distance has the derivative
-    /// f0 + f1 s + f2 s^2 + f3 s^3 + .. with f0 = -e.t1, f1 = t1.t1 - 2 e.t2, f2 = 3 (t1.t2 - e.t3) and
-    /// f3 = 2 t2.t2 + 4 t1.t3. The step s = -f0 (f1^2 - f0 f2)/(f1^3 - 2 f0 f1 f2 + f0^2 f3) is Householder's, of order 4 and
-    /// with a single division. Where the series says little, since the curve, bent as it is here, turns much along the step or
-    /// the later terms are large, Newton's step -f0/f1 is taken, cut.
+    /// With e the way to the point and t1, t2, t3 slope, bend and twist, half of the squared distance has the
+    /// derivative f0 + f1 s + f2 s^2 + f3 s^3 + .. with f0 = -e.t1, f1 = t1.t1 - 2 e.t2, f2 = 3 (t1.t2 -
+    /// e.t3) and f3 = 2 t2.t2 + 4 t1.t3. The step s = -f0 (f1^2 - f0 f2)/(f1^3 - 2 f0 f1 f2 + f0^2 f3) is
+    /// Householder's, of order 4 and with a single division. Where the series says little, since the curve,
+    /// bent as it is here, turns much along the step or the later terms are large, Newton's step -f0/f1 is
+    /// taken, cut.
     ///
     /// Source: A. Householder, "The Numerical Treatment of a Single Nonlinear Equation", 1970, section 4.4.
     #[inline]

@@ -116,8 +116,8 @@ impl EdgePath {
         RailPlace::new(foot, arc_length)
     }
 
-    /// The foot of a point on all of the path, and where its piece starts [m]. Beyond a corner that is the corner itself, unless it is
-    /// so near that rounding would say in which direction the point lies.
+    /// The foot of a point on all of the path, and where its piece starts [m]. Beyond a corner that is the
+    /// corner itself, unless it is so near that rounding would say in which direction the point lies.
     fn nearest_foot(&self, point: DVec2) -> (Foot, f64) {
         let index = self.nearest_piece(point);
         let piece = &self.pieces[index];
@@ -159,8 +159,9 @@ impl EdgePath {
         best
     }
 
-    /// Follows the path from the hint to where the point lies on it. What has gone round more than half of an arc since the hint
-    /// seems to have gone the other way: if that leads off the path, it is looked for on all of it.
+    /// Follows the path from the hint to where the point lies on it. What has gone round more than half of an
+    /// arc since the hint seems to have gone the other way: if that leads off the path, it is looked for on
+    /// all of it.
     fn follow(&self, point: DVec2, hint: &RailHint) -> (usize, f64) {
         let (piece, along) = self.walk(point, hint);
         let off = self.off(piece, point);

@@ -78,7 +78,8 @@ impl EdgePiece {
         }
     }
 
-    /// Place along the piece's line or circle that is nearest to a point; of its laps, that nearest to the place `near`.
+    /// Place along the piece's line or circle that is nearest to a point; of its laps, that nearest to the
+    /// place `near`.
     pub(super) fn along(&self, point: DVec2, near: f64) -> f64 {
         match &self.curve {
             PieceCurve::Straight { from, direction } => direction.dot(point - *from),

@@ -4,9 +4,9 @@
 //! a rope and a rail stop only keep their gap from closing. Body a is the primary one, body b the normal one; the force
 //! on a acts along the row's normal.
 //!
-//! `rail` has the rows of rails, on paths made of lines and arcs (`edge_path`, of pieces as in `edge_piece`) or on a
-//! `spline` of `cubic` pieces (with `spline_nearest` and `spline_length`); `box_tree` finds which piece is near. `align` is what a scene
-//! does before its start, `rope` tells when a rope goes taut.
+//! `rail` has the rows of rails, on paths made of lines and arcs (`edge_path`, of pieces as in `edge_piece`)
+//! or on a `spline` of `cubic` pieces (with `spline_nearest` and `spline_length`); `box_tree` finds which
+//! piece is near. `align` is what a scene does before its start, `rope` tells when a rope goes taut.
 
 mod align;
 mod box_tree;
@@ -307,11 +307,12 @@ impl Connector {
         }
     }
 
-    /// How far off it is [m]: the gap of a bilateral connector, of a pin the distance of its points; by how much the others are beyond
-    /// their limit.
+    /// How far off it is [m]: the gap of a bilateral connector, of a pin the distance of its points; by how
+    /// much the others are beyond their limit.
     ///
-    /// `hint` is where a rail or a stop has seen its point last, as in [`Connector::measure_near`]. A rail's point that has been seen may
-    /// be on any continuation of the path; otherwise, as at a start, only where the nearest place is an end.
+    /// `hint` is where a rail or a stop has seen its point last, as in [`Connector::measure_near`]. A rail's
+    /// point that has been seen may be on any continuation of the path; otherwise, as at a start, only where
+    /// the nearest place is an end.
     #[must_use]
     pub fn error(&self, a: &Moving, b: &Moving, hint: Option<&RailHint>) -> f64 {
         if let (ConnectorKind::Rail { a: on_a, path }, Some(_)) = (&self.kind, hint) {

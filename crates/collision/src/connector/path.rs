@@ -1,7 +1,7 @@
 //! The path of a rail, fixed in the world: edges joined to each other, or a spline through points.
 //!
-//! Arc length counts from the path's first point. An open path goes on straight beyond its ends, so that every point has
-//! a nearest one.
+//! Arc length counts from the path's first point. An open path goes on straight beyond its ends, so that
+//! every point has a nearest one.
 
 use super::edge_path::EdgePath;
 use super::error::RailError;
@@ -89,8 +89,8 @@ pub struct SplineJoint {
 impl RailPath {
     /// The path of lines and arcs that starts at a point [m]; closed if it ends there.
     ///
-    /// End points and arc radii may be off by 1e-6 of the path's size and are then made exact. An arc that ends where it
-    /// starts is a full circle.
+    /// End points and arc radii may be off by 1e-6 of the path's size and are then made exact. An arc that
+    /// ends where it starts is a full circle.
     ///
     /// # Errors
     /// No edges, numbers that are not finite, or an edge that cannot be built.
@@ -150,8 +150,8 @@ impl RailPath {
         }
     }
 
-    /// The next joint of a spline along a velocity [m/s], from the place of a hint. One that is all but reached counts as
-    /// passed. `None` beyond an open end, and on a path of edges.
+    /// The next joint of a spline along a velocity [m/s], from the place of a hint. One that is all but
+    /// reached counts as passed. `None` beyond an open end, and on a path of edges.
     #[must_use]
     pub fn joint_ahead(&self, hint: &RailHint, velocity: DVec2) -> Option<SplineJoint> {
         match &self.curve {
@@ -193,7 +193,8 @@ impl RailPath {
         }
     }
 
-    /// The place at an arc length [m]: beyond the ends of an open path on its continuation, on a closed one in another lap.
+    /// The place at an arc length [m]: beyond the ends of an open path on its continuation, on a closed one
+    /// in another lap.
     #[must_use]
     pub fn place_at(&self, arc_length: f64) -> RailPlace {
         match &self.curve {
@@ -292,8 +293,9 @@ impl Foot {
 }
 
 impl RailHint {
-    /// The hint to stay on the piece, continued as the circle or straight line that it is, although another may be nearer:
-    /// so that nothing jumps before an event at the joint is handled. On a spline, where nothing jumps, it is as before.
+    /// The hint to stay on the piece, continued as the circle or straight line that it is, although another
+    /// may be nearer: so that nothing jumps before an event at the joint is handled. On a spline, where
+    /// nothing jumps, it is as before.
     #[must_use]
     pub fn staying(self) -> Self {
         Self { stays: true, ..self }

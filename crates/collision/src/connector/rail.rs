@@ -1,7 +1,7 @@
 //! The rows of a point on a rail: across the path, and along it up to a stop.
 //!
-//! With tangent T, left normal n, curvature k (positive to the left) at the nearest point and u, u' the point's velocity
-//! and acceleration, differentiating the foot of the point gives
+//! With tangent T, left normal n, curvature k (positive to the left) at the nearest point and u, u' the
+//! point's velocity and acceleration, differentiating the foot of the point gives
 //!
 //! * across: g = n.(c - foot), g' = n.u, g'' = n.u' - k s' (T.u), n' = -k s' T;
 //! * along: s' = T.u/(1 - k g), s'' = (T.u' + 2 k s' g' + (dk/ds) s'^2 g)/(1 - k g), T' = k s' n.

@@ -1,8 +1,9 @@
 //! When does a slack rope go taut?
 //!
-//! A rope is the inside of a circle: the point of body a within a hollow of the rope's length about the point of body b.
-//! So its gap is that of a vertex in a concave arc, with target 0, and the closed forms and the march of feature pairs
-//! serve. At the centre of the circle the gap has no normal; the march bounds length^2 - |d|^2 there instead.
+//! A rope is the inside of a circle: the point of body a within a hollow of the rope's length about the point
+//! of body b. So its gap is that of a vertex in a concave arc, with target 0, and the closed forms and the
+//! march of feature pairs serve. At the centre of the circle the gap has no normal; the march bounds
+//! length^2 - |d|^2 there instead.
 
 use crate::closed::quadratic;
 use crate::first_contact::SearchSettings;
@@ -31,11 +32,11 @@ pub enum RopeSearch {
     NoneBefore(f64),
 }
 
-/// Goes on with a search, over [`from`, `span`) [s], from a time before which the rope is known not to go taut; bodies are
-/// given as motion and the offset [s] in it at which the search's time is 0.
+/// Goes on with a search, over [`from`, `span`) [s], from a time before which the rope is known not to go
+/// taut; bodies are given as motion and the offset [s] in it at which the search's time is 0.
 ///
-/// A rope at its length that slackens does not count until it comes back. May pause before `span`, with proof for the part
-/// it has searched; every call makes progress.
+/// A rope at its length that slackens does not count until it comes back. May pause before `span`, with proof
+/// for the part it has searched; every call makes progress.
 #[must_use]
 pub fn rope_contact<A: Motion, B: Motion>(
     rope: &Rope,

@@ -3,9 +3,9 @@
 //! With arms U1, U2 from the centres of mass to the two points, u their relative velocity and
 //! p = n.(-wA^2 U1 + wB^2 U2):
 //!
-//! * a direction n that turns at w (0 in the world, else a body's angular velocity): g = n.(cA - cB),
-//!   gamma = p + 2 w (n_perp.u) - w^2 g, n' = w n_perp. On the body that carries the direction the force acts at the foot
-//!   of the other body's point; u is taken there too;
+//! * a direction n that turns at w (0 in the world, else a body's angular velocity): g = n.(cA - cB), gamma =
+//!   p + 2 w (n_perp.u) - w^2 g, n' = w n_perp. On the body that carries the direction the force acts at the
+//!   foot of the other body's point; u is taken there too;
 //! * two centres: d = cA - cB, n = s d/|d|, gamma = p + s (|u|^2 - (n.u)^2)/|d|, n' = s (u - (n.u) n)/|d|.
 
 use crate::kinematics::GapKinematics;
@@ -83,8 +83,8 @@ impl Ends {
         self.row(gap, normal, across * turn, gamma)
     }
 
-    /// The row between two centres; `sign` is +1 if it measures how much farther than `length` [m] they are apart, -1 if
-    /// how much nearer. Where they coincide every normal is right, and +x is taken.
+    /// The row between two centres; `sign` is +1 if it measures how much farther than `length` [m] they are
+    /// apart, -1 if how much nearer. Where they coincide every normal is right, and +x is taken.
     #[inline]
     pub(super) fn between(&self, length: f64, sign: f64) -> ConnectorSample {
         let d = self.points[0] - self.points[1];

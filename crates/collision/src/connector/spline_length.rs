@@ -1,7 +1,8 @@
 //! Arc length along a spline, by Gauss-Legendre quadrature over spans that turn little.
 //!
-//! The speed |Q'| of a span is smooth: its nearest singularity lies some eight widths away, so that eight nodes give the
-//! last digit. Nodes and weights: Abramowitz & Stegun, "Handbook of Mathematical Functions", table 25.4.
+//! The speed |Q'| of a span is smooth: its nearest singularity lies some eight widths away, so that eight
+//! nodes give the last digit. Nodes and weights: Abramowitz & Stegun, "Handbook of Mathematical Functions",
+//! table 25.4.
 
 use super::cubic::Cubic;
 use super::path::RailPlace;

@@ -1,10 +1,10 @@
 //! The point of a spline nearest to a given one.
 //!
-//! With E = P - Q(u), half of the squared distance has the derivative F = -E.Q' and F' = |Q'|^2 - E.Q''. Near a hint steps of
-//! Newton's method, carried to the order of 4, find the root of F. Without one, spans are searched from near to far: a curve
-//! leaves its chord by at most |Q''| w^2/8 over a width w, which rules out most; where |Q'|^2 > |E| |Q''| on all of a span the
-//! distance has one minimum there, found by Newton's method in a bracket; what allows neither is split. From the best of
-//! these it goes on as from a hint.
+//! With E = P - Q(u), half of the squared distance has the derivative F = -E.Q' and F' = |Q'|^2 - E.Q''. Near
+//! a hint steps of Newton's method, carried to the order of 4, find the root of F. Without one, spans are
+//! searched from near to far: a curve leaves its chord by at most |Q''| w^2/8 over a width w, which rules out
+//! most; where |Q'|^2 > |E| |Q''| on all of a span the distance has one minimum there, found by Newton's
+//! method in a bracket; what allows neither is split. From the best of these it goes on as from a hint.
 
 use super::cubic::Cubic;
 use super::path::{Foot, RailHint};
@@ -15,7 +15,8 @@ use glam::DVec2;
 const SETTLED: f64 = 1e-4;
 /// The same for a step over a joint, where the curve goes on as another cubic or straight.
 const SETTLED_BEYOND: f64 = 1e-8;
-/// A bracketed search ends with a step below this part of a span: enough to tell minima apart and to start Newton's method.
+/// A bracketed search ends with a step below this part of a span: enough to tell minima apart and to start
+/// Newton's method.
 const NEAR: f64 = 1e-5;
 /// Steps of Newton's method from a hint before the whole spline is searched: from nearby it takes two.
 const STEPS_FROM_HINT: u32 = 12;
@@ -77,8 +78,8 @@ impl Spline {
         self.spans[self.first_span[piece]].range[1]
     }
 
-    /// The parameter in the piece in which it lies or, beyond the ends of an open spline, in the last one before; `None` if
-    /// that is more than a lap away.
+    /// The parameter in the piece in which it lies or, beyond the ends of an open spline, in the last one
+    /// before; `None` if that is more than a lap away.
     #[inline]
     fn carried(&self, mut piece: usize, mut u: f64) -> Option<(usize, f64)> {
         let last = self.pieces.len() - 1;

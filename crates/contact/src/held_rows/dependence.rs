@@ -1,27 +1,29 @@
-//! Which rows depend on earlier ones, where the difference of squares does not tell, and which of them share what they hold.
+//! Which rows depend on earlier ones, where the difference of squares does not tell, and which of them share
+//! what they hold.
 //!
-//! What is left of a row between a light and a heavy body is little, in the measure of the masses, once other rows hold the
-//! light one: no more than the part of the heavy one. It holds that one all the same. So what is left is looked at body by
-//! body, too, against what all rows of the combination do to it.
+//! What is left of a row between a light and a heavy body is little, in the measure of the masses, once other
+//! rows hold the light one: no more than the part of the heavy one. It holds that one all the same. So what
+//! is left is looked at body by body, too, against what all rows of the combination do to it.
 
 use super::{HeldRows, NONE};
 
-/// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what depends, far less
-/// than what does not.
+/// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what
+/// depends, far less than what does not.
 const SOFTNESS: f64 = 1e-6;
 /// A row depends on another that makes up more than this part of its square.
 const SHARE: f64 = 1e-12;
 
 impl HeldRows {
-    /// From now on the given rows, of those that the last [`factorize`](Self::factorize) has found to depend on each other,
-    /// share what they hold together instead of one of them taking all: none counts as dependent, and their forces are nearly
-    /// the least that do, weighed by the squares of the rows. The others stay as stiff as they are: between a heavy and a light
-    /// body a row has far less left of its square than what shares may lack.
+    /// From now on the given rows, of those that the last [`factorize`](Self::factorize) has found to depend
+    /// on each other, share what they hold together instead of one of them taking all: none counts as
+    /// dependent, and their forces are nearly the least that do, weighed by the squares of the rows. The
+    /// others stay as stiff as they are: between a heavy and a light body a row has far less left of its
+    /// square than what shares may lack.
     ///
-    /// Their squares are raised a little, and what forces then lack is made good step by step.
-    /// So which rows depend on which may change on the way without a jump, and a motion that departs from what they agree
-    /// on by rounding has no forces that come from their disagreement alone. One that departs by more than some 1e-7 of a length has:
-    /// who is farther off moves the bodies onto the rows first.
+    /// Their squares are raised a little, and what forces then lack is made good step by step. So which rows
+    /// depend on which may change on the way without a jump, and a motion that departs from what they agree
+    /// on by rounding has no forces that come from their disagreement alone. One that departs by more than
+    /// some 1e-7 of a length has: who is farther off moves the bodies onto the rows first.
     pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
         for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
             *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
@@ -50,9 +52,9 @@ impl HeldRows {
         }
     }
 
-    /// The least part of its square that a row kept in the last [`factorize`](Self::factorize) once earlier ones were held, so many
-    /// rows left aside that kept even less; 1 if there are no more. Rows of loops depend on each other for a moment where it comes
-    /// to nothing.
+    /// The least part of its square that a row kept in the last [`factorize`](Self::factorize) once earlier
+    /// ones were held, so many rows left aside that kept even less; 1 if there are no more. Rows of loops
+    /// depend on each other for a moment where it comes to nothing.
     #[must_use]
     pub fn kept_beyond(&mut self, aside: usize) -> f64 {
         if aside >= self.len() {
@@ -63,9 +65,9 @@ impl HeldRows {
         *self.work.select_nth_unstable_by(aside, f64::total_cmp).1
     }
 
-    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k Ĵ_k|², and what
-    /// squares are raised by times x_k². That has the rounding of the difference, squared, where the difference of squares
-    /// has that of the squares, times what earlier small pivots make of it.
+    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k
+    /// Ĵ_k|², and what squares are raised by times x_k². That has the rounding of the difference, squared,
+    /// where the difference of squares has that of the squares, times what earlier small pivots make of it.
     pub(super) fn measure_rest(&mut self, place: usize) -> f64 {
         let first = self.first[place];
         self.work[..first].fill(0.0);
@@ -87,8 +89,8 @@ impl HeldRows {
         rest + raised.map(|(k, raise)| self.work[k] * self.work[k] * raise * self.square(k)).sum::<f64>()
     }
 
-    /// True if what [`measure_rest`](Self::measure_rest) has left of a row moves any body by more than the part up to which
-    /// rows are dependent, of what the rows of the combination do to it.
+    /// True if what [`measure_rest`](Self::measure_rest) has left of a row moves any body by more than the
+    /// part up to which rows are dependent, of what the rows of the combination do to it.
     pub(super) fn moves_by_itself(&mut self, place: usize) -> bool {
         self.gross.clear();
         self.gross.resize(self.motion.len(), 0.0);

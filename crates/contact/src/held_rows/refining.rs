@@ -1,5 +1,5 @@
-//! What the raised squares of soft rows leave lacking in their forces is made good here, and what rounding of the factor
-//! does where little is left of a row. Which rows are soft, and the factor, are the parent's.
+//! What the raised squares of soft rows leave lacking in their forces is made good here, and what rounding of
+//! the factor does where little is left of a row. Which rows are soft, and the factor, are the parent's.
 
 use super::{HeldRows, NONE};
 use crate::skyline::dot;
@@ -8,9 +8,10 @@ use crate::skyline::dot;
 const MOST_REFINEMENTS: usize = 40;
 /// Forces that do less than this part of what softness makes of them do nothing: rows disagree.
 const NULL: f64 = 1e-7;
-/// They end where so many in a row have gained nothing: have left more than this part of what was left at best, both by the
-/// largest rate and by the raised factor. The rates may grow on the way: of a light disc on a long arm most of a row's square
-/// is its turning, and what is left of that is small long before what is left of the rest.
+/// They end where so many in a row have gained nothing: have left more than this part of what was left at
+/// best, both by the largest rate and by the raised factor. The rates may grow on the way: of a light disc on
+/// a long arm most of a row's square is its turning, and what is left of that is small long before what is
+/// left of the rest.
 const IDLE: u32 = 2;
 const WORTHWHILE: f64 = 0.5;
 
@@ -29,8 +30,9 @@ pub(super) struct Refining {
 }
 
 impl HeldRows {
-    /// Makes good what soft rows lack, by conjugate gradients: the raised factor differs from A in few directions, and each
-    /// takes about a step. What rows that depend on each other disagree in cannot be made good: the best forces are kept.
+    /// Makes good what soft rows lack, by conjugate gradients: the raised factor differs from A in few
+    /// directions, and each takes about a step. What rows that depend on each other disagree in cannot be
+    /// made good: the best forces are kept.
     pub(super) fn refine(&mut self, offset: &[f64], force: &mut [f64], refining: &mut Refining) {
         let Refining { residual, lacking, direction, product, best } = refining;
         for buffer in [&mut *residual, lacking, direction, product, best] {

@@ -1,5 +1,5 @@
-//! Which rows share which bodies, in what order they are eliminated, and where their factor lies: all that does not change
-//! while the same rows are held.
+//! Which rows share which bodies, in what order they are eliminated, and where their factor lies: all that
+//! does not change while the same rows are held.
 
 use super::{HeldRows, NONE};
 use crate::problem::Inertia;
@@ -13,8 +13,8 @@ pub(super) struct Shared {
 }
 
 impl HeldRows {
-    /// Other bodies and rows: which two bodies (index into `inertia`; None: immovable) each row acts on. Orders the rows
-    /// for small fill.
+    /// Other bodies and rows: which two bodies (index into `inertia`; None: immovable) each row acts on.
+    /// Orders the rows for small fill.
     ///
     /// # Panics
     ///

@@ -1,17 +1,14 @@
 //! The complementarity problem of a few rows, solved directly.
 //!
-//! Rounds of a serial law solve a few rows that close on the same bodies, thousands of times in a heap: all are closed,
-//! and mostly that is the answer. Otherwise all wrong rows are exchanged at once, as long as that leaves fewer of them (Portugal, Júdice
-//! and Vicente 1994). A row that nearly depends on those before it is not held, as long as these hold it too. What that does not
-//! end is left to `many_rows`.
+//! Rounds of a serial law solve a few rows that close on the same bodies, thousands of times in a heap: all
+//! are closed, and mostly that is the answer. Otherwise all wrong rows are exchanged at once, as long as that
+//! leaves fewer of them (Portugal, Júdice and Vicente 1994). A row that nearly depends on those before it is
+//! not held, as long as these hold it too. What that does not end is left to `many_rows`.
 
-use crate::settings::Settings;
+use crate::settings::{Settings, WELL};
 
 /// Up to so many rows are few.
 pub(super) const FEW: usize = 8;
-
-/// Part of a row's square that it must have to itself: with less, rounding has a say in the impulses.
-const WELL: f64 = 1e-7;
 
 /// Rounding of an acceleration, in parts of its terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -41,8 +38,8 @@ pub(super) struct FewImpulses {
 }
 
 impl FewRows {
-    /// The impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None` where that is
-    /// not found at once. Gives the rows another scale.
+    /// The impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None`
+    /// where that is not found at once. Gives the rows another scale.
     pub(super) fn solve(&mut self) -> Option<FewImpulses> {
         let length = self.scale()?;
         let scale = self.offset[..self.count].iter().fold(0.0f64, |most, b| most.max(b.abs()));
@@ -101,7 +98,8 @@ impl FewRows {
         Some(length)
     }
 
-    /// The forces that hold the closed rows, 0 on the others, and which are held: those that do not nearly depend on others.
+    /// The forces that hold the closed rows, 0 on the others, and which are held: those that do not nearly
+    /// depend on others.
     fn hold(&self, closed: &[bool; FEW]) -> ([f64; FEW], [bool; FEW]) {
         let mut rows = [0; FEW];
         let mut count = 0;
@@ -163,7 +161,8 @@ mod tests {
         let landing: [&[f64]; 3] = [&[2.0, 1.0, 0.0], &[1.0, 1.0, 1.0], &[0.0, 1.0, 2.0]];
         let found = few(&landing, &[-1.0, -1.0, -1.0]).solve().expect("they agree");
         assert_eq!(found.impulses[..3].iter().sum::<f64>(), 1.0);
-        // The middle is slower than the ends: held with one of these it drives the other in, and another choice is to be made.
+        // The middle is slower than the ends: held with one of these it drives the other in, and another
+        // choice is to be made.
         assert_eq!(few(&landing, &[-1.0, -0.5, -1.0]).solve(), None);
     }
 

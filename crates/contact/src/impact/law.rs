@@ -30,7 +30,8 @@ pub enum ImpactLaw {
 /// In which order the serial laws take the rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactOrder {
-    /// The one that closes fastest first, ties by place in the list.
+    /// The one that closes fastest first; of several that do, but for a part of 1e-9, the last in the list.
+    /// Which of them is arbitrary, but fixed: rounding does not decide it, and equal runs are equal.
     #[default]
     Fastest,
     /// A random order from a seed, the same for the same seed.
@@ -87,23 +88,30 @@ pub enum ImpactError {
     },
 }
 
-/// Part of a bound on rates that is rounding of the bound itself. What a solve leaves of a rate, times the row's scale and
-/// the problem's scale, is the rate again but for four products and quotients and a root, each wrong by half a unit in the
-/// last place.
+/// Part of a bound on rates that is rounding of the bound itself. What a solve leaves of a rate, times the
+/// row's scale and the problem's scale, is the rate again but for four products and quotients and a root,
+/// each wrong by half a unit in the last place.
 const ROUNDING_OF_BOUND: f64 = 4.0 * f64::EPSILON;
 
-/// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes what the one before
-/// left by rounding, or by nearly dependent rows.
+/// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes what the
+/// one before left by rounding, or by nearly dependent rows.
 const FINAL_PASSES: usize = 4;
 
 impl ImpactLaw {
-    /// Finds the impulses of an impact; `random` counts the impacts of a seeded run.
+    /// Finds the impulses of an impact. `impact_index` says how many came before it in its run: each of them
+    /// draws numbers of its own where the order is [`Seeded`](ImpactOrder::Seeded).
     ///
     /// After it no unilateral row closes faster than [`Impact::bound`], and no bilateral row has a greater rate.
     ///
     /// # Errors
-    /// [`ImpactError`] names the row that has numbers out of range, that moves nothing, or that no impulses can keep from closing.
-    pub fn resolve(self, impact: &mut Impact, order: ImpactOrder, random: u64) -> Result<(), ImpactError> {
+    /// [`ImpactError`] names the row that has numbers out of range, that moves nothing, or that no impulses
+    /// can keep from closing.
+    pub fn resolve(
+        self,
+        impact: &mut Impact,
+        order: ImpactOrder,
+        impact_index: u64,
+    ) -> Result<(), ImpactError> {
         let small = impact.begin()?;
         if impact.rows.len() == 1 {
             // The most common impact by far: no law changes it, and it needs no buffers.
@@ -112,7 +120,7 @@ impl ImpactLaw {
         }
         let mut shuffle = match order {
             ImpactOrder::Fastest => None,
-            ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, random)),
+            ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, impact_index)),
         };
         let slow = impact.slow_speed();
         let mut patience =
@@ -152,8 +160,8 @@ impl Impact {
         self.finish(small)
     }
 
-    /// As [`resolve_inelastic`](Self::resolve_inelastic), for what may as well be left: rows that take many pivots are given
-    /// up.
+    /// As [`resolve_inelastic`](Self::resolve_inelastic), for what may as well be left: rows that take many
+    /// pivots are given up.
     ///
     /// # Errors
     /// As for [`ImpactLaw::resolve`].
@@ -219,9 +227,10 @@ impl Impact {
         }
     }
 
-    /// Slack [m/s] of a comparison of a rate with a bound on it that the solver's residual may have given: rounding of the
-    /// bound, and of the terms of the rate, which `apply` adds up in another order than the solver. Below the least normal
-    /// number rounding is no longer a part of what is rounded, and a bound that is a part of such a rate is 0.
+    /// Slack [m/s] of a comparison of a rate with a bound on it that the solver's residual may have given:
+    /// rounding of the bound, and of the terms of the rate, which `apply` adds up in another order than the
+    /// solver. Below the least normal number rounding is no longer a part of what is rounded, and a bound
+    /// that is a part of such a rate is 0.
     fn rounding_of_rates(&self, bound: f64) -> f64 {
         f64::MIN_POSITIVE + ROUNDING_OF_BOUND * bound + NOISE * self.largest_change
     }

@@ -13,22 +13,25 @@ use crate::solution::Solution;
 use crate::start::Start;
 use crate::warm::WarmStart;
 
-/// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the impact's
-/// fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak beside the speeds of its
-/// bodies, or when ricochets have become weak.
+/// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the
+/// impact's fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak
+/// beside the speeds of its bodies, or when ricochets have become weak.
 const CONTRADICTION: f64 = 1e-3;
 
-/// Part of the impact's fastest rate by which nearly dependent rows may seem to contradict each other, through rounding of
-/// A: the least part of a row that the solver tells from none is a root of `Settings::dependence`.
+/// Part of the impact's fastest rate by which nearly dependent rows may seem to contradict each other,
+/// through rounding of A: the least part of a row that the solver tells from none is a root of
+/// `Settings::dependence`.
 pub(super) const NEARLY: f64 = 1e-5;
 
-/// Growth beyond which no impulses are accepted. A body that is wedged between others a million million times heavier takes
-/// impulses that would make it that much faster than it gets, as does one that lies between blocks of which some lean by a few 1e-5;
-/// what their rounding leaves, a fiftieth of it at this growth, the next pass makes good.
+/// Growth beyond which no impulses are accepted. A body that is wedged between others a million million times
+/// heavier takes impulses that would make it that much faster than it gets, as does one that lies between
+/// blocks of which some lean by a few 1e-5; what their rounding leaves, a fiftieth of it at this growth, the
+/// next pass makes good.
 const GREATEST_GROWTH: f64 = 1e14;
 
-/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be solved as given:
-/// first just beyond what the solver takes for dependent (`Settings::dependence`), then more.
+/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be
+/// solved as given: first just beyond what the solver takes for dependent (`Settings::dependence`), then
+/// more.
 const RAISES: [f64; 2] = [1e-10, 1e-6];
 
 /// Cap on the pivots of a trial, per row.
@@ -109,8 +112,8 @@ impl ManyRows {
         }
     }
 
-    /// Raises the diagonal of A by a part of it, so that there is one answer whatever the rows. It lacks that part of what it
-    /// should do to the rates, which the next round makes good, and it takes no less energy.
+    /// Raises the diagonal of A by a part of it, so that there is one answer whatever the rows. It lacks that
+    /// part of what it should do to the rates, which the next round makes good, and it takes no less energy.
     fn raise(&mut self, part: f64) {
         let Matrix::Symmetric(matrix) = &mut self.problem.matrix else { return };
         for row in 0..matrix.rows() {
@@ -312,7 +315,8 @@ mod tests {
 
     #[test]
     fn a_body_on_two_rails_that_lead_into_the_floor_at_a_millionth_stops() -> Result<(), ImpactError> {
-        // The rails are parallel to the floor but for 1e-6: the body goes along them at 7 m/s and comes down at 1e-5 m/s.
+        // The rails are parallel to the floor but for 1e-6: the body goes along them at 7 m/s and comes down
+        // at 1e-5 m/s.
         let (body, fixed) = (
             Inertia { inverse_mass: 0.46, inverse_moment: 25.0 },
             Inertia { inverse_mass: 0.0, inverse_moment: 0.0 },
@@ -338,8 +342,8 @@ mod tests {
 
     #[test]
     fn what_resists_small_impulses_is_held_by_large_ones() -> Result<(), ImpactError> {
-        // A light body on two rails that are parallel but for 1e-4 is pinned by long arms to a heavy one and to another, which
-        // hits the heavy one and touches a third.
+        // A light body on two rails that are parallel but for 1e-4 is pinned by long arms to a heavy one and
+        // to another, which hits the heavy one and touches a third.
         let inertias = [
             (1.966_996_099_768_953_3, 199_516.372),
             (0.345_544_057_994_402_8, 1.450_1),
@@ -390,8 +394,9 @@ mod tests {
 
     #[test]
     fn pins_in_line_with_an_impact_do_not_pull_each_other_apart() -> Result<(), ImpactError> {
-        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the pins nearly depend on each
-        // other: what the fourth seems to have left of its square is rounding, but far more of it than usual.
+        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the
+        // pins nearly depend on each other: what the fourth seems to have left of its square is rounding, but
+        // far more of it than usual.
         let inertias = [(6.9e-4, 0.0138), (13.597459369453698, 81.58475621672218), (0.21, 1.24), (0.0, 0.0)];
         let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, elasticity| {
             let inertia = bodies.map(|body| {

@@ -1,15 +1,16 @@
 //! When ricochets end.
 //!
-//! Each round of a law lets some rows rebound and may drive others together. In general the rates fall fast, but not in
-//! a tight chain: elastic bodies between two walls pass an impulse to and fro for ever. So what counts as closing grows
-//! in stages, each of so many rows solved, from a rounding of the impact's speed to all of it; what then still closes is
-//! stopped without elasticity. The energy lost by that is of the order of the square of what counted last. After the
-//! first rows only speeds at which elasticity acts count: to stop what is slower takes one problem, not a row after another.
+//! Each round of a law lets some rows rebound and may drive others together. In general the rates fall fast,
+//! but not in a tight chain: elastic bodies between two walls pass an impulse to and fro for ever. So what
+//! counts as closing grows in stages, each of so many rows solved, from a rounding of the impact's speed to
+//! all of it; what then still closes is stopped without elasticity. The energy lost by that is of the order
+//! of the square of what counted last. After the first rows only speeds at which elasticity acts count: to
+//! stop what is slower takes one problem, not a row after another.
 //!
-//! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi / atan(sqrt(m / M)) small blows,
-//! which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003, 375-394); a line of n light ones
-//! takes some n times as many. The first stage lasts as long, for each row. Where connectors take part it does not: they may pass
-//! impulses round for ever.
+//! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi /
+//! atan(sqrt(m / M)) small blows, which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic
+//! Dynamics 8, 2003, 375-394); a line of n light ones takes some n times as many. The first stage lasts as
+//! long, for each row. Where connectors take part it does not: they may pass impulses round for ever.
 
 /// Part of the impact's fastest rate below which a row is done.
 pub(super) const RICOCHET: f64 = 1e-12;
@@ -19,7 +20,8 @@ pub(super) const QUIET: f64 = 1e-3;
 const FIRST_ROWS: usize = 20;
 /// Rows solved in one stage, per row of the impact, at least.
 const ROWS_PER_STAGE: usize = 20;
-/// Blows by which a light body turns a heavy one round, times the root of the ratio of their masses, at most: pi/atan(x) <= 4/x.
+/// Blows by which a light body turns a heavy one round, times the root of the ratio of their masses, at most:
+/// pi/atan(x) <= 4/x.
 const BLOWS: f64 = 4.0;
 /// The most of them, however light a body is: those of masses as 1 to 1e9.
 const MOST_BLOWS: f64 = 1e5;
@@ -43,8 +45,8 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// For an impact of `rows` rows in which rates up to `small` are done, and no row rebounds that is slower than `slow`. The
-    /// lightest body has a mass of `lightness` times that of the heaviest.
+    /// For an impact of `rows` rows in which rates up to `small` are done, and no row rebounds that is slower
+    /// than `slow`. The lightest body has a mass of `lightness` times that of the heaviest.
     pub(super) fn new(rows: usize, lightness: f64, small: f64, slow: f64) -> Self {
         let blows = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
         let [first_stage, per_stage] = [blows.max(ROWS_PER_STAGE), ROWS_PER_STAGE].map(|each| each * rows);

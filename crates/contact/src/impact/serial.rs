@@ -1,7 +1,7 @@
 //! Rows solved one after another, until none closes.
 //!
-//! Each round takes one row as the focus, alone or with others, and lets it rebound: one that closes, or a bilateral one
-//! whose rate is not zero.
+//! Each round takes one row as the focus, alone or with others, and lets it rebound: one that closes, or a
+//! bilateral one whose rate is not zero.
 
 use super::Impact;
 use super::law::ImpactError;
@@ -44,7 +44,7 @@ impl Impact {
         Ok(())
     }
 
-    /// The row to solve next: the fastest, ties by place, or a random one of those that are violated.
+    /// The row to solve next: the fastest, the last of several, or a random one of those that are violated.
     fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
         let rest = self.rest(small);
         match shuffle {

@@ -29,9 +29,10 @@ impl Impact {
 
     /// Problems of all rows: each that closes is to rebound, rows at rest and bilateral ones are held.
     ///
-    /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it then closes, it
-    /// is solved in the next round, with all others that do. Where rows all but depend on each other, and no impulses hold them all,
-    /// those found may drive the bodies instead: such a round is taken back, and what closes is left to be stopped.
+    /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it
+    /// then closes, it is solved in the next round, with all others that do. Where rows all but depend on
+    /// each other, and no impulses hold them all, those found may drive the bodies instead: such a round is
+    /// taken back, and what closes is left to be stopped.
     pub(super) fn solve_all(&mut self, small: f64, patience: &mut Patience) -> Result<(), ImpactError> {
         let mut set = std::mem::take(&mut self.scratch.set);
         let mut outcome = Ok(());
@@ -53,7 +54,8 @@ impl Impact {
         outcome
     }
 
-    /// True if the impulses since the rates and impulses that were put aside have done work, more than rounding makes of them.
+    /// True if the impulses since the rates and impulses that were put aside have done work, more than
+    /// rounding makes of them.
     fn has_gained(&self) -> bool {
         let before = self.scratch.impulses.iter().zip(&self.scratch.rates);
         let rows = before.zip(self.impulses.iter().zip(&self.rates));
@@ -66,10 +68,11 @@ impl Impact {
         work > GAIN * size
     }
 
-    /// One problem without elasticity of the rows that close, rest, or open slowly; as long as others are driven to close,
-    /// with these too. Without elasticity it is the nearest admissible motion that is found, and no row need stay out: the
-    /// fewer are left to be driven, the fewer problems there are. The first begins with what rows were unloaded by, each other
-    /// with the rows that carried impulses in the one before.
+    /// One problem without elasticity of the rows that close, rest, or open slowly; as long as others are
+    /// driven to close, with these too. Without elasticity it is the nearest admissible motion that is found,
+    /// and no row need stay out: the fewer are left to be driven, the fewer problems there are. The first
+    /// begins with what rows were unloaded by, each other with the rows that carried impulses in the one
+    /// before.
     pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
         self.aim_at_rest();
         self.scratch.rates.clone_from(&self.rates);
@@ -102,8 +105,8 @@ impl Impact {
         outcome
     }
 
-    /// Lists the rows that close or rest, flags these, and lists those that open no faster than one of them closes, in the
-    /// measure of the solver, so that they have no say in the scale of the problem.
+    /// Lists the rows that close or rest, flags these, and lists those that open no faster than one of them
+    /// closes, in the measure of the solver, so that they have no say in the scale of the problem.
     fn list_slow(&self, set: &mut Vec<usize>, likely: &mut Vec<bool>, small: f64) {
         let rest = self.rest(small);
         let movable = || (0..self.rows.len()).filter(|&row| self.can_move(row));
@@ -114,7 +117,8 @@ impl Impact {
         set.extend(movable().filter(|&row| likely[row] || self.rates[row] <= fastest * self.length(row)));
     }
 
-    /// Adds the rows that close now and are not in an ascending set, and flags them and those that have just got an impulse.
+    /// Adds the rows that close now and are not in an ascending set, and flags them and those that have just
+    /// got an impulse.
     fn add_driven(&self, set: &mut Vec<usize>, likely: &mut [bool], small: f64) {
         let count = set.len();
         for (row, likely) in likely.iter_mut().enumerate() {
@@ -142,8 +146,8 @@ impl Impact {
 
     /// Solves the rows of an ascending set together, each that closes to rebound.
     ///
-    /// Rows that hardly open are held as if they rested. Where others depend on them and leave no room to rebound into, as
-    /// in a wedge, all are stopped.
+    /// Rows that hardly open are held as if they rested. Where others depend on them and leave no room to
+    /// rebound into, as in a wedge, all are stopped.
     pub(super) fn rebound_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
         self.aim_at_rebounds(set);
         self.solve_together(set).or_else(|_| {

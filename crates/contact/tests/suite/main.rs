@@ -1,12 +1,7 @@
-//! The solvers against the collected problems and against each other.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+//! Impact laws and solvers, tested through the public API.
 
-mod collected;
-mod data;
-mod extremes;
-mod files;
-mod found;
-mod least_norm;
-mod perturbed;
-mod properties;
-mod warm;
+mod impact_found;
+mod impact_laws;
+mod impact_rows;
+#[cfg(feature = "json")]
+mod problems;

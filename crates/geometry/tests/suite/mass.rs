@@ -5,7 +5,8 @@ use crate::shapes::any_shape;
 use halfgap_geometry::{DVec2, Edge, Shape};
 use proptest::prelude::*;
 
-/// Area, first moments and polar second moment about the origin, by Green's theorem and the three-point Gauss rule along each edge.
+/// Area, first moments and polar second moment about the origin, by Green's theorem and the three-point Gauss
+/// rule along each edge.
 fn integrate(shape: &Shape) -> (f64, DVec2, f64) {
     const PANELS: u32 = 400;
     let node = 0.15_f64.sqrt();

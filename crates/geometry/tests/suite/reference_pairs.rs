@@ -1,4 +1,5 @@
-//! The reference engine's pair detection: each of its records is one of our feature pairs, with the same gap and normal.
+//! The reference engine's pair detection: each of its records is one of our feature pairs, with the same gap
+//! and normal.
 //!
 //! `docs/geometry-reference.md` explains the classes that are counted here.
 

@@ -12,7 +12,8 @@ use std::sync::Arc;
 
 /// Elasticity of connectors that hold their points, unless said otherwise.
 const HOLDING_ELASTICITY: f64 = 0.0;
-/// Elasticity of connectors that only limit them, unless said otherwise: at most, for it is no more than that of the bodies.
+/// Elasticity of connectors that only limit them, unless said otherwise: at most, for it is no more than that
+/// of the bodies.
 const LIMITING_ELASTICITY: f64 = 1.0;
 
 /// Adds all connectors; all bodies have been added before, in the order of the scene.

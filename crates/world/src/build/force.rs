@@ -1,6 +1,6 @@
 //! The force laws of a scene. Each is named after its field: "force[2].spring".
 
-use super::{body_id, find_body, mass};
+use super::{find_body, mass};
 use crate::builder::WorldBuilder;
 use crate::force::{
     Anchor, ConstantForce, Dashpot, ForceFrame, MutualGravity, RotatingForce, Spring, Turning,
@@ -53,7 +53,7 @@ fn bodies_of<'a>(
     force: &'a ForceData,
 ) -> impl Iterator<Item = (BodyId, &'a BodyData)> + 'a {
     let acts_on = |body: &BodyData| force.bodies().is_none_or(|names| names.contains(&body.name));
-    let numbered = scene.bodies.iter().enumerate().map(|(index, body)| (body_id(index), body));
+    let numbered = scene.bodies.iter().enumerate().map(|(index, body)| (BodyId::from_index(index), body));
     numbered.filter(move |(_, body)| acts_on(body))
 }
 

@@ -15,8 +15,8 @@ impl World {
     /// Builds the world of a scene.
     ///
     /// # Errors
-    /// Values that break a rule, what is not simulated yet, shapes that cannot be, and bodies that overlap at the start; the
-    /// error names the field.
+    /// Values that break a rule, what is not simulated yet, shapes that cannot be, and bodies that overlap at
+    /// the start; the error names the field.
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
         scene.validate_world()?;
         scene.check_supported()?;
@@ -39,7 +39,7 @@ fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
     connector::add_all(&mut builder, scene)?;
     for (index, body) in scene.bodies.iter().enumerate() {
         for other in &body.passes_through {
-            builder.let_pass(body_id(index), find_body(scene, other));
+            builder.let_pass(BodyId::from_index(index), find_body(scene, other));
         }
     }
     Ok(builder)
@@ -105,14 +105,10 @@ fn edge_spec(edge: &EdgeData) -> EdgeSpec {
     }
 }
 
-fn body_id(index: usize) -> BodyId {
-    BodyId(u32::try_from(index).unwrap_or(u32::MAX))
-}
-
 /// The body of a name, or the background; names have been checked.
 fn find_body(scene: &Scene, name: &str) -> BodyId {
     let index = scene.bodies.iter().position(|body| name != WORLD && body.name == name);
-    index.map_or(BodyId::WORLD, body_id)
+    index.map_or(BodyId::WORLD, BodyId::from_index)
 }
 
 /// Points the error at the field that it is about.

@@ -10,8 +10,8 @@ use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to fourth powers of
-/// sums of them, which must be numbers.
+/// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to
+/// fourth powers of sums of them, which must be numbers.
 const LARGEST: f64 = 1e60;
 
 /// Part of a lap by which stops of a closed rail are apart at least.
@@ -93,7 +93,8 @@ impl WorldBuilder {
         }
     }
 
-    /// Refuses coordinates and radii so large that gaps as small as the smallest movable body cannot be told from rounding.
+    /// Refuses coordinates and radii so large that gaps as small as the smallest movable body cannot be told
+    /// from rounding.
     pub(super) fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
         let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
         let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);

@@ -10,7 +10,7 @@ use crate::run_error::RunError;
 use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
-use crate::world::{Inertia, Named, Start, World, energy_of, name_among};
+use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
 use crate::world_error::WorldError;
 use checks::world_bounds;
 use glam::DVec2;
@@ -21,8 +21,8 @@ use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
 
-/// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the start unless said
-/// otherwise.
+/// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the
+/// start unless said otherwise.
 const DEFAULT_START_ERROR: f64 = 1e-6;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
@@ -41,7 +41,8 @@ pub struct BodySpec {
     pub shape: Shape,
     /// Centre of mass in shape coordinates [m]; the shape's centroid if `None`.
     pub center_of_mass: Option<DVec2>,
-    /// Mass and moment of inertia about the centre of mass, which does not follow if that is moved; `None` for a fixed body.
+    /// Mass and moment of inertia about the centre of mass, which does not follow if that is moved; `None`
+    /// for a fixed body.
     pub inertia: Option<Inertia>,
     /// State at the start; the position is that of the centre of mass. A fixed body keeps neither velocity.
     pub state: BodyState,
@@ -78,7 +79,6 @@ pub struct WorldBuilder {
     settings: WorldSettings,
     bodies: Vec<BodySpec>,
     laws: Vec<FlightLaw>,
-    gravity: Vec<DVec2>,
     forces: Vec<Arc<dyn ForceLaw>>,
     connectors: Vec<ConnectorSpec>,
     excluded: Vec<(BodyId, BodyId)>,
@@ -95,8 +95,7 @@ impl WorldBuilder {
     pub fn add(&mut self, body: BodySpec) -> BodyId {
         self.bodies.push(body);
         self.laws.push(FlightLaw::default());
-        self.gravity.push(DVec2::ZERO);
-        BodyId(u32::try_from(self.bodies.len() - 1).unwrap_or(u32::MAX))
+        BodyId::from_index(self.bodies.len() - 1)
     }
 
     /// A body that was added.
@@ -114,7 +113,6 @@ impl WorldBuilder {
     /// If no such body was added.
     pub fn add_gravity(&mut self, body: BodyId, acceleration: DVec2) {
         self.laws[body.index()].acceleration += acceleration;
-        self.gravity[body.index()] += acceleration;
     }
 
     /// Lets damping act on a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m].
@@ -162,8 +160,8 @@ impl WorldBuilder {
     /// Checks everything, aligns what is to be aligned, corrects small overlaps and errors, and builds the world.
     ///
     /// # Errors
-    /// Names that are not unique, numbers out of range, bodies that overlap, connectors that are off: the error names the
-    /// body or the connector, and the number.
+    /// Names that are not unique, numbers out of range, bodies that overlap, connectors that are off: the
+    /// error names the body or the connector, and the number.
     pub fn build(mut self) -> Result<World, WorldError> {
         self.check()?;
         self.align();
@@ -176,11 +174,12 @@ impl WorldBuilder {
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
-            self.bodies.into_iter().zip(self.laws).zip(self.gravity).map(into_parts).unzip();
+            self.bodies.into_iter().zip(self.laws).map(into_parts).unzip();
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
         let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
-        // Connectors that contradict each other are together as nearly as the tolerance asks, however wide the zones of contacts.
+        // Connectors that contradict each other are together as nearly as the tolerance asks, however wide
+        // the zones of contacts.
         let derived = scales.tolerances(self.settings.tolerance);
         let rules = StartRules {
             tolerances: &tolerances,
@@ -214,7 +213,7 @@ impl WorldBuilder {
             lost: lost_energy(&bodies, forces, &self.settings),
         };
         let sentry = Sentry::new(&self.settings, energies);
-        let settings = rigid_settings(&self.settings, &scales);
+        let settings = rigid_settings(&self.settings, &scales, tolerances);
         let parts = RigidParts {
             bodies,
             connectors: connectors.clone(),
@@ -224,7 +223,16 @@ impl WorldBuilder {
         let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(system, named, (self.forces, connectors), now, warnings, start, sentry))
+        Ok(World::new(WorldParts {
+            system,
+            bodies: named,
+            forces: self.forces,
+            connectors,
+            now,
+            warnings,
+            start,
+            sentry,
+        }))
     }
 
     /// What to say if the coordinates do not allow the gap that the tolerance asks for.
@@ -243,8 +251,8 @@ impl WorldBuilder {
         })
     }
 
-    /// What to say if a step of a given length is too long for how fast a body is damped: what should decay grows then, wherever it is
-    /// integrated. Flights are in closed form.
+    /// What to say if a step of a given length is too long for how fast a body is damped: what should decay
+    /// grows then, wherever it is integrated. Flights are in closed form.
     fn step_warning(&self) -> Option<String> {
         let settings = &self.settings;
         let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
@@ -343,8 +351,8 @@ fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
     kinetic.sum::<f64>() + forces * size
 }
 
-/// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have at a speed that is
-/// rounding of their coordinates.
+/// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have
+/// at a speed that is rounding of their coordinates.
 fn lost_energy(bodies: &[StartParts], forces: f64, settings: &WorldSettings) -> f64 {
     let movable = || bodies.iter().filter(|(body, ..)| !body.is_fixed());
     let reach = movable().map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);
@@ -394,9 +402,9 @@ fn centered(body: &BodySpec) -> Shape {
 
 type Parts = (Named, StartParts);
 
-fn into_parts(((spec, law), gravity): ((BodySpec, FlightLaw), DVec2)) -> Parts {
+fn into_parts((spec, law): (BodySpec, FlightLaw)) -> Parts {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
-    let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity };
+    let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
     let inverse =
         |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
     let body = Body {

@@ -15,7 +15,8 @@ pub struct Difference {
     pub angle: f64,
     /// Of its velocity [m/s].
     ///
-    /// A body that collides just then has two velocities, and both runs may differ about which comes first: it is left out.
+    /// A body that collides just then has two velocities, and both runs may differ about which comes first:
+    /// it is left out.
     pub velocity: f64,
     /// Of its angular velocity [rad/s], likewise.
     pub angular_velocity: f64,
@@ -67,7 +68,8 @@ impl Comparison {
         common(run, tighter).map(shift).collect()
     }
 
-    /// At each common time: the differences of all bodies; `window` [s] is how near an impact velocities are not compared.
+    /// At each common time: the differences of all bodies; `window` [s] is how near an impact velocities are
+    /// not compared.
     pub(super) fn curve(
         &self,
         run: &Recording,

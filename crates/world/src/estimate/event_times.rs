@@ -1,8 +1,8 @@
 //! When bodies collide, in two runs.
 //!
-//! Two runs need not have the same impacts: a body that bounces to rest bounces longer at a tighter tolerance, and what is
-//! one impact of two corners may be two. So impacts are not counted off against each other: each is compared with the
-//! nearest of the same pair.
+//! Two runs need not have the same impacts: a body that bounces to rest bounces longer at a tighter
+//! tolerance, and what is one impact of two corners may be two. So impacts are not counted off against each
+//! other: each is compared with the nearest of the same pair.
 
 use crate::recording::Recording;
 use halfgap_collision::BodyId;

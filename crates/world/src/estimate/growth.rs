@@ -1,8 +1,9 @@
 //! Tells chaos from error by how the difference of two runs grows.
 //!
-//! Errors of an integration grow with a low power of the time: the phase of an orbit drifts. In chaos neighbouring runs
-//! part exponentially, or at once where a small difference decides which of two things happens; then no tolerance helps for
-//! long, and the run is worth something only until the difference has grown to the size of the bodies.
+//! Errors of an integration grow with a low power of the time: the phase of an orbit drifts. In chaos
+//! neighbouring runs part exponentially, or at once where a small difference decides which of two things
+//! happens; then no tolerance helps for long, and the run is worth something only until the difference has
+//! grown to the size of the bodies.
 
 /// Part of its own size up to which a body is where it should be.
 const WORTH: f64 = 1e-2;

@@ -1,12 +1,14 @@
 //! How far a run is from the truth, without knowing it: the run is repeated at a tighter tolerance and compared.
 //!
-//! The error of a run is in proportion to its tolerance, so what the tighter run leaves is small beside what it removes:
-//! the difference of both is the error of the first to within the share that is left. `tighter` says what is tightened,
-//! `difference` compares states, `event_times` compares impacts, `growth` tells chaos from error.
+//! The error of a run is in proportion to its tolerance, so what the tighter run leaves is small beside what
+//! it removes: the difference of both is the error of the first to within the share that is left. `tighter`
+//! says what is tightened, `difference` compares states, `event_times` compares impacts, `growth` tells chaos
+//! from error.
 //!
-//! The idea is that of tolerance reduction as an estimate of the global error, reviewed in R. D. Skeel, "Thirteen ways to
-//! estimate global error", Numerische Mathematik 48 (1986), 1-20 (there among the methods that repeat the integration);
-//! here it sees the gaps and the impacts too, as both follow from the tolerance.
+//! The idea is that of tolerance reduction as an estimate of the global error, reviewed in R. D. Skeel,
+//! "Thirteen ways to estimate global error", Numerische Mathematik 48 (1986), 1-20 (there among the methods
+//! that repeat the integration); here it sees the gaps and the impacts too, as both follow from the
+//! tolerance.
 
 mod difference;
 mod event_times;
@@ -30,8 +32,8 @@ pub struct ErrorEstimate {
     pub tolerance: f64,
     /// Tolerance of the run it was compared with.
     pub tighter_tolerance: f64,
-    /// Target gaps of both runs [m]. Where coordinates allow no smaller one, the second is twice the first: the part of the
-    /// error that comes from the gap is in proportion to it.
+    /// Target gaps of both runs [m]. Where coordinates allow no smaller one, the second is twice the first:
+    /// the part of the error that comes from the gap is in proportion to it.
     pub target_gaps: [f64; 2],
     /// Up to when both runs were compared [s].
     pub compared_until: f64,
@@ -45,8 +47,8 @@ pub struct ErrorEstimate {
     pub impacts: [usize; 2],
     /// The difference grows faster than any power of the time that errors of integration grow with.
     pub chaotic: bool,
-    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, if that is not
-    /// the end: until then the answer is worth something.
+    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, if
+    /// that is not the end: until then the answer is worth something.
     pub trusted_until: Option<f64>,
     /// Why the tighter run stopped early, if it did.
     pub tighter_stopped: Option<String>,
@@ -57,12 +59,12 @@ pub struct ErrorEstimate {
 
 /// Estimates the error of a run of a scene; the run must have recorded everything.
 ///
-/// The scene is run once more, with the same output times and a tolerance of a hundredth (where the step is fixed: a tenth,
-/// and a tenth of the step); thresholds that the scene gives itself shrink alike.
+/// The scene is run once more, with the same output times and a tolerance of a hundredth (where the step is
+/// fixed: a tenth, and a tenth of the step); thresholds that the scene gives itself shrink alike.
 ///
 /// # Errors
-/// The scene cannot be built at the tighter tolerance, as when its bodies overlap by more than that allows; the run did not
-/// record everything.
+/// The scene cannot be built at the tighter tolerance, as when its bodies overlap by more than that allows;
+/// the run did not record everything.
 pub fn estimate_error(
     scene: &Scene,
     plan: &RunPlan,

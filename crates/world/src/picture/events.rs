@@ -1,5 +1,5 @@
-//! The impacts of a run on a time line: a lane for each movable body, a dot for each impact it takes part in, the larger
-//! the greater the impulse.
+//! The impacts of a run on a time line: a lane for each movable body, a dot for each impact it takes part in,
+//! the larger the greater the impulse.
 
 use super::axes::{Axes, WIDTH};
 use super::color;

@@ -1,8 +1,8 @@
 //! Pictures of runs as SVG: the scene, energy over time, and the impacts on a time line.
 //!
-//! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `view` maps the world
-//! to the page; `scene` (with forces as `arrows` and connectors as `ties`), `energy` and `events` are one picture each, the latter two on the
-//! `axes` they share.
+//! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `view` maps
+//! the world to the page; `scene` (with forces as `arrows` and connectors as `ties`), `energy` and `events`
+//! are one picture each, the latter two on the `axes` they share.
 
 mod arrows;
 mod axes;

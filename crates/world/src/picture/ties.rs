@@ -1,5 +1,6 @@
-//! What ties bodies: rails as the curves that they are, their stops as bars across, rods and ropes as lines between their points,
-//! pins and slots as small rings, those of slots on a line along which they slide, springs and dashpots as zigzags.
+//! What ties bodies: rails as the curves that they are, their stops as bars across, rods and ropes as lines
+//! between their points, pins and slots as small rings, those of slots on a line along which they slide,
+//! springs and dashpots as zigzags.
 
 use super::svg::{Svg, number};
 use super::view::View;

@@ -54,8 +54,8 @@ macro_rules! connector_data {
         #[serde(deny_unknown_fields)]
         pub struct $name {
             $($(#[$doc])* pub $field: $kind,)+
-            /// Coefficient of restitution; by default 0 for pin, slot, rod and rail, the lesser of the bodies' for rope and
-            /// rail_stop (1 for the world).
+            /// Coefficient of restitution; by default 0 for pin, slot, rod and rail, the lesser of the
+            /// bodies' for rope and rail_stop (1 for the world).
             pub elasticity: Option<f64>,
             /// The bodies collide with each other although they are joined.
             #[serde(default)]

@@ -1,8 +1,8 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
-//! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for messages,
-//! `varied` puts other numbers into one field, and `supported` refuses what is part of the format but not simulated yet. SI units, radians, counter-clockwise positive,
-//! y up.
+//! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for
+//! messages, `varied` puts other numbers into one field, and `supported` refuses what is part of the format
+//! but not simulated yet. SI units, radians, counter-clockwise positive, y up.
 
 mod body;
 mod connector;

@@ -24,8 +24,8 @@ struct Correction {
     bilateral: bool,
 }
 
-/// Moves the bodies so that gaps and connectors come to fit, to first order, or a part of the way: tells which; `None` if that
-/// cannot be done.
+/// Moves the bodies so that gaps and connectors come to fit, to first order, or a part of the way: tells
+/// which; `None` if that cannot be done.
 pub(super) fn correct_positions(
     bodies: &mut [StartParts],
     records: &[Collision],
@@ -51,7 +51,7 @@ pub(super) fn can_lift(bodies: &[StartParts], record: &Collision, connectors: &[
 fn lift(record: &Collision) -> Correction {
     let (above, accuracy) = (record.distance_to_target(), record.tolerances.accuracy);
     Correction {
-        bodies: [record.parties.primary.body, record.parties.normal.body],
+        bodies: record.bodies(),
         jacobian: record.motion.kinematics.jacobian,
         // What lies in the zone already may move within it.
         offset: if above < -accuracy { above } else { above + accuracy },
@@ -101,8 +101,8 @@ pub(super) fn correct_velocities(
     Ok(Some((name_of(index, named, connectors), rate)))
 }
 
-/// The speeds that a rate is the difference of [m/s]. What of them is across the row counts, too: where a row points is known to
-/// rounding only.
+/// The speeds that a rate is the difference of [m/s]. What of them is across the row counts, too: where a row
+/// points is known to rounding only.
 fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
     let sizes = ends.iter().zip(jacobian.chunks_exact(3)).map(|(end, part)| {
         let Some((body, _, state)) = bodies.get(end.index()) else { return 0.0 };

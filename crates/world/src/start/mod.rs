@@ -1,12 +1,13 @@
 //! The start of a run: gaps that are too small are lifted to the target gap, connectors that are a little off are put
 //! together, and velocities are made to fit the connectors; deeper overlaps and larger errors are refused.
 //!
-//! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the target and
-//! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >= 0
-//! (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is repeated
-//! until they fit, by steps along which they are not curved by much. `tight` knows the pairs for which that cannot be: they keep
-//! their gap, and all others are lifted from where they were given. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction` solves for displacements
-//! and for velocities.
+//! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the
+//! target and closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity
+//! problem A f + b >= 0, f >= 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in
+//! the displacement, so this is repeated until they fit, by steps along which they are not curved by much.
+//! `tight` knows the pairs for which that cannot be: they keep their gap, and all others are lifted from
+//! where they were given. `touching` finds the places where bodies touch, `joined` the rows of connectors,
+//! `correction` solves for displacements and for velocities.
 
 mod correction;
 mod joined;
@@ -183,7 +184,8 @@ fn moving(bodies: &[StartParts], body: BodyId) -> Moving {
     if body.is_world() { Moving::BACKGROUND } else { Moving::from(&bodies[body.index()].2) }
 }
 
-/// What is to blame: an overlap that comes of the correction, else a gap if one is too small, else the connector that is off most.
+/// What is to blame: an overlap that comes of the correction, else a gap if one is too small, else the
+/// connector that is off most.
 fn cannot_correct(
     too_near: Option<&Collision>,
     overlap: Option<([BodyId; 2], f64)>,
@@ -191,10 +193,7 @@ fn cannot_correct(
     named: &[Named],
     connectors: &[Connector],
 ) -> WorldError {
-    let of_gap = |record: &Collision| {
-        let bodies = [record.parties.primary.body, record.parties.normal.body];
-        (bodies, record.geometry.distance)
-    };
+    let of_gap = |record: &Collision| (record.bodies(), record.geometry.distance);
     let gap = overlap.map(|(bodies, depth)| (bodies, -depth)).or(too_near.map(of_gap));
     match (gap, off) {
         (None, Some(off)) => {

@@ -16,11 +16,11 @@ pub(super) struct TightPairs {
 impl TightPairs {
     /// True if the bodies of a record keep their gap.
     pub(super) fn keeps(&self, record: &Collision) -> bool {
-        self.pairs.contains(&sides(record))
+        self.pairs.contains(&record.bodies())
     }
 
-    /// Lets the pairs of some records that are too near keep their gaps: first such as cannot be lifted even alone, then all.
-    /// Returns false if there are none that do not overlap.
+    /// Lets the pairs of some records that are too near keep their gaps: first such as cannot be lifted even
+    /// alone, then all. Returns false if there are none that do not overlap.
     pub(super) fn widen(
         &mut self,
         bodies: &[StartParts],
@@ -31,15 +31,11 @@ impl TightPairs {
         if !self.searched {
             self.searched = true;
             let stuck = too_near.iter().filter(|record| !can_lift(bodies, record, connectors));
-            self.pairs.extend(stuck.map(sides));
+            self.pairs.extend(stuck.map(Collision::bodies));
         }
         if self.pairs.len() == before {
-            self.pairs.extend(too_near.iter().map(sides));
+            self.pairs.extend(too_near.iter().map(Collision::bodies));
         }
         self.pairs.len() > before
     }
-}
-
-fn sides(record: &Collision) -> [BodyId; 2] {
-    [record.parties.primary.body, record.parties.normal.body]
 }

@@ -25,8 +25,8 @@ pub(super) fn require_shallow(
     Ok(())
 }
 
-/// Two bodies that a correction has brought into each other, deeper than rounding [m], and how deep [m]. For each body how far
-/// it has been moved.
+/// Two bodies that a correction has brought into each other, deeper than rounding [m], and how deep [m]. For
+/// each body how far it has been moved.
 pub(super) fn deep_overlap(
     bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
@@ -43,8 +43,8 @@ pub(super) fn deep_overlap(
     deep.next()
 }
 
-/// Records of all places where bodies touch, overlaps included that are no deeper than they may have been and than bodies have
-/// been moved since [m].
+/// Records of all places where bodies touch, overlaps included that are no deeper than they may have been and
+/// than bodies have been moved since [m].
 pub(super) fn touching(
     bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
@@ -67,8 +67,8 @@ fn moment(bodies: &[StartParts], id: BodyId) -> Moment<'_> {
 /// Two features that touched in some round of a correction, the lesser body's first.
 type Touch = ([BodyId; 2], [FeatureId; 2]);
 
-/// Which features touched in the rounds of a correction so far. What was lifted from one corner comes down on the other: unless the
-/// first is known then, it is lowered again as far as the second is lifted, and so on.
+/// Which features touched in the rounds of a correction so far. What was lifted from one corner comes down on
+/// the other: unless the first is known then, it is lowered again as far as the second is lifted, and so on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KnownTouches(Vec<Touch>);
 
@@ -77,7 +77,8 @@ impl KnownTouches {
         self.0.clear();
     }
 
-    /// Adds to the records of a round those of features that touched before and are farther apart by now; and notes all.
+    /// Adds to the records of a round those of features that touched before and are farther apart by now; and
+    /// notes all.
     pub(super) fn complete(
         &mut self,
         records: &mut Vec<Collision>,

@@ -4,7 +4,7 @@ use halfgap_contact::{
     Auto, Contradiction, DualActiveSet, Lemke, ProximalNewton, Settings, Solution, SolveError, Solver,
 };
 
-use crate::data::{Case, collection, disproof, judge, scales};
+use super::data::{Case, collection, disproof, judge, scales};
 
 /// Whether an answer is good by the rules of the documentation, without allowance for contradictions.
 fn judge_answer(case: &Case, solution: &Solution) -> Result<(), String> {

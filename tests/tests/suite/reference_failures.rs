@@ -10,8 +10,9 @@ fn world(scene: &Scene) -> World {
     World::from_scene(scene).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The reference's grinder works only while its start is exactly aligned. Its shuttles fit into their slots so closely that they
-/// are held on both sides, and were held for good where corners of both sides came to lie opposite each other.
+/// The reference's grinder works only while its start is exactly aligned. Its shuttles fit into their slots
+/// so closely that they are held on both sides, and were held for good where corners of both sides came to
+/// lie opposite each other.
 #[test]
 fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
     for (body, nudge) in [(0, 1e-9), (1, 1e-9), (2, -1e-9), (1, 1e-8)] {
@@ -115,8 +116,8 @@ fn a_ball_comes_to_rest_by_impulses_alone() {
     assert!(state.velocity.length() < 1e-6, "{} m/s", state.velocity);
 }
 
-/// A driven bar that presses on another, both pinned, by impulses alone: one a step, not one each time that it has sunk by a
-/// little.
+/// A driven bar that presses on another, both pinned, by impulses alone: one a step, not one each time that
+/// it has sunk by a little.
 #[test]
 fn a_bar_presses_on_another_by_impulses_alone() {
     let bar = |name: &str, place: &str, pivot: &str, end: &str| {

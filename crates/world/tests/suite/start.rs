@@ -335,8 +335,8 @@ fn a_connector_too_far_out_is_refused_by_name_and_number() {
     }
 }
 
-/// Blocks on each other whose places and angles are off by a billionth: what is lifted from one corner comes down on the other, and all
-/// of them lean on each other.
+/// Blocks on each other whose places and angles are off by a billionth: what is lifted from one corner comes
+/// down on the other, and all of them lean on each other.
 #[test]
 fn blocks_that_overlap_a_little_with_a_corner_each_are_lifted_together() {
     let mut builder = WorldBuilder::new(WorldSettings::default());

@@ -3,7 +3,7 @@
 use halfgap_contact::{Auto, DualActiveSet, Inertia, Lemke, Problem, ProximalNewton, Row, Solution, Solver};
 use proptest::prelude::*;
 
-use crate::data::{judge, scales};
+use super::data::{judge, scales};
 
 /// A row as data: bodies, coefficients, offset, whether bilateral.
 type RawRow = (usize, usize, [f64; 6], f64, bool);

@@ -2,7 +2,7 @@
 
 use halfgap_contact::{Auto, ForceSelection, Inertia, Problem, Row, Settings, Solution, Solver};
 
-use crate::data::{Case, judge};
+use super::data::{Case, judge};
 
 fn least_norm() -> Auto {
     Auto::new(Settings { selection: ForceSelection::LeastNorm, ..Settings::default() }).unwrap()

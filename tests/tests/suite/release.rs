@@ -308,8 +308,8 @@ fn a_disc_that_lies_lower_than_its_target_gap_slides_over_a_seam_without_a_bump(
 
 #[test]
 fn contacts_with_firm_forces_are_not_looked_at_again() {
-    // A step of the default method has 12 stages, its end, and three more for dense output; releases are watched at five
-    // places more, unless the stages tell that no force comes near to zero.
+    // A step of the default method has 12 stages, its end, and three more for dense output; releases are
+    // watched at five places more, unless the stages tell that no force comes near to zero.
     let mut shop = Workshop::new(1e-9);
     shop.fixed("floor", block(40.0, 1.0), DVec2::new(0.0, -0.5));
     let sled = shop.dull("sled", disc(0.5), 1.0, thrown(0.0, 0.5, DVec2::new(1.0, 0.0)));

@@ -1,9 +1,9 @@
-//! Variations of the collected problems of bodies: every coefficient changed a little, so that redundant contacts become
-//! nearly redundant ones, which are harder.
+//! Variations of the collected problems of bodies: every coefficient changed a little, so that redundant
+//! contacts become nearly redundant ones, which are harder.
 
 use halfgap_contact::{Auto, Problem, Solution, SolveError, Solver};
 
-use crate::data::{Case, collection, disproof, judge};
+use super::data::{Case, collection, disproof, judge};
 
 /// The problem with every coefficient of J changed by up to `size` of itself, differently for each seed.
 fn perturbed(case: &Case, size: f64, seed: usize) -> Problem {

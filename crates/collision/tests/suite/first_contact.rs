@@ -279,8 +279,8 @@ fn no_contact_is_missed_and_none_invented() {
                 contacts += 1;
                 if (time - expected).abs() > 1e-9 * case.span {
                     ill_conditioned += 1;
-                    // An earlier time must be a real contact that sampling stepped over; a later one is right only where
-                    // the height is so flat that rounding moves its zero.
+                    // An earlier time must be a real contact that sampling stepped over; a later one is right
+                    // only where the height is so flat that rounding moves its zero.
                     let deepest = if time > expected { lowest(&case, expected, time).1 } else { 0.0 };
                     let height = case.height(time).abs().max(-deepest);
                     assert!(
@@ -337,7 +337,8 @@ fn a_speck_far_above_a_floor_is_searched_in_one_call() {
 
 #[test]
 fn a_rule_with_a_wider_gap_than_all_others_fires() {
-    // A block 5 mm over a cradle hops by 1 mm/s: it turns back after 0.1 ms, above the gap at which other features fire.
+    // A block 5 mm over a cradle hops by 1 mm/s: it turns back after 0.1 ms, above the gap at which other
+    // features fire.
     let (floor, block) = (cradle(), Shape::block(0.2, 0.2).expect("a fine block"));
     let rest = Flight::fixed(DVec2::ZERO, 0.0);
     let state = BodyState {
@@ -364,7 +365,8 @@ fn a_rule_with_a_wider_gap_than_all_others_fires() {
 
 #[test]
 fn a_rule_with_a_gap_far_below_the_surface_fires_however_short_the_search() {
-    // The corner of a block 5 mm below a floor's surface goes on into it, and less far than it is deep while it is searched.
+    // The corner of a block 5 mm below a floor's surface goes on into it, and less far than it is deep while
+    // it is searched.
     let floor = Shape::block(4.0, 1.0).expect("a fine floor");
     let block = Shape::block(1.3, 0.1).expect("a fine block");
     let (tilt, speed, deep) = (-0.01_f64, 12.0, 5e-3);

@@ -4,7 +4,7 @@ use halfgap_contact::{
     Auto, BodyId, DualActiveSet, Inertia, Problem, ProblemError, Row, Settings, Solution, SolveError, Solver,
 };
 
-use crate::data::{Case, judge};
+use super::data::{Case, judge};
 
 fn solve(problem: &Problem) -> Result<Solution, SolveError> {
     let mut solution = Solution::new();

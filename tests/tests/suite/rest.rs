@@ -52,8 +52,8 @@ fn a_bouncing_ball_rests_when_the_geometric_series_ends() {
     }
 }
 
-/// Impacts of an elastic ball within 0.2 s, which starts at so many target gaps above the place where it bounces, and the
-/// energy [J] that it loses meanwhile, in units of its weight times the target gap.
+/// Impacts of an elastic ball within 0.2 s, which starts at so many target gaps above the place where it
+/// bounces, and the energy [J] that it loses meanwhile, in units of its weight times the target gap.
 fn bounces_from(gaps: f64) -> (u64, f64) {
     let mut shop = Workshop::new(1e-8);
     shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));

@@ -18,8 +18,8 @@ fn estimate_of(scene: &Scene) -> ErrorEstimate {
     estimate_error(scene, &plan, &world, &report).expect("the tighter world can be built")
 }
 
-/// The largest differences that the estimate gives at the times of the scene's expected states: of positions and angles,
-/// and of velocities and spins.
+/// The largest differences that the estimate gives at the times of the scene's expected states: of positions
+/// and angles, and of velocities and spins.
 fn at_expected(scene: &Scene, estimate: &ErrorEstimate) -> [f64; 2] {
     let nearest = |time: f64| {
         let far = |timed: &&TimedDifference| (timed.time - time).abs();

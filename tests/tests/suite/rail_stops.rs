@@ -57,8 +57,8 @@ fn a_stop_beyond_the_joints_of_its_rail_turns_its_point_back() {
     assert!(highest < place + 1e-7, "{highest} m, stop at {place} m");
 }
 
-/// A bead on an arc of radius 1 m about the origin that starts at (1, 0) and ends at an angle [rad], a whole circle if that is
-/// all of it; it starts at 1 rad with 1 m/s, and nothing pulls.
+/// A bead on an arc of radius 1 m about the origin that starts at (1, 0) and ends at an angle [rad], a whole
+/// circle if that is all of it; it starts at 1 rad with 1 m/s, and nothing pulls.
 fn bead_on_arc(end: f64, stops: &str) -> World {
     world_of(&scene_of_arc(end, stops))
 }

@@ -1,5 +1,4 @@
 //! Scene files: every reference scene is read, both formats say the same, and what is wrong is named.
-#![cfg(feature = "scene")]
 
 use halfgap::scene::{Scene, SceneFormat, SceneSource};
 use std::path::{Path, PathBuf};

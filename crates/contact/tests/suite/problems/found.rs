@@ -2,7 +2,7 @@
 
 use halfgap_contact::{Auto, Inertia, Lemke, Problem, Row, Solution, SolveError, Solver};
 
-use crate::data::{Case, disproof, judge};
+use super::data::{Case, disproof, judge};
 
 #[test]
 fn solvable_problems_that_were_called_infeasible_are_solved() {
@@ -32,7 +32,8 @@ fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
 
 #[test]
 fn what_rounding_makes_of_a_ray_is_no_proof() -> Result<(), Box<dyn std::error::Error>> {
-    // Two contacts with forces of 1e4 and 1e5, one of them of a light body with a moment far too small for it, and a joint.
+    // Two contacts with forces of 1e4 and 1e5, one of them of a light body with a moment far too small for
+    // it, and a joint.
     let inverse_mass = [9145.108044063347, 9145.108044063347, 0.00012616026371794375];
     let rows = [
         [-20.07996482141255, 22.59873375924099, -29.236885047095612],
@@ -76,8 +77,8 @@ fn what_has_no_solution_is_proven() {
     }
 }
 
-/// Two bodies held together by two pins on a line at an angle to the y axis, whose four rows hold three motions. The offsets are
-/// those of some accelerations, and one of the pins is off along the line.
+/// Two bodies held together by two pins on a line at an angle to the y axis, whose four rows hold three
+/// motions. The offsets are those of some accelerations, and one of the pins is off along the line.
 fn two_pins(angle: f64, off: f64) -> Problem {
     let mut problem = Problem::new();
     let bodies = [(3.4, 67.3), (1.7, 9.9)].map(|(inverse_mass, inverse_moment)| {

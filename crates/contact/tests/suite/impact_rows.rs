@@ -235,8 +235,9 @@ fn difference_by_order(movers: &[Mover], ties: &[Tie]) -> (f64, f64) {
 
 /// By how much the motion after a simultaneous impact changes with speeds that change by a few roundings.
 ///
-/// Ricochets enlarge rounding, and a row that an earlier round left at rest may open by rounding in a later one: then the
-/// next round leaves it out, which is another motion. What rounding decides the order of rows may decide too.
+/// Ricochets enlarge rounding, and a row that an earlier round left at rest may open by rounding in a later
+/// one: then the next round leaves it out, which is another motion. What rounding decides the order of rows
+/// may decide too.
 fn sensitivity(movers: &[Mover], ties: &[Tie]) -> f64 {
     let (as_given, _) = resolve(ImpactLaw::Simultaneous, movers, ties);
     let varied = |variant: usize| {
@@ -396,7 +397,8 @@ fn a_disc_between_closing_jaws_is_infeasible() {
 
 #[test]
 fn a_weak_impact_does_not_mind_rates_of_rounding_in_doubled_joints() {
-    // The joint is given twice, and its rates differ by rounding of the bodies' speeds, which is much beside the impact.
+    // The joint is given twice, and its rates differ by rounding of the bodies' speeds, which is much beside
+    // the impact.
     let (mut movers, mut ties) = pinned_chain(1);
     ties.extend_from_within(..);
     movers.push(Mover::new(0.5, 0.1, [0.0, -1e-10, 0.0]));

@@ -58,7 +58,8 @@ fn a_stack_of_ten_rests_for_a_hundred_seconds_in_less_than_two_hundred_steps() {
     }
 }
 
-/// A wall of bricks of 1 m, so far [m] beside each other; each stands on two, every row has one less than the one below.
+/// A wall of bricks of 1 m, so far [m] beside each other; each stands on two, every row has one less than the
+/// one below.
 fn wall(joint: f64, tolerance: f64) -> World {
     let mut shop = Workshop::new(tolerance);
     shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
@@ -153,8 +154,9 @@ fn a_block_that_bounces_and_rocks_comes_to_rest_flat() {
     }
 }
 
-/// Eight blocks that attract each other gather in a heap. An impact anywhere makes contacts everywhere open a little; what
-/// presses them back at once, through the others, counts as held. Nothing holds a block that slides along another.
+/// Eight blocks that attract each other gather in a heap. An impact anywhere makes contacts everywhere open a
+/// little; what presses them back at once, through the others, counts as held. Nothing holds a block that
+/// slides along another.
 #[test]
 fn a_heap_settles_in_few_impacts_and_goes_on_to_slide() {
     const STARTS: u32 = 16;

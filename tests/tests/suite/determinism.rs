@@ -1,5 +1,5 @@
-//! The same scene gives the same bits: again, in another process, recorded or not; and nearly the same with its bodies in
-//! another order.
+//! The same scene gives the same bits: again, in another process, recorded or not; and nearly the same with
+//! its bodies in another order.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{BodyState, Record, RunPlan, RunReport, World, run};
@@ -78,7 +78,9 @@ fn two_processes_give_the_same_bits() {
     let other = || {
         let program = std::env::current_exe().expect("this program has a path");
         let mut command = Command::new(program);
-        command.args(["--exact", "two_processes_give_the_same_bits", "--nocapture"]).env(ONLY_HASHES, "1");
+        command
+            .args(["--exact", "determinism::two_processes_give_the_same_bits", "--nocapture"])
+            .env(ONLY_HASHES, "1");
         String::from_utf8(command.output().expect("it runs").stdout).expect("it writes text")
     };
     let (first, second, own) = (other(), other(), hashes());

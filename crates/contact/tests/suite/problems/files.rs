@@ -2,7 +2,7 @@
 
 use halfgap_contact::{Auto, ContactFile, FileError, Solution, SolutionFile, Solver};
 
-use crate::data::Case;
+use super::data::Case;
 
 #[test]
 fn a_dumped_problem_is_the_same_problem() {

@@ -34,7 +34,8 @@ fn three_discs_meet_a_fourth_at_once_and_keep_momentum_and_energy() {
         let momentum: halfgap::geometry::DVec2 = world.bodies().map(|body| world.state(body).velocity).sum();
         assert!(momentum.x.abs() < 1e-12 && (momentum.y - 0.6).abs() < 1e-12, "{law}: {momentum}");
         assert!((world.energy().total() / energy - 1.0).abs() < 1e-12, "{law}");
-        // Elastic at all rows at once: the two from the sides turn back, the third stops, the middle moves on as it came.
+        // Elastic at all rows at once: the two from the sides turn back, the third stops, the middle moves on
+        // as it came.
         let velocity = |name: &str| world.state(world.find(name).expect("it is there")).velocity;
         assert!((velocity("disc 0").x + 0.6).abs() < 1e-12, "{law}: {}", velocity("disc 0"));
         assert!((velocity("disc 1").x - 0.6).abs() < 1e-12, "{law}: {}", velocity("disc 1"));

@@ -191,7 +191,7 @@ fn a_connector_has_a_record_for_every_row() {
             let index = row as u32;
             let record = Collision::of_connector(id, index, &connector, &sample, [&a, &b], &TOLERANCES, 2.0);
             assert_eq!(record.parties.detector, Detector::Connector { id, row: index });
-            assert_eq!([record.parties.primary.body, record.parties.normal.body], connector.bodies());
+            assert_eq!(record.bodies(), connector.bodies());
             assert_eq!(record.parties.primary.feature(), None);
             assert_eq!(record.parties.bilateral, connector.is_bilateral());
             assert_eq!((record.response.elasticity, record.updated), (0.25, 2.0));

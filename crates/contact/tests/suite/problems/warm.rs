@@ -2,7 +2,7 @@
 
 use halfgap_contact::{Auto, ContactKey, DualActiveSet, Inertia, Problem, Row, Solution, Solver, WarmStart};
 
-use crate::data::{Case, collection, judge};
+use super::data::{Case, collection, judge};
 
 #[test]
 fn a_warm_start_finds_the_next_answer() {

@@ -2,7 +2,8 @@
 
 use halfgap_tests::{check_at, reference_scene, reference_scene_names};
 
-/// Scenes whose expected state is not reached, each with its reason in docs/reference-cases.md; that it is not is checked too.
+/// Scenes whose expected state is not reached, each with its reason in docs/reference-cases.md; that it is
+/// not is checked too.
 const NOT_YET: [&str; 6] = [
     "apps__chain",
     "extra__two_blocks_2_joints",

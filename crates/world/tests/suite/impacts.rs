@@ -82,7 +82,8 @@ fn a_ball_dropped_on_a_floor_bounces_as_the_parabolas_say() {
         assert!((world.state(ball).position.y - height).abs() < 1e-9, "at {time} s");
     }
     assert_eq!(bounces, 10);
-    // The first fall takes sqrt(2/g) s, and each bounce e times as long as the one before: (1 + e)/(1 - e) of it in all.
+    // The first fall takes sqrt(2/g) s, and each bounce e times as long as the one before: (1 + e)/(1 - e) of
+    // it in all.
     let rest = (2.0f64 / 9.81).sqrt() * 1.8 / 0.2;
     let mut last = 0.0;
     world.advance_to(10.0, &mut |event| last = event.time()).expect("it comes to rest");

@@ -1,5 +1,4 @@
 //! Runs, what they record, and pictures of recordings that have nothing much to show.
-#![cfg(feature = "scene")]
 
 use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};
@@ -113,8 +112,8 @@ fn connectors_are_drawn() {
     let picture = scene_picture(&world, &recording, &recording.frames[0]);
     assert_drawable(&picture);
     let ties: Vec<&str> = picture.lines().filter(|line| line.contains("#4c5459")).collect();
-    // The rail, through many points, and its stop, then the rod, the rope with its dashes, the slot's line and ring, and the spring, whose
-    // dashpot lies beside it.
+    // The rail, through many points, and its stop, then the rod, the rope with its dashes, the slot's line
+    // and ring, and the spring, whose dashpot lies beside it.
     assert_eq!(ties.len(), 7, "{ties:?}");
     assert!(ties[0].matches('L').count() > 200, "{}", ties[0]);
     for bar in [ties[1], ties[2], ties[4]] {

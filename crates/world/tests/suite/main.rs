@@ -1,0 +1,11 @@
+//! Worlds as a user builds, reads, runs and records them, tested through the public API.
+
+mod failures;
+mod impacts;
+mod integrators;
+mod interventions;
+#[cfg(feature = "scene")]
+mod recordings;
+#[cfg(feature = "scene")]
+mod scene_files;
+mod start;

@@ -1,0 +1,20 @@
+//! Scenarios that cross the layers.
+
+mod connectors_drift;
+mod dependency_tree;
+mod determinism;
+mod estimate_error;
+mod groups;
+mod heaps;
+mod impacts;
+mod parser_fuzz;
+mod rail_stops;
+mod reference_failures;
+mod reference_scenes;
+mod release;
+mod rest;
+mod slots_rods_ropes;
+mod spline_rails;
+mod stacks;
+mod start;
+mod tolerance_slope;
