@@ -264,19 +264,24 @@ impl World {
         findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
         let projected = self.energy_of_projections(&books).filter(is_told);
         findings.extend(projected.map(|energy| Finding::Projected { energy, turned_over }));
+        if scales.usual > 0.0 {
+            let turned = turned_over.max(least);
+            let allowed = books_rounding(&books, turned) + scales.lost;
+            findings.extend(self.captured(&books, [turned_over, turned], allowed));
+        }
     }
 
-    /// By how much [J] projections have changed the energy, where that is to be nothing: without contact forces what has sunk is put
-    /// back, and takes what it has fallen by.
+    /// By how much [J] projections have changed the energy, where that is to be next to nothing: they stop
+    /// what counts as slow, too, and without contact forces put back what has sunk.
     fn energy_of_projections(&self, books: &Books) -> Option<f64> {
-        self.rigid_settings().impulse_step.is_none().then_some(books.projections.abs())
+        (!self.is_slow_asked_for()).then_some(books.projections.abs())
     }
 
     /// Whether the books are open by far more than what is told, or captures take a good part of all energy.
     /// Who looks seldom does not see all energy that is turned over: in part it is taken for what is usual in
     /// such a scene.
     pub(crate) fn books_astray(&self, books: &Books, turned_over: f64) -> Option<Finding> {
-        let Sentry { scales, is_watchful, slow_is_given, .. } = &self.sentry;
+        let Sentry { scales, is_watchful, .. } = &self.sentry;
         if scales.usual == 0.0 {
             // Where nothing moves or falls, there is only rounding.
             return None;
@@ -296,10 +301,20 @@ impl World {
         if let Some(energy) = self.energy_of_projections(books).filter(|energy| *energy > allowed) {
             return Some(Finding::Projected { energy, turned_over });
         }
+        self.captured(books, [turned_over; 2], allowed)
+    }
+
+    /// Whether captures have taken a good part of the energy turned over, which is taken for the second of two
+    /// numbers [J], and more than is allowed [J].
+    fn captured(&self, books: &Books, [turned_over, taken_for]: [f64; 2], allowed: f64) -> Option<Finding> {
         let (energy, slow) = (-books.captures, self.tolerances().velocity_tol);
-        let is_asked_for = *slow_is_given || self.rigid_settings().impulse_step.is_some();
-        let is_blow = energy > CAPTURED * turned_over + allowed;
-        (is_blow && !is_asked_for).then_some(Finding::Captured { energy, turned_over, slow })
+        let is_blow = energy > CAPTURED * taken_for + allowed;
+        (is_blow && !self.is_slow_asked_for()).then_some(Finding::Captured { energy, turned_over, slow })
+    }
+
+    /// Whether the user says what counts as slow, or contacts carry impulses only: then what is stopped is to be.
+    fn is_slow_asked_for(&self) -> bool {
+        self.sentry.slow_is_given || self.rigid_settings().impulse_step.is_some()
     }
 
     /// So many times as much is put up with.

@@ -123,8 +123,9 @@ impl ImpactLaw {
             ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, impact_index)),
         };
         let slow = impact.slow_speed();
-        let mut patience =
-            Patience::new(impact.rows.len(), impact.lightness(), small.max(QUIET * slow), slow);
+        let may_rebound = |row: &&CollisionRow| !row.bilateral && row.elasticity > 0.0;
+        let counts = [impact.rows.len(), impact.rows.iter().filter(may_rebound).count()];
+        let mut patience = Patience::new(counts, impact.lightness(), small.max(QUIET * slow), slow);
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }

@@ -11,6 +11,10 @@
 //! atan(sqrt(m / M)) small blows, which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic
 //! Dynamics 8, 2003, 375-394); a line of n light ones takes some n times as many. The first stage lasts as
 //! long, for each row. Where connectors take part it does not: they may pass impulses round for ever.
+//!
+//! A body between two walls that all but face each other, at an angle a, is turned back by pi / a blows,
+//! whatever it weighs: a die that jams in its slot. Few contacts are given as many as an angle of a few
+//! degrees takes, connectors or not.
 
 /// Part of the impact's fastest rate below which a row is done.
 pub(super) const RICOCHET: f64 = 1e-12;
@@ -25,6 +29,9 @@ const ROWS_PER_STAGE: usize = 20;
 const BLOWS: f64 = 4.0;
 /// The most of them, however light a body is: those of masses as 1 to 1e9.
 const MOST_BLOWS: f64 = 1e5;
+/// Contacts that rebound are few up to this number, and may take so many blows then.
+const FEW_CONTACTS: usize = 4;
+const BLOWS_OF_FEW: usize = 200;
 /// Factor of what counts as closing, from one stage to the next.
 const RAISE: f64 = 10.0;
 /// Number of stages: the last leaves nothing that is less than the impact itself.
@@ -45,11 +52,14 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// For an impact of `rows` rows in which rates up to `small` are done, and no row rebounds that is slower
-    /// than `slow`. The lightest body has a mass of `lightness` times that of the heaviest.
-    pub(super) fn new(rows: usize, lightness: f64, small: f64, slow: f64) -> Self {
-        let blows = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
-        let [first_stage, per_stage] = [blows.max(ROWS_PER_STAGE), ROWS_PER_STAGE].map(|each| each * rows);
+    /// For an impact of `rows` rows, `contacts` of which may rebound, in which rates up to `small` are done,
+    /// and no row rebounds that is slower than `slow`. The lightest body has a mass of `lightness` times that
+    /// of the heaviest.
+    pub(super) fn new([rows, contacts]: [usize; 2], lightness: f64, small: f64, slow: f64) -> Self {
+        let of_masses = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
+        let of_angles = if contacts <= FEW_CONTACTS { BLOWS_OF_FEW } else { 0 };
+        let blows = of_masses.max(of_angles).max(ROWS_PER_STAGE);
+        let [first_stage, per_stage] = [blows, ROWS_PER_STAGE].map(|each| each * rows);
         Self { small, slow: Some(slow), first_stage, per_stage, left: FIRST_ROWS, stages: STAGES }
     }
 
@@ -82,7 +92,7 @@ mod tests {
 
     #[test]
     fn it_ends_after_so_many_rows_with_all_of_the_impact() {
-        let mut patience = Patience::new(3, 1.0, RICOCHET, 0.0);
+        let mut patience = Patience::new([3, 5], 1.0, RICOCHET, 0.0);
         let mut solved = 0;
         while patience.spend(1) {
             solved += 1;
@@ -93,7 +103,7 @@ mod tests {
 
     #[test]
     fn slow_rows_do_not_count_after_the_first() {
-        let mut patience = Patience::new(3, 1.0, RICOCHET, 0.5);
+        let mut patience = Patience::new([3, 3], 1.0, RICOCHET, 0.5);
         assert!(patience.spend(FIRST_ROWS - 1) && patience.small() == RICOCHET);
         assert!(patience.spend(1) && patience.small() == 0.5);
     }

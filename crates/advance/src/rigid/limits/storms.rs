@@ -2,13 +2,15 @@
 //!
 //! The resolution time is what acceleration takes to make `velocity_tol`; without acceleration, what the fastest body takes
 //! to cross the target gap. Events between which bodies go far beyond the target gap are resolved in space all the same: many
-//! more of them are no storm, and more still where much energy would be lost. A light body that heavy ones close on takes up
-//! all their energy before it turns them back, and to do so it must hit them about as often as the root of the masses' ratio.
+//! more of them are no storm, and so are those in which much energy would be lost; more still where both is so. A light body that
+//! heavy ones close on takes up all their energy before it turns them back, and to do so it must hit them about as often as the
+//! root of the masses' ratio; a die that jams in its slot is turned back by blows between which it goes a gap or two.
 
 use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Tolerances};
+use halfgap_collision::Tolerances;
+use halfgap_contact::CollisionRow;
 
 /// Events of a body within the resolution time that are always allowed, and those for each row beyond them.
 const CALM_EVENTS: usize = 20;
@@ -22,13 +24,13 @@ const CALM_WIDE_EVENTS: usize = 50;
 /// on: forces that nothing at the start foretold press contacts together, of which now the one, now the other gives way.
 const STILL: f64 = 1e-6;
 const AT_ONCE: f64 = 1e-8;
-/// An event is costly if what closes would lose more than such a part of the energy of all that takes part. Of wide and costly
-/// ones so many times as many again are allowed.
+/// An event is costly if what closes would lose more than such a part of the energy of all that takes part: it counts as a wide one.
+/// Of those that are both so many times as many again are allowed.
 const COSTLY: f64 = 1e-3;
 const CALM_COSTLY_EVENTS: usize = 100;
 /// What counts for so many wide and costly ones.
 const NARROW: usize = CALM_WIDE_EVENTS * CALM_COSTLY_EVENTS;
-/// So many wide events are not looked at for what they would cost.
+/// What counts for so many wide and costly ones is not looked at for what it would cost.
 const MANY: usize = 10 * CALM_COSTLY_EVENTS;
 
 /// What does not go farther in the resolution time than such a part of the target zone, and is not faster than so many times
@@ -65,7 +67,7 @@ impl RigidSystem {
         let at_once = AT_ONCE * self.settings.steps.length / self.settings.steps.speed;
         // Of few events it does not matter.
         let is_often = region.bodies.iter().any(|body| self.recent[body.index()].events > MANY);
-        let weight = if is_often && self.is_costly(region) { 1 } else { CALM_COSTLY_EVENTS };
+        let is_costly = !is_often || self.is_costly(region);
         let mut most = 0;
         for &body in &region.bodies {
             let recent = &mut self.recent[body.index()];
@@ -76,7 +78,11 @@ impl RigidSystem {
                 *recent = Recent { since: Some(now), events: 0, ..*recent };
             }
             let is_wide = way.is_none_or(|way| way > wide);
-            recent.events += if is_wide { weight } else { NARROW };
+            recent.events += match (is_wide, is_costly) {
+                (true, true) => 1,
+                (true, false) | (false, true) => CALM_COSTLY_EVENTS,
+                (false, false) => NARROW,
+            };
             recent.last = Some(now);
             most = most.max(recent.events);
         }
@@ -93,17 +99,15 @@ impl RigidSystem {
 
     /// True if what closes in a region has a good part of the kinetic energy of its bodies.
     fn is_costly(&self, region: &Region) -> bool {
-        let inertia = |body: BodyId| (!body.is_world()).then(|| self.flyer(body).body());
         let closing = region.records.iter().map(|record| {
-            let bodies = [record.parties.primary.body, record.parties.normal.body];
-            let inverse_mass: f64 =
-                bodies.into_iter().filter_map(inertia).map(|body| body.inverse_mass).sum();
-            let rate = record.motion.normal_velocity.min(0.0);
+            let sides = [record.parties.primary.body, record.parties.normal.body];
+            let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
+            let (rate, inverse_mass) = (row.rate.min(0.0), row.coupling(&row));
             if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
         });
-        let moving = region.bodies.iter().filter(|&&body| self.is_movable(body)).map(|&body| {
-            let velocity = self.flyer(body).state_at(self.now).velocity;
-            0.5 * velocity.length_squared() / self.flyer(body).body().inverse_mass
+        let moving = region.bodies.iter().map(|&body| {
+            let flyer = self.flyer(body);
+            flyer.body().kinetic_energy(&flyer.state_at(self.now))
         });
         closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
     }
