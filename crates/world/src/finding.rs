@@ -79,7 +79,8 @@ pub enum Finding {
         /// The energy turned over [J].
         turned_over: f64,
     },
-    /// What counts as slow is not: contacts were stopped without elasticity that took a good part of all energy.
+    /// What counts as slow is not, or as a storm: what was stopped without elasticity took a good part of all
+    /// energy.
     Captured {
         /// How much [J].
         energy: f64,
@@ -114,7 +115,7 @@ impl std::fmt::Display for Finding {
             ),
             Self::Captured { energy, turned_over, slow } => write!(
                 out,
-                "contacts that close with less than velocity_tol, {} m/s, took {} J of {} J turned over",
+                "what was stopped as slower than velocity_tol, {} m/s, or as too frequent took {} J of {} J turned over",
                 Rounded(*slow),
                 Rounded(*energy),
                 Rounded(*turned_over)

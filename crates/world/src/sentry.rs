@@ -246,6 +246,19 @@ mod tests {
     }
 
     #[test]
+    fn blows_that_were_taken_for_slow_contacts_are_told_at_the_end_at_any_tolerance() {
+        let mut world = slow_disc();
+        world.advance_to(1.0, &mut |_| ()).expect("the user wants it so");
+        let told = |world: &World| {
+            world.findings(10.0).iter().any(|finding| matches!(finding, Finding::Captured { .. }))
+        };
+        assert!(!told(&world));
+        world.sentry.slow_is_given = false;
+        world.sentry.tolerance = 1e-2;
+        assert!(world.books_astray(&Books::from(&world.ledger()), 10.0).is_none() && told(&world));
+    }
+
+    #[test]
     fn what_was_turned_over_before_the_first_look_counts() {
         // The disc falls by 0.5 m and lies there: nothing moves when somebody looks.
         let mut world = slow_disc();

@@ -4,7 +4,8 @@
 use super::{impacts, within};
 use halfgap::World;
 use halfgap::geometry::DVec2;
-use halfgap_tests::mechanism::{GRAVITY, Workshop, at_rest, block, disc, thrown};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+use halfgap_tests::world_of;
 use std::f64::consts::PI;
 
 /// Where the light disc rests, and where the heavy one starts [m] from the wall.
@@ -58,4 +59,43 @@ fn a_light_disc_under_a_heavy_block_throws_it_up_again_at_a_loose_tolerance() {
     assert!(impacts(&mut world, 2.0) > 1000);
     let kept = world.energy().total() / energy - 1.0;
     within("light disc under a heavy block at 1e-2: energy, relative", kept, 1e-9);
+}
+
+/// A hub with a slot from its centre outwards, and in that a die with a play of 1 mm; both are pinned, the die so far
+/// [m] beside the hub that it jams where the slot has turned away.
+fn die_in_a_slot(tolerance: f64, beside: f64, rate: f64) -> World {
+    let slower = 0.9 * rate;
+    let text = format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"die\"\nrun = {{ duration = 1.5, tolerance = {tolerance} }}\n\
+         [[body]]\nname = \"hub\"\nmass = 2.0\nmoment = 0.6\ncenter_of_mass = [0.0, 0.0]\nangular_velocity = {rate}\n\
+         shape = {{ outline = {{ paths = [\n\
+         {{ start = [0.8, 0.0], edges = [{{ arc = {{ to = [0.8, 0.0], center = [0.0, 0.0], clockwise = false }} }}] }},\n\
+         {{ start = [-0.6, -0.101], edges = [{{ line = [0.6, -0.101] }}, {{ line = [0.6, 0.101] }}, \
+         {{ line = [-0.6, 0.101] }}, {{ line = [-0.6, -0.101] }}] }}] }} }}\n\
+         [[body]]\nname = \"die\"\nmass = 0.5\nangular_velocity = {slower}\nposition = [{beside}, 0.0]\n\
+         shape = {{ block = {{ width = 0.4, height = 0.2 }} }}\n\
+         [[connector]]\npin = {{ a = {{ body = \"world\", point = [0.0, 0.0] }}, b = {{ body = \"hub\", point = [0.0, 0.0] }} }}\n\
+         [[connector]]\npin = {{ a = {{ body = \"world\", point = [{beside}, 0.0] }}, b = {{ body = \"die\", point = [0.0, 0.0] }} }}\n"
+    );
+    world_of(&text)
+}
+
+#[test]
+fn a_die_that_jams_in_its_slot_keeps_its_energy() {
+    for (tolerance, allowed) in [(1e-2, 1e-4), (1e-3, 1e-9), (1e-4, 1e-9)] {
+        let mut most: f64 = 0.0;
+        for beside in [0.01, 0.02, 0.04] {
+            for rate in [2.0, 3.5] {
+                let mut world = die_in_a_slot(tolerance, beside, rate);
+                let energy = world.energy().total();
+                advance(&mut world, 1.5);
+                most = most.max((world.energy().total() / energy - 1.0).abs());
+            }
+        }
+        within(
+            &format!("six dies that jam in their slots at {tolerance:e}: energy, relative"),
+            most,
+            allowed,
+        );
+    }
 }

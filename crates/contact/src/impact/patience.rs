@@ -57,7 +57,7 @@ impl Patience {
     /// of the heaviest.
     pub(super) fn new([rows, contacts]: [usize; 2], lightness: f64, small: f64, slow: f64) -> Self {
         let of_masses = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
-        let of_angles = if contacts <= FEW_CONTACTS { BLOWS_OF_FEW } else { 0 };
+        let of_angles = if (1..=FEW_CONTACTS).contains(&contacts) { BLOWS_OF_FEW } else { 0 };
         let blows = of_masses.max(of_angles).max(ROWS_PER_STAGE);
         let [first_stage, per_stage] = [blows, ROWS_PER_STAGE].map(|each| each * rows);
         Self { small, slow: Some(slow), first_stage, per_stage, left: FIRST_ROWS, stages: STAGES }

@@ -291,6 +291,30 @@ fn light_bodies_before_a_wall_turn_a_heavy_one_round() {
 }
 
 #[test]
+fn walls_that_all_but_face_each_other_turn_a_body_back() -> Result<(), ImpactError> {
+    // It goes into a wedge, and out again after pi blows for each radian of it, of which many are slow.
+    for wedge in [0.3f64, 0.1, 0.05, 0.02] {
+        let body = Mover { inverse: [1.0, 1.0, 0.0], velocity: [1.0, -0.3, 0.0] };
+        let walls = Mover { inverse: [0.0; 3], velocity: [0.0; 3] };
+        let normals = [std::f64::consts::FRAC_PI_2, -std::f64::consts::FRAC_PI_2 - wedge];
+        let rows = normals.map(|angle| {
+            let touch = Touch { bodies: [0, 1], angle, moments: [0.0; 2], elasticity: 1.0 };
+            CollisionRow { velocity_tol: 1e-2 * wedge, ..touch.row(&[body, walls]) }
+        });
+        for law in LAWS {
+            let mut impact = Impact::new();
+            impact.set_rows(rows);
+            law.resolve(&mut impact, ORDERS[0], 0)?;
+            let parts = impact.rates().iter().zip(impact.rows()).zip(impact.impulses());
+            let gained: f64 = parts.map(|((rate, row), impulse)| 0.5 * impulse * (rate + row.rate)).sum();
+            let lost = gained / energy(&[body]);
+            assert!(lost.abs() < 1e-6, "{law:?}, {wedge} rad: {lost} of the energy");
+        }
+    }
+    Ok(())
+}
+
+#[test]
 fn a_row_that_opens_is_not_held_by_force_in_a_simultaneous_impact() {
     // The impulse along the first normal turns the second row round, which opened before: to stop it there would push
     // along a motion that opens, and add energy.

@@ -321,7 +321,9 @@ fn elastic_discs_in_a_tight_box_come_to_an_end() {
         let (movers, ties) = row_of_discs(count, 1.0, true);
         for law in LAWS {
             let (now, impact) = resolve(law, &movers, &ties);
-            let most = 12 * 20 * ties.len() as u64 + 10;
+            // Few contacts may take two hundred blows a row before what is slow stops to count.
+            let first_stage = if ties.len() <= 4 { 200 } else { 20 };
+            let most = (first_stage + 11 * 20) * ties.len() as u64 + 10;
             assert!(impact.solves() <= most, "{law:?}: {} solves of {count} discs", impact.solves());
             assert!(energy(&now) <= energy(&movers) + 1e-12);
         }

@@ -67,7 +67,7 @@ impl RigidSystem {
         let at_once = AT_ONCE * self.settings.steps.length / self.settings.steps.speed;
         // Of few events it does not matter.
         let is_often = region.bodies.iter().any(|body| self.recent[body.index()].events > MANY);
-        let is_costly = !is_often || self.is_costly(region);
+        let is_costly = is_often && self.is_costly(region);
         let mut most = 0;
         for &body in &region.bodies {
             let recent = &mut self.recent[body.index()];
