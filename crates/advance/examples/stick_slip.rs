@@ -1,9 +1,9 @@
 //! An event-driven system of its own that has to be integrated: a block on a running belt, held back by a spring.
 //!
-//! The block sticks to the belt until the spring pulls harder than friction holds, then it slips, faster and faster since
-//! friction falls with the sliding speed, swings back and is caught again: the squeal of a brake. While it sticks, its
-//! motion and the next event are known in closed form; while it slips, steps of an integrator are its segments, and the
-//! catch is found on the motion along a step.
+//! The block sticks to the belt until the spring pulls harder than friction holds, then it slips, faster and
+//! faster since friction falls with the sliding speed, swings back and is caught again: the squeal of a
+//! brake. While it sticks, its motion and the next event are known in closed form; while it slips, steps of
+//! an integrator are its segments, and the catch is found on the motion along a step.
 //!
 //! Nothing here knows of bodies: only the integrator, the trait, the clock and the queue are used.
 //!

@@ -3,18 +3,19 @@
 //! *Invariant*: this crate knows no force laws and no scene files; without the feature `rigid` (on by default) it does
 //! not even know bodies, and has no dependencies but an error macro.
 //!
-//! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in an
-//! [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as its caller wants. Outputs are read from segments and change
-//! nothing.
+//! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in
+//! an [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as
+//! its caller wants. Outputs are read from segments and change nothing.
 //!
 //! # Code map
 //!
-//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; [`ode`] integrates
-//! motions that have no closed form; `rigid` implements the trait for rigid bodies: free flight in closed form, contacts,
-//! connectors and forces between bodies by integrated groups, impacts and all changes of contact as events.
+//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; [`ode`]
+//! integrates motions that have no closed form; `rigid` implements the trait for rigid bodies: free flight in
+//! closed form, contacts, connectors and forces between bodies by integrated groups, impacts and all changes
+//! of contact as events.
 //!
-//! The examples `bouncing_point` (closed form) and `stick_slip` (integrated) are systems that need nothing but this crate
-//! without its features.
+//! The examples `bouncing_point` (closed form) and `stick_slip` (integrated) are systems that need nothing
+//! but this crate without its features.
 
 #![forbid(unsafe_code)]
 

@@ -1,14 +1,14 @@
 //! The event queue: at most one predicted event a source, the earliest first.
 //!
-//! A heap of four children a node that knows where each source's entry lies, so that a prediction that an event made worthless is replaced
-//! in place and nothing stale ever comes out. Equal times come in the order of their sources, so that runs repeat to the
-//! bit. Compare M. Bannerman et al., "Stable algorithm for event detection in event-driven particle dynamics",
-//! arXiv 1211.6718, and the queues they cite.
+//! A heap of four children a node that knows where each source's entry lies, so that a prediction that an
+//! event made worthless is replaced in place and nothing stale ever comes out. Equal times come in the order
+//! of their sources, so that runs repeat to the bit. Compare M. Bannerman et al., "Stable algorithm for event
+//! detection in event-driven particle dynamics", arXiv 1211.6718, and the queues they cite.
 
 use crate::time::Time;
 
-/// Index of whatever predicts events: a pair, a body, a force law. Indices had better be small: the queue keeps a place for each up to
-/// the largest.
+/// Index of whatever predicts events: a pair, a body, a force law. Indices had better be small: the queue
+/// keeps a place for each up to the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
@@ -27,8 +27,8 @@ const CHILDREN: usize = 4;
 /// Slots before the root, so that the children of a node fill one family.
 const BEFORE_ROOT: usize = CHILDREN - 1;
 
-/// What an entry is ordered by first: the first number of its time. The rest of the time decides between equal ones, and is
-/// kept elsewhere.
+/// What an entry is ordered by first: the first number of its time. The rest of the time decides between
+/// equal ones, and is kept elsewhere.
 #[derive(Clone, Copy, Debug)]
 struct Key {
     seconds: f64,

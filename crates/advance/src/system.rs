@@ -19,8 +19,8 @@ pub trait EventDriven {
     /// The event cannot be handled; the system stays at the time of the event.
     fn handle_next(&mut self) -> Result<Option<Self::Report>, Self::Error>;
 
-    /// All events up to some time have been handled, and somebody will look: what was put off must be there now. So it must
-    /// be, too, after each event that is told of.
+    /// All events up to some time have been handled, and somebody will look: what was put off must be there
+    /// now. So it must be, too, after each event that is told of.
     fn arrive(&mut self) {}
 }
 
@@ -40,8 +40,8 @@ pub fn advance_until<S: EventDriven>(
     outcome.map(|_| ())
 }
 
-/// The same, but no further than the first event of which `on_report` says [`ControlFlow::Break`]. Those that come after it, be it
-/// at the same time, are handled by the next advance, just as if it had not stopped.
+/// The same, but no further than the first event of which `on_report` says [`ControlFlow::Break`]. Those that
+/// come after it, be it at the same time, are handled by the next advance, just as if it had not stopped.
 ///
 /// # Errors
 /// As [`advance_until`].

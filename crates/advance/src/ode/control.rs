@@ -4,8 +4,8 @@ use super::method::Method;
 
 /// The next step aims at this part of the length at which the error would be what is asked for.
 const SAFETY: f64 = 0.9;
-/// Steps whose error is up to this many times what is asked for are kept. Steps aim at less than half of what is asked for and miss it
-/// by chance: what such a miss adds to all errors is not worth a whole step.
+/// Steps whose error is up to this many times what is asked for are kept. Steps aim at less than half of what
+/// is asked for and miss it by chance: what such a miss adds to all errors is not worth a whole step.
 const KEPT: f64 = 1.5;
 /// A step shrinks to this part at most, since the estimate says little about much shorter steps.
 const SMALLEST_FACTOR: f64 = 0.2;
@@ -36,8 +36,8 @@ pub fn is_kept(error_norm: f64) -> bool {
 impl Method {
     /// Factor from an accepted step to the next, after an error norm.
     ///
-    /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short. Methods with
-    /// fixed steps answer 1; a norm that is not finite asks for the smallest factor.
+    /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short.
+    /// Methods with fixed steps answer 1; a norm that is not finite asks for the smallest factor.
     #[must_use]
     pub fn step_factor(self, error_norm: f64) -> f64 {
         let Some(order) = self.error_order() else { return 1.0 };
@@ -54,8 +54,8 @@ impl Method {
     /// Factor from an accepted step to the next where the one before may be known, too: it foresees that an error which
     /// grew from step to step goes on to grow.
     ///
-    /// Source: Gustafsson's predictive controller as in Hairer and Wanner, "Solving Ordinary Differential Equations II",
-    /// IV.8, (8.25).
+    /// Source: Gustafsson's predictive controller as in Hairer and Wanner, "Solving Ordinary Differential
+    /// Equations II", IV.8, (8.25).
     #[must_use]
     pub fn factor_after(self, step: Accepted, before: Option<Accepted>) -> f64 {
         let plain = self.step_factor(step.error);
@@ -73,7 +73,8 @@ impl Method {
     }
 }
 
-/// A root of a number: of the degrees that are asked for most by square roots, which are faster and the same everywhere.
+/// A root of a number: of the degrees that are asked for most by square roots, which are faster and the same
+/// everywhere.
 fn root(value: f64, degree: u32) -> f64 {
     match degree {
         8 => value.sqrt().sqrt().sqrt(),

@@ -1,7 +1,8 @@
 //! The motion along a step of an explicit method, as polynomials.
 //!
-//! The form is that of `tableau`. Its cubic part takes the values and rates at both ends as they are given, so it follows
-//! an end state that was changed after the step; what the change `d` adds is `d (3 x^2 - 2 x^3)`.
+//! The form is that of `tableau`. Its cubic part takes the values and rates at both ends as they are given,
+//! so it follows an end state that was changed after the step; what the change `d` adds is `d (3 x^2 - 2
+//! x^3)`.
 
 use super::explicit::{Explicit, Lane, WIDTH, weighted_sum};
 use super::polynomial::{NESTED, SegmentPolynomial};

@@ -1,9 +1,9 @@
 //! Coefficients of DOP853, the method of order 8 with two error estimates and a dense output of order 7.
 //!
-//! Source: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
-//! II.5 (the method of J. R. Dormand and P. J. Prince, with Hairer's choice of free parameters), II.6 (dense output), and
-//! II.10 (error estimates), with the digits of the authors' published program. The tests of `tableau` check them against
-//! the order conditions.
+//! Source: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
+//! 1993, II.5 (the method of J. R. Dormand and P. J. Prince, with Hairer's choice of free parameters), II.6
+//! (dense output), and II.10 (error estimates), with the digits of the authors' published program. The tests
+//! of `tableau` check them against the order conditions.
 
 #![expect(clippy::excessive_precision, reason = "published digits, kept whole so that they can be compared")]
 

@@ -1,7 +1,7 @@
 //! Coefficients of the method of order 5 of Dormand and Prince, with a dense output of order 4.
 //!
-//! Source: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993, II.5,
-//! table 5.2; II.6, (6.12) and the authors' program for L. F. Shampine's dense output.
+//! Source: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
+//! 1993, II.5, table 5.2; II.6, (6.12) and the authors' program for L. F. Shampine's dense output.
 
 use super::tableau::{Stage, Tableau, Term};
 

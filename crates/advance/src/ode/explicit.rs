@@ -77,8 +77,8 @@ impl Explicit {
         }
     }
 
-    /// See [`Stepper::error_norm`](super::Stepper::error_norm), of the components from `first` on. DOP853 has two estimates,
-    /// which are combined as in HNW II.10.
+    /// See [`Stepper::error_norm`](super::Stepper::error_norm), of the components from `first` on. DOP853 has
+    /// two estimates, which are combined as in HNW II.10.
     pub(super) fn error_norm(&self, first: usize, scales: &[f64]) -> f64 {
         let mean = |row: usize| mean_square(&self.error(row)[first..], scales);
         match self.tableau.errors.len() {

@@ -55,8 +55,8 @@ impl Method {
         }
     }
 
-    /// How large the rates of a system times the step may be, roughly, before what should decay grows: `None` for a method
-    /// that damps it whatever the step. See [`Stepper::stiffness`](super::Stepper::stiffness).
+    /// How large the rates of a system times the step may be, roughly, before what should decay grows: `None`
+    /// for a method that damps it whatever the step. See [`Stepper::stiffness`](super::Stepper::stiffness).
     ///
     /// Source: the boundaries on the real axis of the stability domains, HNW II.4 and E. Hairer, G. Wanner, Solving
     /// Ordinary Differential Equations II, IV.2.
@@ -71,8 +71,8 @@ impl Method {
         }
     }
 
-    /// The part of a step in the middle of the widest interval in which none of its rates is asked for, dense output included; `None`
-    /// for methods without error estimate and implicit ones.
+    /// The part of a step in the middle of the widest interval in which none of its rates is asked for, dense
+    /// output included; `None` for methods without error estimate and implicit ones.
     #[must_use]
     pub fn middle_between_stages(self) -> Option<f64> {
         let tableau = self.tableau().filter(|_| self.is_adaptive())?;

@@ -1,19 +1,20 @@
 //! Ordinary differential equations: one step of a method, its error, and the motion along it.
 //!
-//! This room knows no bodies: a system is a function that gives the rates of change of some numbers ([`Ode`]). A
-//! [`Stepper`] goes one step and says what it knows about its error; whoever owns the loop decides whether the step is
-//! accepted, may change the end state by about the error (projection on constraints), and may ask for the motion along the
-//! step as [`SegmentPolynomial`]s. The buffers belong to the stepper: after the first step nothing is allocated.
+//! This room knows no bodies: a system is a function that gives the rates of change of some numbers
+//! ([`Ode`]). A [`Stepper`] goes one step and says what it knows about its error; whoever owns the loop
+//! decides whether the step is accepted, may change the end state by about the error (projection on
+//! constraints), and may ask for the motion along the step as [`SegmentPolynomial`]s. The buffers belong to
+//! the stepper: after the first step nothing is allocated.
 //!
-//! Source of methods and control: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
-//! Springer 1993 ("HNW" in this room).
+//! Source of methods and control: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
+//! Equations I, 2nd ed., Springer 1993 ("HNW" in this room).
 //!
 //! # Code map
 //!
-//! `method` lists the methods, `tableau` says what one consists of and has the small ones, `dop853` and `dormand_prince5`
-//! the large ones; `stepper` goes a step and estimates its error: of an `explicit` method, whose motion along the step is
-//! in `dense`, or by `radau`, which solves equations (`linear`); `polynomial` is the form of the motion; `start` proposes the
-//! first step and `control` the next.
+//! `method` lists the methods, `tableau` says what one consists of and has the small ones, `dop853` and
+//! `dormand_prince5` the large ones; `stepper` goes a step and estimates its error: of an `explicit` method,
+//! whose motion along the step is in `dense`, or by `radau`, which solves equations (`linear`); `polynomial`
+//! is the form of the motion; `start` proposes the first step and `control` the next.
 //!
 //! # Examples
 //!

@@ -7,10 +7,10 @@ pub(super) const NESTED: usize = 7;
 
 /// A function of time over a step, a polynomial of degree 8 at most.
 ///
-/// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and absolute sums
-/// of the coefficients are good bounds. Only the constant is as large as the value; the others are as small as the motion.
-/// So the value at the start is that given, and that at the end, up to a few ulps and the rounding of the motion alone.
-/// Offsets [s] count from the start of the step.
+/// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and
+/// absolute sums of the coefficients are good bounds. Only the constant is as large as the value; the others
+/// are as small as the motion. So the value at the start is that given, and that at the end, up to a few ulps
+/// and the rounding of the motion alone. Offsets [s] count from the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SegmentPolynomial {
     /// Monomial coefficients in `s`; the first is the value at the middle.
@@ -53,9 +53,10 @@ impl Spread {
 impl SegmentPolynomial {
     /// The position that starts and ends at given values and has a given velocity, but for a bump.
     ///
-    /// The integral of the velocity misses the end by about the error of the step. What is missing is put in smoothly,
-    /// as `3 x^2 - 2 x^3` of it after the part `x` of the step; so the derivatives at the ends are still the velocity's.
-    /// What is only rounding of the values at the ends is left missing: over a short step it would be a velocity.
+    /// The integral of the velocity misses the end by about the error of the step. What is missing is put in
+    /// smoothly, as `3 x^2 - 2 x^3` of it after the part `x` of the step; so the derivatives at the ends are
+    /// still the velocity's. What is only rounding of the values at the ends is left missing: over a short
+    /// step it would be a velocity.
     #[must_use]
     pub fn integrated(start: f64, end: f64, velocity: &SegmentPolynomial) -> Self {
         let half_step = 0.5 * velocity.step;

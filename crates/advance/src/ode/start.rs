@@ -16,8 +16,8 @@ const LARGEST_GROWTH: f64 = 100.0;
 /// Part of the guess that is proposed when nothing seems to change.
 const AT_REST: f64 = 1e-3;
 impl Stepper {
-    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two derivatives. With a negative limit
-    /// the run goes back: the step is negative, and no longer.
+    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two
+    /// derivatives. With a negative limit the run goes back: the step is negative, and no longer.
     ///
     /// Source: HNW II.4, "Starting step size", with `scales` as in [`error_norm`](Stepper::error_norm). Costs one
     /// derivative; methods with fixed steps ask for none and answer `limit`.

@@ -10,11 +10,12 @@ use std::ops::Range;
 /// How fast the fastest part of a system is, as a step of it tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StiffnessEstimate {
-    /// Size of the fastest rate times the step: an explicit method is held up by what is fast rather than by its errors when
-    /// this comes to [`Method::stability_limit`].
+    /// Size of the fastest rate times the step: an explicit method is held up by what is fast rather than by
+    /// its errors when this comes to [`Method::stability_limit`].
     pub fastest: f64,
-    /// Size of the error that this makes of the motion along the step, in the units of [`Stepper::error_norm`], which does not
-    /// tell it; 0 where nothing is that fast. The end of the step may be right all the same.
+    /// Size of the error that this makes of the motion along the step, in the units of
+    /// [`Stepper::error_norm`], which does not tell it; 0 where nothing is that fast. The end of the step may
+    /// be right all the same.
     pub dense_error: f64,
 }
 
@@ -99,8 +100,9 @@ impl Stepper {
         Ok(())
     }
 
-    /// As [`step`](Self::step), but where [`needs_end_rates`](Self::needs_end_rates), nothing is known of the error before
-    /// [`close`](Self::close). So who changes the end by about its error, and goes on from there, asks for the rates once.
+    /// As [`step`](Self::step), but where [`needs_end_rates`](Self::needs_end_rates), nothing is known of the
+    /// error before [`close`](Self::close). So who changes the end by about its error, and goes on from
+    /// there, asks for the rates once.
     ///
     /// # Errors
     /// The first error of the system; then nothing is known about the step.
@@ -126,7 +128,8 @@ impl Stepper {
         matches!(&self.kind, Kind::Explicit(explicit) if explicit.tableau.needs_end_rates)
     }
 
-    /// Takes the rates at the end of a step that was made by [`step_open`](Self::step_open), for methods that need them.
+    /// Takes the rates at the end of a step that was made by [`step_open`](Self::step_open), for methods that
+    /// need them.
     ///
     /// # Panics
     /// If they do not fit the state of the last step.
@@ -151,7 +154,8 @@ impl Stepper {
         }
     }
 
-    /// The same of the components from `first` on; implicit methods answer 0 for what they do not solve for, as integrals.
+    /// The same of the components from `first` on; implicit methods answer 0 for what they do not solve for,
+    /// as integrals.
     #[must_use]
     pub fn error_norm_from(&self, first: usize, scales: &[f64]) -> f64 {
         match &self.kind {
@@ -160,8 +164,8 @@ impl Stepper {
         }
     }
 
-    /// Estimates how fast the fastest part of the system is, where `end` is the state at the end of the last step with its
-    /// rates, and what that does to the motion along the step.
+    /// Estimates how fast the fastest part of the system is, where `end` is the state at the end of the last
+    /// step with its rates, and what that does to the motion along the step.
     #[must_use]
     pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {
         match &mut self.kind {
@@ -172,9 +176,10 @@ impl Stepper {
 
     /// Writes some components of the motion along the last step as polynomials, one of `out` for each.
     ///
-    /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at both ends the
-    /// polynomials have exactly the values given, and those of explicit methods the rates, too. The degree is 7 for
-    /// DOP853, which asks for three more derivatives, 4 for Dormand-Prince 5, and 3 for the others.
+    /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at
+    /// both ends the polynomials have exactly the values given, and those of explicit methods the rates, too.
+    /// The degree is 7 for DOP853, which asks for three more derivatives, 4 for Dormand-Prince 5, and 3 for
+    /// the others.
     ///
     /// # Errors
     /// The first error of the system; then `out` is unchanged.

@@ -1,11 +1,12 @@
 //! What a Runge-Kutta method is made of, and the classical methods with fixed steps.
 //!
-//! Only coefficients that are not zero are written down. Stage 0 holds the rates at the start of a step, which the caller
-//! knows; the next places the rates of `stages`, then comes the place of the rates at the end, then those of
-//! `dense_stages`.
+//! Only coefficients that are not zero are written down. Stage 0 holds the rates at the start of a step,
+//! which the caller knows; the next places the rates of `stages`, then comes the place of the rates at the
+//! end, then those of `dense_stages`.
 //!
-//! Dense output has the form of E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
-//! Springer 1993, II.6 (and of the authors' programs): with `x` the part of the step that has passed and `z = 1 - x`,
+//! Dense output has the form of E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations
+//! I, 2nd ed., Springer 1993, II.6 (and of the authors' programs): with `x` the part of the step that has
+//! passed and `z = 1 - x`,
 //!
 //! ```text
 //! y(x) = y0 + x (c2 + z (c3 + x (c4 + z (c5 + x (c6 + z (c7 + x c8))))))
@@ -23,9 +24,9 @@ pub(super) struct Stage {
     pub(super) terms: &'static [Term],
 }
 
-/// How dense output goes wrong at the limit of stability, where the error estimate does not tell: what decays so fast that
-/// its rate times the step is `from` or more makes it err by up to `by` times the difference between the last stage and the
-/// end.
+/// How dense output goes wrong at the limit of stability, where the error estimate does not tell: what decays
+/// so fast that its rate times the step is `from` or more makes it err by up to `by` times the difference
+/// between the last stage and the end.
 #[derive(Debug)]
 pub(super) struct Swing {
     pub(super) from: f64,

@@ -1,7 +1,8 @@
 //! A polynomial through values: both ends of a step with their rates, and five nodes between.
 //!
-//! The nodes are the zeros of the Jacobi polynomial of degree 5 for the weight (1 - s^2)^2, for which the mean square of the
-//! error is least. Even and odd parts are found for themselves, in powers of s^2, by divided differences.
+//! The nodes are the zeros of the Jacobi polynomial of degree 5 for the weight (1 - s^2)^2, for which the
+//! mean square of the error is least. Even and odd parts are found for themselves, in powers of s^2, by
+//! divided differences.
 
 use super::polynomial::{DEGREE, SegmentPolynomial};
 
@@ -13,7 +14,8 @@ impl SegmentPolynomial {
     /// The inner nodes of [`SegmentPolynomial::through`], as parts of the step.
     pub const INNER: [f64; 5] = [0.5 - 0.5 * FAR, 0.5 - 0.5 * NEAR, 0.5, 0.5 + 0.5 * NEAR, 0.5 + 0.5 * FAR];
 
-    /// The polynomial of degree 8 with a value and a rate [1/s] at each end of a step [s], and values at the inner nodes.
+    /// The polynomial of degree 8 with a value and a rate [1/s] at each end of a step [s], and values at the
+    /// inner nodes.
     #[must_use]
     pub fn through([start, end]: [[f64; 2]; 2], inner: [f64; 5], step: f64) -> Self {
         let [far_left, near_left, middle, near_right, far_right] = inner.map(|value| value - start[0]);

@@ -52,7 +52,8 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Forces vary over so short a length that rounding of positions, or the gap that contacts have, makes energy of nothing.
+    /// Forces vary over so short a length that rounding of positions, or the gap that contacts have, makes
+    /// energy of nothing.
     #[error(
         "at {time} s the forces on bodies {bodies:?} vary over {length:e} m, too little for their coordinates or gaps: {laws:?}"
     )]
@@ -66,8 +67,8 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Steps have become so short that those for all the time that is to be simulated would never come to an end, and nothing
-    /// happens meanwhile.
+    /// Steps have become so short that those for all the time that is to be simulated would never come to an
+    /// end, and nothing happens meanwhile.
     #[error(
         "at {time} s the steps of bodies {bodies:?} are {step:e} s long: too many of them for {duration} s; forces on them: {laws:?}"
     )]
@@ -83,8 +84,8 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink, and collide again and
-    /// again within a step. In shorter steps they sink less.
+    /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink,
+    /// and collide again and again within a step. In shorter steps they sink less.
     #[error(
         "at {time} s bodies {} and {} have collided {events} times, pressed into each other, within a step of {step:e} s",
         between.primary.0, between.normal.0
@@ -99,7 +100,8 @@ pub enum AdvanceError {
         /// After how long what has sunk is put back [s].
         step: f64,
     },
-    /// A point comes to rest in a corner of its rail, which it passes again and again, ever more slowly: nothing holds it there.
+    /// A point comes to rest in a corner of its rail, which it passes again and again, ever more slowly:
+    /// nothing holds it there.
     #[error("at {time} s the point of connector {} comes to rest in a corner of its path, which cannot hold it", connector.0)]
     InCorner {
         /// When [s].

@@ -1,5 +1,5 @@
-//! What somebody outside does to bodies: their velocities change at once, and what touches or ties them responds as to an
-//! impact. Forces that last are laws.
+//! What somebody outside does to bodies: their velocities change at once, and what touches or ties them
+//! responds as to an impact. Forces that last are laws.
 
 use super::error::AdvanceError;
 use super::event::cause::{Cause, EventWork};
@@ -21,9 +21,10 @@ pub struct VelocityChange {
 }
 
 impl RigidSystem {
-    /// Changes velocities of bodies at a time, all at once: connectors and contacts against which they move then respond by
-    /// the impact law. The times of events that come first must have been reached; a time before that of the last event counts
-    /// as that. What the changes do to the energy is in the ledger's `interventions`.
+    /// Changes velocities of bodies at a time, all at once: connectors and contacts against which they move
+    /// then respond by the impact law. The times of events that come first must have been reached; a time
+    /// before that of the last event counts as that. What the changes do to the energy is in the ledger's
+    /// `interventions`.
     ///
     /// # Errors
     /// As of an event: the impact, or the forces after it, cannot be found. There is no going on from that.

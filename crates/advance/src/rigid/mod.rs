@@ -1,5 +1,5 @@
-//! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by pair,
-//! events located at their time.
+//! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted
+//! pair by pair, events located at their time.
 //!
 //! | room | what lives there |
 //! |---|---|
@@ -11,8 +11,9 @@
 //! | `held` | which contacts and connectors are held from then on |
 //! | `limits` | what counts for nothing or would go on for ever: bounces, hops, storms, pace |
 //!
-//! `system` ties all to the event loop. `parts` is what a system is made of, `scales` what a tolerance means in a scene, `intervention`
-//! what somebody outside does to bodies, `ledger` the energy's books, `report` what the outside may ask for.
+//! `system` ties all to the event loop. `parts` is what a system is made of, `scales` what a tolerance means
+//! in a scene, `intervention` what somebody outside does to bodies, `ledger` the energy's books, `report`
+//! what the outside may ask for.
 
 mod ending;
 mod error;

@@ -61,8 +61,8 @@ impl ContactChanges {
         self.end.clear();
     }
 
-    /// Drops what ends only to begin at once. Both lists mostly have what they share in one order: each search begins where
-    /// the last one ended.
+    /// Drops what ends only to begin at once. Both lists mostly have what they share in one order: each
+    /// search begins where the last one ended.
     fn drop_continued(&mut self, goes_on: &mut Vec<bool>) {
         let begin = &mut self.begin;
         goes_on.clear();

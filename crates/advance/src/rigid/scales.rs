@@ -7,11 +7,12 @@ use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Aabb;
 
-/// Part of the smallest body's radius, times the tolerance, that the target gap takes: the gap is a modelling error that
-/// impacts amplify, so it lies far below the tolerance.
+/// Part of the smallest body's radius, times the tolerance, that the target gap takes: the gap is a modelling
+/// error that impacts amplify, so it lies far below the tolerance.
 const GAP_SHARE: f64 = 1e-2;
-/// The target gap is at least so many machine epsilons of the largest coordinate: gaps must be told from rounding, and so
-/// must the small part of one by which a contact without force may sink before it fires again.
+/// The target gap is at least so many machine epsilons of the largest coordinate: gaps must be told from
+/// rounding, and so must the small part of one by which a contact without force may sink before it fires
+/// again.
 const GAP_ROUNDINGS: f64 = 512.0;
 /// Twice that: a body falls through the target gap from rest with a speed that is told from rounding.
 const SPEED_ROUNDINGS: f64 = 1024.0;
@@ -37,8 +38,8 @@ pub struct Scales {
     pub extent: f64,
     /// Largest speed of a point of a body [m/s].
     pub speed: f64,
-    /// The least speed [m/s] of those that bodies have, or get by falling as far as they are large; `None` if none moves or falls. What
-    /// is slow beside a bullet need not be so beside a ball.
+    /// The least speed [m/s] of those that bodies have, or get by falling as far as they are large; `None` if
+    /// none moves or falls. What is slow beside a bullet need not be so beside a ball.
     pub slow: Option<f64>,
     /// Largest acceleration of a body [m/s^2] but for damping, which makes nothing fast.
     pub acceleration: f64,
@@ -51,7 +52,8 @@ impl Scales {
         self.extent = bounds.size().length().min(self.coordinate);
     }
 
-    /// Takes in the radius [m] of an arc, after the bounds: however short the arc, its gaps are measured from its centre.
+    /// Takes in the radius [m] of an arc, after the bounds: however short the arc, its gaps are measured from
+    /// its centre.
     pub fn round_off(&mut self, radius: f64) {
         self.coordinate = self.coordinate.max(radius);
     }
@@ -62,8 +64,8 @@ impl Scales {
         GAP_ROUNDINGS * f64::EPSILON * self.coordinate
     }
 
-    /// The largest coordinate [m] at which the smallest target gap is no larger than the smallest movable body; `None` if
-    /// nothing moves.
+    /// The largest coordinate [m] at which the smallest target gap is no larger than the smallest movable
+    /// body; `None` if nothing moves.
     #[must_use]
     pub fn largest_coordinate(&self) -> Option<f64> {
         self.smallest_radius.map(|radius| radius / (GAP_ROUNDINGS * f64::EPSILON))
@@ -75,14 +77,15 @@ impl Scales {
         tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)
     }
 
-    /// A speed [m/s] of the scene: what falls across it reaches this, even if all is at rest at the start, and wherever it is.
+    /// A speed [m/s] of the scene: what falls across it reaches this, even if all is at rest at the start,
+    /// and wherever it is.
     #[must_use]
     pub fn speed_scale(&self) -> f64 {
         self.speed.max((self.acceleration * self.extent).sqrt())
     }
 
-    /// A normal speed [m/s] that is slow: a part of what is fast, but to stop at it a body need not have fallen by more than half the same
-    /// part of its size.
+    /// A normal speed [m/s] that is slow: a part of what is fast, but to stop at it a body need not have
+    /// fallen by more than half the same part of its size.
     fn slowness(&self, tolerance: f64) -> f64 {
         let of_fast = tolerance * self.speed_scale();
         let of_slow = self.slow.map_or(f64::INFINITY, |slow| tolerance.sqrt() * slow);
@@ -104,8 +107,8 @@ impl Scales {
 }
 
 impl RigidSettings {
-    /// What a relative tolerance asks for in a scene of such sizes, with the default method: contacts carry forces, impacts are resolved by the
-    /// hybrid law, and steps are projected.
+    /// What a relative tolerance asks for in a scene of such sizes, with the default method: contacts carry
+    /// forces, impacts are resolved by the hybrid law, and steps are projected.
     #[must_use]
     pub fn new(tolerance: f64, scales: &Scales) -> Self {
         Self::with_tolerances(tolerance, scales.tolerances(tolerance), scales, Method::default())
@@ -139,8 +142,8 @@ impl RigidSettings {
     }
 }
 
-/// Relative error that a step may make by its estimate. That is of one order less than the step: what errors add up to falls
-/// faster than what is asked of the estimate, by one power in so many.
+/// Relative error that a step may make by its estimate. That is of one order less than the step: what errors
+/// add up to falls faster than what is asked of the estimate, by one power in so many.
 fn local_error(tolerance: f64, method: Method) -> f64 {
     let power = -1.0 / f64::from(method.order() + 1);
     LOCAL_SHARE * tolerance * (tolerance / FINEST_TOLERANCE).powf(power)

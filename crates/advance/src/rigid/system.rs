@@ -1,7 +1,7 @@
 //! Rigid bodies as an event-driven system.
 //!
-//! Kinds of events: a body leaves its box, a pair's search goes on, two bodies come into contact, a group's segment ends.
-//! Between events nothing is computed; an event touches only its bodies and what is near them.
+//! Kinds of events: a body leaves its box, a pair's search goes on, two bodies come into contact, a group's
+//! segment ends. Between events nothing is computed; an event touches only its bodies and what is near them.
 
 use super::error::AdvanceError;
 use super::event::cause::EventWork;
@@ -64,11 +64,12 @@ pub struct RigidSettings {
     pub impulse_step: Option<f64>,
     /// Velocities of connectors are made to fit at the ends of steps, where `projection` does not do so.
     pub joint_small_impacts: bool,
-    /// Rates [m/s] up to which a row neither closes nor opens: more than rounding leaves of a solve, but far less than any
-    /// approach that counts. Two rows that oppose each other at a small angle stop what slides between them, if both are
-    /// taken to rest.
+    /// Rates [m/s] up to which a row neither closes nor opens: more than rounding leaves of a solve, but far
+    /// less than any approach that counts. Two rows that oppose each other at a small angle stop what slides
+    /// between them, if both are taken to rest.
     pub rest_speed: f64,
-    /// Time [s] that forces take to make `velocity_tol`, or to cross the target zone: more events than it can hold are ended.
+    /// Time [s] that forces take to make `velocity_tol`, or to cross the target zone: more events than it can
+    /// hold are ended.
     pub resolution_time: f64,
 }
 
@@ -113,7 +114,8 @@ impl Counts {
 pub struct Handled {
     /// When.
     pub time: Time,
-    /// True for an impact, of which [`RigidSystem::last_impact`] tells; [`RigidSystem::contact_changes`] tells of the rest.
+    /// True for an impact, of which [`RigidSystem::last_impact`] tells; [`RigidSystem::contact_changes`]
+    /// tells of the rest.
     pub impact: bool,
 }
 
@@ -291,7 +293,8 @@ impl RigidSystem {
         &self.last_impact
     }
 
-    /// The impact of the event that could not be handled, if there was one before that was found out: it is in the ledger.
+    /// The impact of the event that could not be handled, if there was one before that was found out: it is
+    /// in the ledger.
     #[must_use]
     pub fn untold_impact(&self) -> Option<&ImpactReport> {
         (self.failure.is_some() && self.has_hit).then_some(&self.last_impact)
@@ -419,8 +422,8 @@ impl EventDriven for RigidSystem {
         if self.failure.is_some() { Some(self.now) } else { self.queue.first().map(|entry| entry.time) }
     }
 
-    /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no going on from it, and
-    /// it is told again whenever that is tried.
+    /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no
+    /// going on from it, and it is told again whenever that is tried.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
         let Some(event) = self.queue.first() else { return Ok(None) };
         self.happen(event.time, |system| system.handle(event.source))

@@ -16,8 +16,8 @@ use std::f64::consts::{FRAC_PI_4, SQRT_2};
 /// Half-width of the target zone, in target gaps.
 const ZONE: f64 = 0.6;
 
-/// Target gap [m], relative error of a step, and what counts as slow [m/s], as at rest [m/s] and as soon [s], where all of
-/// it is far finer than anything that happens.
+/// Target gap [m], relative error of a step, and what counts as slow [m/s], as at rest [m/s] and as soon [s],
+/// where all of it is far finer than anything that happens.
 const FINE_GAP: f64 = 1e-10;
 const FINE_ERROR: f64 = 1e-11;
 const FINE_SLOW: f64 = 1e-9;
@@ -56,7 +56,8 @@ const DISCS: RigidSettings = RigidSettings {
     ..FINE
 };
 
-/// Discs of radius 0.5 m and 1 kg at rest on a floor, which is body 0, under gravity, with their centres at the given places [m].
+/// Discs of radius 0.5 m and 1 kg at rest on a floor, which is body 0, under gravity, with their centres at
+/// the given places [m].
 pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
     let disc = Shape::disc(0.5).expect("a fine radius");
     let on_floor = |&place: &f64| {
@@ -66,8 +67,8 @@ pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
     resting(places.iter().map(on_floor))
 }
 
-/// A rounded block of 1 kg that stands on one of its corners, of radius 0.1 m, on such a floor, tilted to where 0.2 rad are
-/// left to the end of the corner.
+/// A rounded block of 1 kg that stands on one of its corners, of radius 0.1 m, on such a floor, tilted to
+/// where 0.2 rad are left to the end of the corner.
 pub(super) fn block_on_its_corner() -> RigidSystem {
     let shape = Shape::rounded_block(1.0, 1.0, 0.1).expect("a fine size");
     let tilt = FRAC_PI_4 - 0.2;
@@ -76,8 +77,8 @@ pub(super) fn block_on_its_corner() -> RigidSystem {
     resting([(shape, state)].into_iter())
 }
 
-/// Turns the block of [`block_on_its_corner`], whose group this is, to an angle [rad] at a spin [rad/s]; its corner stays on the
-/// floor.
+/// Turns the block of [`block_on_its_corner`], whose group this is, to an angle [rad] at a spin [rad/s]; its
+/// corner stays on the floor.
 pub(super) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
     let tilt = angle - FRAC_PI_4;
     let (height, rise) = (0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP, -0.4 * SQRT_2 * tilt.sin() * spin);

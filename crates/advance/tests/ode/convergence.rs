@@ -36,8 +36,8 @@ fn ends_converge_with_the_order_of_the_method() {
 
 #[test]
 fn polynomials_converge_with_the_least_of_their_own_order_and_that_of_the_ends() {
-    // Local errors of degree 7 and 4 fall as the steps to the 8 and 5, as do the ends; cubics do not hinder order 4, but
-    // the order of Radau's method, which is 5 at the ends.
+    // Local errors of degree 7 and 4 fall as the steps to the 8 and 5, as do the ends; cubics do not hinder
+    // order 4, but the order of Radau's method, which is 5 at the ends.
     for (method, steps) in STEPS {
         let cubic = if method == Method::RadauIia5 { 4.0 } else { f64::INFINITY };
         let (measured, order) = (orders(method, steps), f64::from(method.order()).min(cubic));

@@ -6,7 +6,8 @@ use std::convert::Infallible;
 /// Rate [1/s] at which the fast part decays.
 const FAST: f64 = 1e6;
 
-/// A body that is dragged along by a medium which moves as `cos t`: position, velocity, and the heat `FAST (v - cos t)^2`.
+/// A body that is dragged along by a medium which moves as `cos t`: position, velocity, and the heat `FAST
+/// (v - cos t)^2`.
 ///
 /// v' = -FAST (v - cos t) - sin t, whose slow solution is v = cos t, x = sin t.
 #[derive(Default)]
@@ -35,8 +36,8 @@ impl Dragged {
 
 const TIME: f64 = 10.0;
 
-/// Goes on for some time with steps that follow a tolerance, from a velocity; the state, the steps, the largest error of
-/// the velocity between the ends of steps once what is fast is gone.
+/// Goes on for some time with steps that follow a tolerance, from a velocity; the state, the steps, the
+/// largest error of the velocity between the ends of steps once what is fast is gone.
 fn solve(method: Method, velocity: f64, tolerance: f64, most: usize) -> ([f64; 3], usize, f64) {
     let (mut stepper, mut dragged) = (Stepper::new(method), Dragged::default());
     let scales = [tolerance; 2];
@@ -173,8 +174,8 @@ impl Ode for Lever {
 
 #[test]
 fn the_heat_of_what_follows_a_slow_motion_is_that_of_where_it_comes_to() {
-    // The spin follows the angle, a correction later; that the first correction, of the angle by all it turns, leaves little
-    // in comparison says nothing about that.
+    // The spin follows the angle, a correction later; that the first correction, of the angle by all it
+    // turns, leaves little in comparison says nothing about that.
     let (mut lever, mut stepper) = (Lever, Stepper::new(Method::RadauIia5));
     stepper.set_scales(&[1e-13, 5e-9]);
     let (angle, step) = (0.3f64, 3e-5);

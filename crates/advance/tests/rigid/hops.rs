@@ -1,5 +1,5 @@
-//! Hops of what is kicked open and comes back at once: those that stay within the target zone, and in which nothing moves
-//! much, are held from the kick on.
+//! Hops of what is kicked open and comes back at once: those that stay within the target zone, and in which
+//! nothing moves much, are held from the kick on.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;

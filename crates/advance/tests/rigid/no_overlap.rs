@@ -109,8 +109,8 @@ fn excluded_pairs_pass_through_each_other() {
 
 #[test]
 fn a_body_set_spinning_in_place_is_seen_to_sweep_more_room_than_it_had() {
-    // Two discs hit a resting bar at the same time at its two ends from opposite sides: it spins, but does not move, and
-    // its tips reach a disc that was outside of its box.
+    // Two discs hit a resting bar at the same time at its two ends from opposite sides: it spins, but does
+    // not move, and its tips reach a disc that was outside of its box.
     let bar = body(&block(4.0, 0.1), BodyState::default());
     let hit = |x: f64, v: f64| body(&disc(0.25), moving(DVec2::new(x, -v), DVec2::new(0.0, v), 0.0));
     let target = body(&disc(0.25), moving(DVec2::new(0.0, 1.5), DVec2::ZERO, 0.0));

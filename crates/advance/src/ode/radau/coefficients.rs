@@ -1,7 +1,7 @@
 //! Coefficients of the method of Radau IIA with three stages, and of the transformation that splits its equations.
 //!
-//! Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996, IV.5 (Table 5.6) and
-//! IV.8. With the inverse of the matrix of stages A,
+//! Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996, IV.5
+//! (Table 5.6) and IV.8. With the inverse of the matrix of stages A,
 //!
 //! ```text
 //! T^-1 A^-1 T = [ real, 0, 0;  0, pair.0, -pair.1;  0, pair.1, pair.0 ]

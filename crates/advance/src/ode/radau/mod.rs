@@ -1,8 +1,9 @@
-//! A step of the implicit method of Radau IIA with three stages: order 5, and stable however fast parts of the system decay.
+//! A step of the implicit method of Radau IIA with three stages: order 5, and stable however fast parts of
+//! the system decay.
 //!
-//! The equations of the stages are solved by a simplified Newton method: the derivatives of the rates are found once a
-//! step, by differences. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996,
-//! IV.8 ("HW" in this room).
+//! The equations of the stages are solved by a simplified Newton method: the derivatives of the rates are
+//! found once a step, by differences. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations
+//! II, 2nd ed., Springer 1996, IV.8 ("HW" in this room).
 
 mod coefficients;
 
@@ -16,11 +17,12 @@ use std::ops::Range;
 const CONVERGED: f64 = 1e-2;
 /// Corrections below so many roundings of the state cannot be told from none.
 const ROUNDINGS: f64 = 16.0;
-/// A correction leaves at least this part of itself to correct, however much smaller it is than the one before: the first
-/// is the whole way of the step, and what is slow may hide that what is fast has yet to follow it.
+/// A correction leaves at least this part of itself to correct, however much smaller it is than the one
+/// before: the first is the whole way of the step, and what is slow may hide that what is fast has yet to
+/// follow it.
 const LEAST_LEFT: f64 = 1e-2;
-/// A correction by less than this part of the acceptable error is none: where a system rests, each is what rounding makes of its
-/// rates, and does not get smaller.
+/// A correction by less than this part of the acceptable error is none: where a system rests, each is what
+/// rounding makes of its rates, and does not get smaller.
 const NEGLIGIBLE: f64 = 1e-6;
 /// Corrections in one step; more mean that a shorter step costs less.
 const MOST_CORRECTIONS: usize = 10;
@@ -28,8 +30,8 @@ const MOST_CORRECTIONS: usize = 10;
 const SLOWEST: f64 = 0.9;
 /// Acceptable error of a component, in parts of its size, where none is told.
 const UNTOLD: f64 = 1e-10;
-/// Differences are taken over the acceptable error, but over no less than this part of a component, so that the rounding of
-/// the rates does not matter.
+/// Differences are taken over the acceptable error, but over no less than this part of a component, so that
+/// the rounding of the rates does not matter.
 const LEAST_DIFFERENCE: f64 = 1e6 * f64::EPSILON;
 /// Turns of the power method in one step.
 const TURNS: usize = 4;
@@ -107,8 +109,8 @@ impl Radau {
         self.stiffness
     }
 
-    /// See [`Stepper::dense`](super::Stepper::dense): the polynomial through the start, the stages and the end. It does not
-    /// have the rates at the ends, which say nothing about the motion where they decay fast.
+    /// See [`Stepper::dense`](super::Stepper::dense): the polynomial through the start, the stages and the
+    /// end. It does not have the rates at the ends, which say nothing about the motion where they decay fast.
     pub(super) fn dense(&self, end: Point<'_>, components: Range<usize>, out: &mut [SegmentPolynomial]) {
         let [first, second, _] = NODES;
         for (component, out) in components.zip(out) {
@@ -198,8 +200,8 @@ impl Radau {
         self.real.factorize() && self.pair.factorize()
     }
 
-    /// Finds what rounding makes of the components: of each itself, and, where rates depend much on some, of these: what is
-    /// fast follows the rounding of the rates.
+    /// Finds what rounding makes of the components: of each itself, and, where rates depend much on some, of
+    /// these: what is fast follows the rounding of the rates.
     fn find_rounding(&mut self) {
         let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
         self.rounding.clear();
@@ -296,8 +298,8 @@ impl Radau {
         }
     }
 
-    /// HW (8.19). Their second filter, (8.20), is left out: it takes what has yet to decay for nothing, and the motion along
-    /// the step would not be that of the system.
+    /// HW (8.19). Their second filter, (8.20), is left out: it takes what has yet to decay for nothing, and
+    /// the motion along the step would not be that of the system.
     fn estimate_error(&mut self, from: Point<'_>) {
         for at in 0..self.active {
             let stages: f64 = (0..3).map(|stage| ERROR[stage] * self.stages[stage][at]).sum();

@@ -1,10 +1,11 @@
 //! When does a function that is sampled along a segment first fall below zero?
 //!
-//! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them shows
-//! where the function may dip below zero in between, however briefly, and samples there tell. The bracket is closed by inverse parabolas
-//! where they are sure to serve, else by bisection: some functions have a kink where they fall (T. Chandrupatla, "A new hybrid
-//! quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives", Advances in
-//! Engineering Software 28, 1997).
+//! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic
+//! through them shows where the function may dip below zero in between, however briefly, and samples there
+//! tell. The bracket is closed by inverse parabolas where they are sure to serve, else by bisection: some
+//! functions have a kink where they fall (T. Chandrupatla, "A new hybrid quadratic/bisection algorithm for
+//! finding the zero of a nonlinear function without using derivatives", Advances in Engineering Software 28,
+//! 1997).
 
 /// Samples along a segment: both ends and three places between, equally far apart.
 pub(crate) const NODES: usize = 5;
@@ -33,8 +34,8 @@ pub(crate) fn early_node(index: usize, span: f64) -> f64 {
     (index..EARLY).fold(node(1, span), |offset, _| offset * EARLIER)
 }
 
-/// The first offset up to the first node at which `f` has fallen below zero, given its values at the start, which is not
-/// negative, and at the early nodes.
+/// The first offset up to the first node at which `f` has fallen below zero, given its values at the start,
+/// which is not negative, and at the early nodes.
 pub(crate) fn early_fall(
     start: f64,
     values: &[f64; EARLY],
@@ -47,8 +48,9 @@ pub(crate) fn early_fall(
     Some(close(above, (early_node(index, span), values[index]), span, f))
 }
 
-/// The first offset up to the first node at which `f` has fallen below zero after it was not below at an early node, the last
-/// such; for what is below zero at the start, if only by rounding, and at the first node.
+/// The first offset up to the first node at which `f` has fallen below zero after it was not below at an
+/// early node, the last such; for what is below zero at the start, if only by rounding, and at the first
+/// node.
 pub(crate) fn fall_after_rise(
     values: &[f64; NODES],
     span: f64,
@@ -80,8 +82,8 @@ pub(crate) fn between_nodes(values: &[f64; NODES], span: f64, offset: f64) -> f6
 
 /// The first offset in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
 ///
-/// A function that starts below zero must rise first, but see [`fall_from_below`]. The answer lies behind the fall: there `f` is
-/// negative.
+/// A function that starts below zero must rise first, but see [`fall_from_below`]. The answer lies behind the
+/// fall: there `f` is negative.
 pub(crate) fn first_fall(values: &[f64; NODES], span: f64, f: impl FnMut(f64) -> f64) -> Option<f64> {
     first_fall_before(values, span, None, f)
 }
@@ -118,7 +120,8 @@ pub(crate) fn first_fall_before(
     None
 }
 
-/// A place strictly between two offsets [s] at which `f` is negative, near one at which the quartic has a minimum, in nodes.
+/// A place strictly between two offsets [s] at which `f` is negative, near one at which the quartic has a
+/// minimum, in nodes.
 fn find_dip(dip: f64, [from, to]: [f64; 2], span: f64, mut f: impl FnMut(f64) -> f64) -> Option<Sample> {
     let scale = span / (NODES - 1) as f64;
     let is_inside = |place: f64| from < place && place < to;
@@ -142,8 +145,8 @@ fn find_dip(dip: f64, [from, to]: [f64; 2], span: f64, mut f: impl FnMut(f64) ->
     (value < 0.0).then_some((place, value))
 }
 
-/// The first offset at which `f`, which is below zero at the start, has fallen lower than is allowed. The values are those at the
-/// nodes.
+/// The first offset at which `f`, which is below zero at the start, has fallen lower than is allowed. The
+/// values are those at the nodes.
 pub(crate) fn fall_from_below(
     values: &[f64; NODES],
     span: f64,
@@ -270,8 +273,8 @@ fn close(above: Sample, below: Sample, span: f64, mut f: impl FnMut(f64) -> f64)
     if last.1 < 0.0 { last.0 } else { far.0 }
 }
 
-/// Which part of the way from the last place to the far one the inverse parabola through three samples vanishes at; `None` where
-/// that parabola is no function between them.
+/// Which part of the way from the last place to the far one the inverse parabola through three samples
+/// vanishes at; `None` where that parabola is no function between them.
 fn part_by_parabola(last: Sample, far: Sample, left: Sample) -> Option<f64> {
     let place = (last.0 - far.0) / (left.0 - far.0);
     let height = (last.1 - far.1) / (left.1 - far.1);

@@ -1,9 +1,10 @@
-//! Contacts that surely stay on their features along a segment. Bounds on the motion tell so of most of them, and then `watch`
-//! need not sample how far they are from running off.
+//! Contacts that surely stay on their features along a segment. Bounds on the motion tell so of most of them,
+//! and then `watch` need not sample how far they are from running off.
 //!
-//! Let f tell where a contact is: the place of the foot along a line, or the direction of a normal seen from a body. From the
-//! middle of a segment of length h it gets no farther than |f'| h/2 + max |f''| h^2/8, and with c the centre of the round
-//! feature, r its offset from the line's body, which turns at w, and d the offset between two round features,
+//! Let f tell where a contact is: the place of the foot along a line, or the direction of a normal seen from
+//! a body. From the middle of a segment of length h it gets no farther than |f'| h/2 + max |f''| h^2/8, and
+//! with c the centre of the round feature, r its offset from the line's body, which turns at w, and d the
+//! offset between two round features,
 //!
 //! * along a line |f''| <= |r''| + 2 |w| |r'| + (|w'| + w^2) |r|, of r as it turns with the body;
 //! * of a direction of d |f''| <= |d''|/|d| + (|d'|/|d|)^2, and |w'| more as a body sees it.
@@ -39,8 +40,8 @@ struct OffsetBounds {
 }
 
 impl OffsetBounds {
-    /// Of the offset between the ends of two arms; where only the primary one turns with its body, to the centre of mass of
-    /// the other body.
+    /// Of the offset between the ends of two arms; where only the primary one turns with its body, to the
+    /// centre of mass of the other body.
     fn between(primary: &Side<'_>, other: &Side<'_>, other_turns: bool) -> Self {
         let [mut rate, mut second] = primary.turning();
         if other_turns {
@@ -54,7 +55,8 @@ impl OffsetBounds {
     }
 }
 
-/// How far something gets from the middle of a segment to its ends, by its rate there and a bound on its second derivative.
+/// How far something gets from the middle of a segment to its ends, by its rate there and a bound on its
+/// second derivative.
 fn way(rate: f64, second: f64, half: f64) -> f64 {
     (rate.abs() + 0.5 * second * half) * half
 }
@@ -66,8 +68,8 @@ impl Dynamics<'_> {
         self.stage.bounds.extend(self.group.paths.iter().map(bounds_along));
     }
 
-    /// True if a held contact stays on its features along the segment, in whose middle the bodies are placed. Their bounds
-    /// are known.
+    /// True if a held contact stays on its features along the segment, in whose middle the bodies are placed.
+    /// Their bounds are known.
     pub(crate) fn stays(&self, row: usize) -> bool {
         let held = &self.group.rows[row];
         let RowSource::Contact(features) = held.source else { return false };
@@ -150,8 +152,8 @@ mod tests {
     /// Length of a segment [s].
     const SPAN: f64 = 0.125;
 
-    /// Whether the contact of body 1, which sets out otherwise, is said to stay on its features along a segment, and whether it
-    /// does.
+    /// Whether the contact of body 1, which sets out otherwise, is said to stay on its features along a
+    /// segment, and whether it does.
     fn said_and_done(mut system: RigidSystem, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         set_out(&mut group);

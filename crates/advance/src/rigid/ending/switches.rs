@@ -14,9 +14,9 @@ const MOST_SHORTER: usize = 30;
 const SIGN_AT: f64 = 1.0 / 1024.0;
 
 impl Dynamics<'_> {
-    /// When a stop that is not held closes. One from which its point has just set out is touched at the start: the search
-    /// then begins with a part of the segment so short that the point is off. On a closed rail what has gone by a stop seems to have
-    /// come round: laps are told apart by what is read before.
+    /// When a stop that is not held closes. One from which its point has just set out is touched at the
+    /// start: the search then begins with a part of the segment so short that the point is off. On a closed
+    /// rail what has gone by a stop seems to have come round: laps are told apart by what is read before.
     pub(super) fn find_stop(&mut self, stop: Stop) -> Option<f64> {
         let path = self.physics.mechanism.connectors[stop.id.index()].path();
         let lap = path.filter(|path| path.is_closed()).map(|path| path.length());
@@ -54,8 +54,8 @@ impl Dynamics<'_> {
         self.physics.laws[law].switch(index, &now)
     }
 
-    /// The first change of sign of a switching function. Just after one, as a group is made, it is zero: a little later tells its
-    /// sign.
+    /// The first change of sign of a switching function. Just after one, as a group is made, it is zero: a
+    /// little later tells its sign.
     pub(super) fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
         let Group { span, start, made, .. } = *self.group;
         let sign_at = if start == made { span * SIGN_AT } else { 0.0 };
@@ -116,7 +116,8 @@ mod tests {
         }
     }
 
-    /// Offset [s] at which a clock rings that is to ring so long after the start of a segment, which is the first of its group or not.
+    /// Offset [s] at which a clock rings that is to ring so long after the start of a segment, which is the
+    /// first of its group or not.
     fn rings_at(delay: f64, is_first: bool) -> Option<f64> {
         let later = Time::from_seconds(1.0);
         let body = BodyId(0);

@@ -1,8 +1,9 @@
-//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its features or, touched
-//! without force, sinks; stops that close and force laws that change branch are in `switches`.
+//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its
+//! features or, touched without force, sinks; stops that close and force laws that change branch are in
+//! `switches`.
 //!
-//! Each is a function along the dense output whose first fall below zero is an event. Places are read at once, forces only
-//! when the time comes up to which none can vanish.
+//! Each is a function along the dense output whose first fall below zero is an event. Places are read at
+//! once, forces only when the time comes up to which none can vanish.
 
 use super::crossing::{EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall_before, node};
 use super::earliest::Earliest;
@@ -24,11 +25,11 @@ const STILL_SHARE: f64 = 1e-3;
 
 /// Part of the accuracy by which a held contact may be too near or too far within a step.
 const INNER_SHARE: f64 = 0.5;
-/// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what ends do, and by
-/// much more where connectors tell angles by little.
+/// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what
+/// ends do, and by much more where connectors tell angles by little.
 const INNER_ERRORS: f64 = 50.0;
-/// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign there, two
-/// more for contacts.
+/// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign
+/// there, two more for contacts.
 const MIDDLE: f64 = 0.5;
 const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
 
@@ -90,9 +91,9 @@ fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
 }
 
 impl Dynamics<'_> {
-    /// Finds what ends the segment early, whose dense output and end forces are known. Whether a contact loses its force takes
-    /// an evaluation for every place looked at, so that waits until the time up to which none can: mostly something else
-    /// has happened by then.
+    /// Finds what ends the segment early, whose dense output and end forces are known. Whether a contact
+    /// loses its force takes an evaluation for every place looked at, so that waits until the time up to
+    /// which none can: mostly something else has happened by then.
     pub(crate) fn find_event(&mut self) {
         self.group.event = self.find_geometric_event();
         let firm = self.firm_part().map(|part| part * self.group.span);
@@ -103,8 +104,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Finds the first contact that loses its force on the segment, if that comes before what ends it otherwise; not before
-    /// the time of the look.
+    /// Finds the first contact that loses its force on the segment, if that comes before what ends it
+    /// otherwise; not before the time of the look.
     pub(crate) fn look_for_release(&mut self) {
         let from = self.group.look.take().unwrap_or(0.0);
         self.find_least_forces();
@@ -195,9 +196,10 @@ impl Dynamics<'_> {
         self.stage.gross = gross;
     }
 
-    /// By how much held contacts are off between the ends of the segment, where dense output is less exact, in units of what is
-    /// allowed so that nothing overlaps and what touches is seen to, or connectors, in units of what steps may err by. The
-    /// largest error of a connector is noted, and the least gap of a contact.
+    /// By how much held contacts are off between the ends of the segment, where dense output is less exact,
+    /// in units of what is allowed so that nothing overlaps and what touches is seen to, or connectors, in
+    /// units of what steps may err by. The largest error of a connector is noted, and the least gap of a
+    /// contact.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
         (self.group.largest_error, self.group.least_gap) = (0.0, None);
         let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
@@ -228,9 +230,10 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
-    /// Up to which part of the step no contact comes near to losing its force, as its stages tell; none if that is so all along.
-    /// A force is firm where its least value at the stages and both ends is more than all of them vary by, and for as long as
-    /// it would take to vanish several times as fast as it varies. Implicit steps have too few stages to tell.
+    /// Up to which part of the step no contact comes near to losing its force, as its stages tell; none if
+    /// that is so all along. A force is firm where its least value at the stages and both ends is more than
+    /// all of them vary by, and for as long as it would take to vanish several times as fast as it varies.
+    /// Implicit steps have too few stages to tell.
     fn firm_part(&self) -> Option<f64> {
         let Group { rows, forces, end_forces, .. } = &*self.group;
         let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
@@ -274,8 +277,8 @@ impl Dynamics<'_> {
         samples
     }
 
-    /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell that all of them
-    /// stay; else the samples of those that do are without end.
+    /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell
+    /// that all of them stay; else the samples of those that do are without end.
     fn find_who_may_leave(&mut self, rooms: &mut Vec<[f64; NODES]>) {
         rooms.clear();
         let mechanism = &self.physics.mechanism;
@@ -308,8 +311,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The earliest contact that comes onto its features and runs off again before the first node: what has just taken over from its
-    /// neighbour starts at the end of its features, or beyond by rounding.
+    /// The earliest contact that comes onto its features and runs off again before the first node: what has
+    /// just taken over from its neighbour starts at the end of its features, or beyond by rounding.
     fn find_early_change(&mut self, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
         for (row, values) in rooms.iter().enumerate() {
             let fall = fall_after_rise(values, self.group.span, |offset| {
@@ -336,8 +339,8 @@ impl Dynamics<'_> {
 
     /// The earliest fall of any row of a watch, if it comes before what was found so far.
     ///
-    /// To place the bodies costs more than to read a row: once a fall is found, all rows are read there, and those that have
-    /// not fallen by then need no search of their own.
+    /// To place the bodies costs more than to read a row: once a fall is found, all rows are read there, and
+    /// those that have not fallen by then need no search of their own.
     fn find_first(&mut self, earliest: &mut Earliest, samples: &[[f64; NODES]], watch: &Watch) {
         if samples.is_empty() {
             return;
@@ -368,8 +371,8 @@ impl Dynamics<'_> {
         self.stage.there = there;
     }
 
-    /// When a contact that is touched without force sinks on its features, beyond which it was seen to: what is turned away may
-    /// be turned back, and then sinks at once.
+    /// When a contact that is touched without force sinks on its features, beyond which it was seen to: what
+    /// is turned away may be turned back, and then sinks at once.
     fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
         let span = self.group.span;
         let mut read = |offset: f64| {
@@ -391,8 +394,9 @@ impl Dynamics<'_> {
         self.physics.mechanism.gap(row, &self.stage.movings) - row.gap
     }
 
-    /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
-    /// projection onto the held rows may have moved their bodies, and what starts below its least gap is not seen to sink.
+    /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has
+    /// them: the projection onto the held rows may have moved their bodies, and what starts below its least
+    /// gap is not seen to sink.
     pub(crate) fn lower_idle(&mut self) {
         let Group { bodies, end_state, idle, .. } = &mut *self.group;
         if idle.is_empty() {
@@ -406,8 +410,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Lets contacts stay where they are if lifting some has not brought them to their gaps: where rows contradict each other, each step
-    /// would be thrown off anew.
+    /// Lets contacts stay where they are if lifting some has not brought them to their gaps: where rows
+    /// contradict each other, each step would be thrown off anew.
     pub(crate) fn leave_lifted(&mut self) {
         let Group { bodies, end_state, rows, .. } = &mut *self.group;
         if !rows.iter().any(|row| row.is_lifted) {

@@ -42,7 +42,8 @@ pub(crate) struct ConnectorState {
 }
 
 impl ConnectorState {
-    /// How often before a rope has gone taut at the present time: it lies nearer to its length than the search can tell.
+    /// How often before a rope has gone taut at the present time: it lies nearer to its length than the
+    /// search can tell.
     fn repeats_at(&self, now: Time) -> u32 {
         if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
     }
@@ -254,8 +255,8 @@ impl RigidSystem {
         rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search)
     }
 
-    /// When a rope that is taken longer than it is has gone slack by clearly more than that, on the way to where a search from a time
-    /// on has come.
+    /// When a rope that is taken longer than it is has gone slack by clearly more than that, on the way to
+    /// where a search from a time on has come.
     fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
         let slack = self.connector_states[id.index()].slack;
         if slack <= 0.0 {
@@ -278,7 +279,8 @@ impl RigidSystem {
         Stop { id, hint, slack: self.slack_of(&sample) }
     }
 
-    /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than nothing where it is touched.
+    /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than
+    /// nothing where it is touched.
     fn slack_of(&self, sample: &ConnectorSample) -> f64 {
         let touches = sample.gap <= self.settings.tolerances.accuracy;
         let rests = touches && sample.kinematics.rate <= self.rest_speed();

@@ -1,9 +1,10 @@
 //! Groups are cut at the time of an event: where their bodies are then, and when that is.
 //!
-//! The search for contacts sees dense output. Where that may err by much of what a step may, the step is made anew up to the
-//! event, so that the restart has full order; the contact that fired is then a little off, and the time is corrected until
-//! it is where the search saw it. Where that does not bring all that touches to where it was seen, as of what closes slowly,
-//! or brings a body into another, the event stays on the dense output, along which nothing penetrates.
+//! The search for contacts sees dense output. Where that may err by much of what a step may, the step is made
+//! anew up to the event, so that the restart has full order; the contact that fired is then a little off, and
+//! the time is corrected until it is where the search saw it. Where that does not bring all that touches to
+//! where it was seen, as of what closes slowly, or brings a body into another, the event stays on the dense
+//! output, along which nothing penetrates.
 
 use super::region::{Region, Touch};
 use crate::rigid::search::pairs::{Link, Prediction};
@@ -52,8 +53,8 @@ impl RigidSystem {
         }
     }
 
-    /// Cuts the groups of a region where steps made anew bring the contact that fired to the gap [m] that it was seen with;
-    /// the answer is when.
+    /// Cuts the groups of a region where steps made anew bring the contact that fired to the gap [m] that it
+    /// was seen with; the answer is when.
     fn cut_exactly(&mut self, region: &Region, fired: Option<Touch>, gap: Option<f64>) -> Time {
         let mut time = self.now;
         for round in 0..=MOST_CORRECTIONS {
@@ -84,8 +85,9 @@ impl RigidSystem {
         (counts && rate < -self.settings.tolerances.velocity_tol).then(|| time.plus(-error / rate))
     }
 
-    /// The earliest contact of the bodies of a region that was predicted for a time before this one, to which the present
-    /// event has been corrected, if it has been passed: what has sunk that deep is not found again.
+    /// The earliest contact of the bodies of a region that was predicted for a time before this one, to which
+    /// the present event has been corrected, if it has been passed: what has sunk that deep is not found
+    /// again.
     fn passed(&self, region: &Region, time: Time) -> Option<Time> {
         if time <= self.now {
             return None;
@@ -102,8 +104,8 @@ impl RigidSystem {
         contacts.min()
     }
 
-    /// True if what touches in a region is not where the search saw it: of an event whose time was corrected, what fired.
-    /// So it is where a body lies within another that it did not touch.
+    /// True if what touches in a region is not where the search saw it: of an event whose time was corrected,
+    /// what fired. So it is where a body lies within another that it did not touch.
     fn is_off(&self, region: &Region, time: Time) -> bool {
         let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
         let mut seen = region.touches.iter().zip(&region.motions);

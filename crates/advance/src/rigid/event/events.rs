@@ -18,7 +18,8 @@ use halfgap_geometry::{FeatureId, GapSample};
 
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
 const SEAM_ANGLE: f64 = 4e-9;
-/// To stop contacts changes the velocities of their bodies' points by no more than so many times what they closed or opened by.
+/// To stop contacts changes the velocities of their bodies' points by no more than so many times what they
+/// closed or opened by.
 const MODEST: f64 = 100.0;
 /// Nor are its impulses greater than so many times what the momentum of some body changes by.
 const MOST_CANCELLING: f64 = 10.0;
@@ -51,8 +52,8 @@ impl RigidSystem {
         })
     }
 
-    /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more slowly than forces
-    /// can be resolved. What has come to rest elsewhere may come with that much.
+    /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more
+    /// slowly than forces can be resolved. What has come to rest elsewhere may come with that much.
     pub(crate) fn start_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
@@ -180,8 +181,9 @@ impl RigidSystem {
         self.cut_groups(&mut work.region);
         self.remeasure(&mut work.region, self.now);
         if self.neighbour_closes(&work.region) {
-            // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again. It takes over only
-            // if it is what is nearest now. The groups that have been cut no longer tell who belongs together.
+            // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again.
+            // It takes over only if it is what is nearest now. The groups that have been cut no longer tell
+            // who belongs together.
             work.seeds.clear();
             work.seeds.extend(&work.region.bodies);
             self.collect_region(&mut work.region, &work.seeds, self.now);
@@ -217,8 +219,9 @@ impl RigidSystem {
         closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
     }
 
-    /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour closes or opens
-    /// by is only the angle up to which joints are smooth. What meets at the same moment is an impact, which does without.
+    /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour
+    /// closes or opens by is only the angle up to which joints are smooth. What meets at the same moment is
+    /// an impact, which does without.
     fn hand_over(&mut self, work: &mut EventWork) {
         let Some(run_off) = work.region.cause.run_off() else { return };
         let is_neighbour = |record: &Collision| {
@@ -287,7 +290,8 @@ impl RigidSystem {
         Ok(happened)
     }
 
-    /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new velocities.
+    /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new
+    /// velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         for &body in &work.region.bodies {
             self.flyers[body.index()].unwind();
@@ -337,8 +341,8 @@ impl RigidSystem {
         outcome
     }
 
-    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them as they are. Where
-    /// such rows contradict each other, nothing is done: as unilateral ones they need not.
+    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them
+    /// as they are. Where such rows contradict each other, nothing is done: as unilateral ones they need not.
     fn stop_bilaterally(&mut self, work: &mut EventWork) {
         let now = self.now;
         work.before.clear();
@@ -363,9 +367,10 @@ impl RigidSystem {
         }
     }
 
-    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped, and by the most
-    /// that its impulses can do. Contacts whose normals hardly differ hold all of a body, and to stop what is left between them by
-    /// their angle would stop it altogether, by large impulses that cancel each other on every body.
+    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped,
+    /// and by the most that its impulses can do. Contacts whose normals hardly differ hold all of a body, and
+    /// to stop what is left between them by their angle would stop it altogether, by large impulses that
+    /// cancel each other on every body.
     fn is_modest(&self, report: &ImpactReport, region: &Region, before: &[BodyState]) -> bool {
         let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
         let impulse = report.rows.iter().fold(0.0f64, |most, row| most.max(row.impulse.abs()));

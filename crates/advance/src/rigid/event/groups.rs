@@ -88,8 +88,8 @@ impl RigidSystem {
         self.groups.by_leader[leader.index()].as_deref()
     }
 
-    /// How deep [m] two bodies may lie in one another, as the contacts of a group do that one of them is in, or was until now.
-    /// What takes over from a contact that has sunk lies as deep.
+    /// How deep [m] two bodies may lie in one another, as the contacts of a group do that one of them is in,
+    /// or was until now. What takes over from a contact that has sunk lies as deep.
     pub(crate) fn held_depth(&self, bodies: [BodyId; 2]) -> f64 {
         let depths = bodies.map(|body| match self.group_of(body) {
             Some(group) => group.depth(),
@@ -209,8 +209,9 @@ impl RigidSystem {
         }
     }
 
-    /// Joins what is integrated, or turns, and touches without force, neither closing nor opening: a group watches such a contact from
-    /// step to step, where the search would look for it in steps as short as it takes to sink by next to nothing.
+    /// Joins what is integrated, or turns, and touches without force, neither closing nor opening: a group
+    /// watches such a contact from step to step, where the search would look for it in steps as short as it
+    /// takes to sink by next to nothing.
     fn couple_touching(&mut self, region: &Region, settling: &Settling) {
         if self.settings.impulse_step.is_some() {
             return;
@@ -304,8 +305,8 @@ impl RigidSystem {
         idle.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
-    /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their features, and the ropes that
-    /// have slackened as much, back to the search.
+    /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their
+    /// features, and the ropes that have slackened as much, back to the search.
     pub(crate) fn let_go(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
@@ -351,8 +352,9 @@ impl RigidSystem {
         }
     }
 
-    /// True for a rope within a group that is taut and neither slackens nor tightens: without a force it is watched like a stop, where
-    /// the search would look for it in steps as short as it takes to lengthen by next to nothing.
+    /// True for a rope within a group that is taut and neither slackens nor tightens: without a force it is
+    /// watched like a stop, where the search would look for it in steps as short as it takes to lengthen by
+    /// next to nothing.
     fn is_idly_taut(&self, group: &Group, id: ConnectorId) -> bool {
         let connector = self.connector(id);
         let bodies = connector.bodies();
@@ -441,8 +443,8 @@ impl RigidSystem {
         self.extend_group(group)
     }
 
-    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by what is near. Rows
-    /// on splines were followed to it.
+    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by
+    /// what is near. Rows on splines were followed to it.
     fn renew_hints(&mut self, group: &mut Group) {
         let count = group.bodies.len();
         let Group { bodies, state, rows, stops, .. } = group;
@@ -546,8 +548,8 @@ impl RigidSystem {
         }
     }
 
-    /// Two bodies whose centres are so far apart [m], if there are such among those that the laws of a group act on: where
-    /// forces vary over that length, these are to blame.
+    /// Two bodies whose centres are so far apart [m], if there are such among those that the laws of a group
+    /// act on: where forces vary over that length, these are to blame.
     fn so_far_apart(&self, group: &Group, length: f64) -> Option<[BodyId; 2]> {
         let center = |body: BodyId| match group.bodies.binary_search(&body) {
             Ok(place) => body_state(&group.state, group.bodies.len(), place).position,

@@ -61,8 +61,8 @@ impl RigidSystem {
         Inertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
     }
 
-    /// Resolves the impact of a region's rows; the bodies, which must be in flight, go on with changed velocities, and the
-    /// records are brought up to date. `report` tells of it.
+    /// Resolves the impact of a region's rows; the bodies, which must be in flight, go on with changed
+    /// velocities, and the records are brought up to date. `report` tells of it.
     pub(crate) fn resolve_impact(
         &mut self,
         region: &mut Region,
@@ -96,19 +96,24 @@ impl RigidSystem {
         }
     }
 
+    /// The row of a record, as an impact sees it.
+    pub(crate) fn row_of(&self, record: &Collision) -> CollisionRow {
+        CollisionRow::of_collision(record, record.bodies().map(|body| self.inertia(body)))
+    }
+
     /// Gives an impact the rows of a region.
     pub(crate) fn set_rows(&self, region: &Region, impact: &mut Impact) {
         let dull = self.settings.impulse_step.is_none() && self.bounces_low(region);
         let rows = region.records.iter().map(|record| {
-            let sides = [record.parties.primary.body, record.parties.normal.body];
-            let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
+            let row = self.row_of(record);
             let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
             CollisionRow { elasticity, ..row }
         });
         impact.set_rows(rows);
     }
 
-    /// Gives the bodies of a region, which must be in flight, the velocities that a resolved impact leaves them, and reports it.
+    /// Gives the bodies of a region, which must be in flight, the velocities that a resolved impact leaves
+    /// them, and reports it.
     pub(crate) fn conclude_impact(
         &mut self,
         region: &mut Region,
@@ -156,10 +161,11 @@ impl RigidSystem {
         report.states.extend(struck.map(|(&body, _)| (body, self.flyer(body).state_at(time))));
     }
 
-    /// Rate of the gap of a record [m/s] by the bodies' motion at a time, at which they are still where it was measured.
+    /// Rate of the gap of a record [m/s] by the bodies' motion at a time, at which they are still where it
+    /// was measured.
     fn rate_of(&self, record: &Collision, time: Time) -> f64 {
         let j = &record.motion.kinematics.jacobian;
-        let sides = [record.parties.primary.body, record.parties.normal.body];
+        let sides = record.bodies();
         let of_side = |(side, body): (usize, BodyId)| {
             let Moving { velocity, angular_velocity, .. } = self.moving_at(body, time);
             j[3 * side] * velocity.x + j[3 * side + 1] * velocity.y + j[3 * side + 2] * angular_velocity
@@ -192,8 +198,7 @@ impl RigidSystem {
 }
 
 fn impact_error(region: &Region, time: Time, source: ImpactError) -> AdvanceError {
-    let sides = |record: &Collision| [record.parties.primary.body, record.parties.normal.body];
-    let mut bodies: Vec<BodyId> = region.records.iter().flat_map(sides).collect();
+    let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();
     bodies.sort_unstable();
     bodies.dedup();
     AdvanceError::Impact { time: time.seconds(), bodies, source }

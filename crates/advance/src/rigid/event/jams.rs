@@ -1,9 +1,9 @@
 //! Impacts that jam: impulses that cancel each other by far, between contacts that need not be.
 //!
-//! What was held from the start, or since it was caught, is held at the gap at which it formed. Where a body fits between two
-//! others with little room it may so be held on both sides, farther from both than where bodies fire. As it passes their corners
-//! two such contacts come to lie opposite each other: they seem to hold it like a vice, and the least angle between them stops
-//! it for good.
+//! What was held from the start, or since it was caught, is held at the gap at which it formed. Where a body
+//! fits between two others with little room it may so be held on both sides, farther from both than where
+//! bodies fire. As it passes their corners two such contacts come to lie opposite each other: they seem to
+//! hold it like a vice, and the least angle between them stops it for good.
 
 use super::impacts::Manner;
 use super::region::Region;
@@ -12,13 +12,13 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::{Impact, ImpactError};
 
-/// Impulses this many times larger than what they change of the momentum of any body jam, as do forces that are so much larger than
-/// all loads together.
+/// Impulses this many times larger than what they change of the momentum of any body jam, as do forces that
+/// are so much larger than all loads together.
 pub(crate) const JAM: f64 = 100.0;
 
 impl RigidSystem {
-    /// Leaves out of a region what is farther away than where bodies fire, if the impulses of contacts cancel each other by far;
-    /// true if there is any.
+    /// Leaves out of a region what is farther away than where bodies fire, if the impulses of contacts cancel
+    /// each other by far; true if there is any.
     pub(super) fn leave_out_jammed(&self, region: &mut Region, impact: &Impact) -> bool {
         region.left_out.clear();
         if region.records.iter().all(|record| self.is_close(record)) || !self.jams(region, impact) {
@@ -29,8 +29,8 @@ impl RigidSystem {
         true
     }
 
-    /// Finds the impulses of a region without what was left out, but for those of it that are pressed all the same: of what fits
-    /// with little room only one side is. Where those jam, too, nothing is left out.
+    /// Finds the impulses of a region without what was left out, but for those of it that are pressed all the
+    /// same: of what fits with little room only one side is. Where those jam, too, nothing is left out.
     pub(super) fn find_impulses_of_pressed(
         &self,
         region: &mut Region,
@@ -62,7 +62,8 @@ impl RigidSystem {
         largest > 0.0 && largest > JAM * self.momentum_changed(region, impact)
     }
 
-    /// The largest change of momentum [N s] of any body of a region by an impact, with what turns it acting at its reach.
+    /// The largest change of momentum [N s] of any body of a region by an impact, with what turns it acting
+    /// at its reach.
     fn momentum_changed(&self, region: &mut Region, impact: &Impact) -> f64 {
         region.sum_changes(impact);
         let changed = region.bodies.iter().zip(&region.changes);
@@ -91,7 +92,7 @@ impl Region {
     /// By how much the changes of the bodies' velocities change the rate of a record [m/s].
     fn change_of(&self, record: &Collision) -> f64 {
         let j = &record.motion.kinematics.jacobian;
-        let sides = [record.parties.primary.body, record.parties.normal.body];
+        let sides = record.bodies();
         let of_side = |(side, body): (usize, BodyId)| {
             let change = self.place(body).map_or([0.0; 3], |place| self.changes[place]);
             (0..3).map(|k| j[3 * side + k] * change[k]).sum::<f64>()
@@ -121,9 +122,9 @@ mod tests {
     /// Angle [rad] of the shuttle.
     const TILT: f64 = -2e-5;
 
-    /// The velocity of a shuttle of a kilogram that goes down between a wall on its left and the end of another on its right,
-    /// a gap [m] away from both and tilted so that its way narrows, after an impact; a disc that lies on its right may go at a
-    /// speed [m/s].
+    /// The velocity of a shuttle of a kilogram that goes down between a wall on its left and the end of
+    /// another on its right, a gap [m] away from both and tilted so that its way narrows, after an impact; a
+    /// disc that lies on its right may go at a speed [m/s].
     fn velocity_after(gap: f64, disc_speed: f64) -> DVec2 {
         let body = |shape: Result<Shape, _>, inverse_mass: f64, position: DVec2, state: BodyState| {
             let shape = shape.expect("a fine size");

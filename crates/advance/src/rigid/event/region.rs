@@ -95,7 +95,7 @@ impl Region {
     /// The row of a record in a problem of the region's bodies, in their order; `None` if nothing of it moves.
     pub(crate) fn row_of(&self, record: &Collision, offset: f64) -> Option<Row> {
         let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(RowBody);
-        let sides = [record.parties.primary.body, record.parties.normal.body].map(place);
+        let sides = record.bodies().map(place);
         let row = Row::between(sides, &record.motion.kinematics.jacobian, offset)?;
         Some(if record.parties.bilateral { row.bilateral() } else { row })
     }
@@ -199,8 +199,9 @@ impl RigidSystem {
                 && !self.is_passed_over(record)
                 && !self.is_grazing(record)
         });
-        // What has fired takes part, and what is put back at a tick, though it may have been moved out of its zone, or may have
-        // turned by a little since: where a block lies flat, to put back one of its corners would sink the other.
+        // What has fired takes part, and what is put back at a tick, though it may have been moved out of its
+        // zone, or may have turned by a little since: where a block lies flat, to put back one of its corners
+        // would sink the other.
         let moved = self.ticks.moved;
         let fired = region.cause.fired();
         let waiting = if region.cause == Cause::Tick { self.ticks.waiting_of(bodies) } else { &[] };
@@ -225,8 +226,9 @@ impl RigidSystem {
         last.is_some_and(|record| record.involves_body(first.id) && record.involves_body(second.id))
     }
 
-    /// True if a record takes part in an event: what is at its target or nearer, what closes within the target zone, and what
-    /// was held already, or from the start, or takes over from a contact that has run off its features. Other rows have room, and fire in their own time if they come to close.
+    /// True if a record takes part in an event: what is at its target or nearer, what closes within the
+    /// target zone, and what was held already, or from the start, or takes over from a contact that has run
+    /// off its features. Other rows have room, and fire in their own time if they come to close.
     fn counts_as_touching(
         &self,
         record: &Collision,
@@ -253,10 +255,10 @@ impl RigidSystem {
         self.pairs.rules(pair).contains(&touch.skipped())
     }
 
-    /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does what is held; of
-    /// others nothing is known.
+    /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does
+    /// what is held; of others nothing is known.
     pub(crate) fn is_likely(&self, record: &Collision) -> Option<bool> {
-        let [a, b] = [record.parties.primary.body, record.parties.normal.body];
+        let [a, b] = record.bodies();
         self.is_held_contact(record, sorted(a, b)).then_some(true)
     }
 

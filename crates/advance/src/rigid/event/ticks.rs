@@ -1,11 +1,12 @@
 //! Without contact forces: slow contacts sink, and are put back once a step.
 //!
-//! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was seen last, does not fire.
-//! At the next tick of the step its velocity is stopped by an impulse and it is moved back to its target gap, by the least
-//! displacement in the metric of the masses. What is pressed so hard that it sinks deep meanwhile is stopped there, too.
+//! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was seen
+//! last, does not fire. At the next tick of the step its velocity is stopped by an impulse and it is moved
+//! back to its target gap, by the least displacement in the metric of the masses. What is pressed so hard
+//! that it sinks deep meanwhile is stopped there, too.
 //!
-//! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another blow may drive one
-//! on into the other, and what has turned meanwhile touches elsewhere.
+//! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another
+//! blow may drive one on into the other, and what has turned meanwhile touches elsewhere.
 
 use super::cause::{Cause, EventWork};
 use super::region::{Region, Touch};
@@ -20,13 +21,14 @@ use halfgap_collision::{BodyId, BodyState, Tolerances};
 use halfgap_contact::Problem;
 use halfgap_geometry::FeatureId;
 
-/// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a part of the way.
+/// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a
+/// part of the way.
 const ROUNDS: usize = 3;
 const SHORT_ROUNDS: usize = 5;
 /// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
 const LONGEST_WAY: f64 = 0.1;
-/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair may sink, beside what
-/// it slowly closes by in a step.
+/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair
+/// may sink, beside what it slowly closes by in a step.
 const SUNK_SHARE: f64 = 1e-2;
 const THIN_SHARE: f64 = 1e-1;
 /// Part of that room to which it sinks before it fires again.
@@ -123,9 +125,9 @@ impl RigidSystem {
         (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies)) + slow
     }
 
-    /// Gap [m] at which a contact without force fires that has a gap now and does not open. What has been stopped below its zone,
-    /// until it is put back, may be pressed on by what acts on its bodies, or by their turning, at once: it goes a part of the way
-    /// that is left to where it may sink no further.
+    /// Gap [m] at which a contact without force fires that has a gap now and does not open. What has been
+    /// stopped below its zone, until it is put back, may be pressed on by what acts on its bodies, or by
+    /// their turning, at once: it goes a part of the way that is left to where it may sink no further.
     pub(crate) fn sinks_to(&self, touch: Touch, gap: f64) -> f64 {
         let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
         if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
@@ -144,8 +146,8 @@ impl RigidSystem {
         shares[0].min(shares[1])
     }
 
-    /// How deep [m] two bodies, the lesser first, may lie in one another: where they have been left to sink, have been moved, or
-    /// would sink within a step. Where contacts carry forces, because held ones do.
+    /// How deep [m] two bodies, the lesser first, may lie in one another: where they have been left to sink,
+    /// have been moved, or would sink within a step. Where contacts carry forces, because held ones do.
     pub(crate) fn may_have_sunk_by(&self, bodies: [BodyId; 2]) -> f64 {
         if self.settings.impulse_step.is_none() {
             return self.held_depth(bodies);
@@ -217,8 +219,8 @@ impl RigidSystem {
         }
     }
 
-    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target, and takes in what they come
-    /// upon.
+    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target, and takes
+    /// in what they come upon.
     pub(crate) fn put_back(&mut self, work: &mut EventWork) {
         let (mut full, mut short) = (0, 0);
         while full < ROUNDS && short < SHORT_ROUNDS {
@@ -267,8 +269,8 @@ impl RigidSystem {
         Some(share)
     }
 
-    /// The longest way [m] of a point of a region's bodies along a displacement (x, y, angle) of each, and the longest in parts of
-    /// its body's reach.
+    /// The longest way [m] of a point of a region's bodies along a displacement (x, y, angle) of each, and
+    /// the longest in parts of its body's reach.
     fn longest_way(&self, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
         let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
             let reach = self.flyer(body).reach();

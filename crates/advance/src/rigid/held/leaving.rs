@@ -1,8 +1,8 @@
 //! Contacts that run off their features at once: of a corner at the very end of an edge, along which it moves.
 //!
-//! Such a contact is over before it has done anything, but as long as it is held to be one its gap bends with the edge, continued:
-//! where a lid opens, the corner of the box below its hinge would be pressed into the lid. It is left out where no forces are found
-//! with it.
+//! Such a contact is over before it has done anything, but as long as it is held to be one its gap bends with
+//! the edge, continued: where a lid opens, the corner of the box below its hinge would be pressed into the
+//! lid. It is left out where no forces are found with it.
 
 use super::settling::Settling;
 use crate::rigid::event::region::Region;
@@ -17,8 +17,8 @@ use halfgap_geometry::{Pose, Rotation};
 const SOON: f64 = 1e3;
 
 impl RigidSystem {
-    /// Leaves out the candidates that run off their features while they move by what a contact may be off; true if there are any. The
-    /// bodies are in the stage.
+    /// Leaves out the candidates that run off their features while they move by what a contact may be off;
+    /// true if there are any. The bodies are in the stage.
     pub(crate) fn drop_leaving(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         let before = settling.candidates.len();
         settling.candidates.retain(|&index| !self.leaves_at_once(&region.records[index], stage));
@@ -27,7 +27,7 @@ impl RigidSystem {
 
     fn leaves_at_once(&self, record: &Collision, stage: &Stage) -> bool {
         let Some(RowSource::Contact(features)) = self.source_of(record) else { return false };
-        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let bodies = record.bodies();
         let wait = self.settings.tolerances.accuracy / record.motion.lateral_velocity.abs();
         if wait.is_nan() || wait > SOON * self.settings.resolution_time {
             return false;

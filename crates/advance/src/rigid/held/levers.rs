@@ -1,8 +1,9 @@
 //! Levers: what connectors leave of a row.
 //!
-//! A contact beside the hinge of a lid acts on the lid by a lever that vanishes as it falls shut: its row is then nearly a sum of those
-//! of the pin. What is left of a row, in the metric of the masses, is found by orthogonalising it against theirs, twice, which is
-//! exact to rounding of the row (W. Kahan and B. Parlett, in B. Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
+//! A contact beside the hinge of a lid acts on the lid by a lever that vanishes as it falls shut: its row is
+//! then nearly a sum of those of the pin. What is left of a row, in the metric of the masses, is found by
+//! orthogonalising it against theirs, twice, which is exact to rounding of the row (W. Kahan and B. Parlett,
+//! in B. Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
 
 use super::settling::Settling;
 use crate::rigid::event::region::{Region, Touch};
@@ -35,15 +36,14 @@ impl Levers {
         }
     }
 
-    /// The part of a record's square that the connectors leave, which is the square of its lever in parts of what it would be without
-    /// them; 0 if nothing moves it.
+    /// The part of a record's square that the connectors leave, which is the square of its lever in parts of
+    /// what it would be without them; 0 if nothing moves it.
     fn left_of(&mut self, region: &Region, record: &Collision, inertia: impl Fn(BodyId) -> Inertia) -> f64 {
         let Self { basis, row } = self;
         row.clear();
         row.resize(3 * region.bodies.len(), 0.0);
         let j = &record.motion.kinematics.jacobian;
-        for (side, body) in [record.parties.primary.body, record.parties.normal.body].into_iter().enumerate()
-        {
+        for (side, body) in record.bodies().into_iter().enumerate() {
             let Some(place) = region.place(body) else { continue };
             let Inertia { inverse_mass, inverse_moment } = inertia(body);
             for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
@@ -63,14 +63,15 @@ impl Levers {
 }
 
 impl RigidSystem {
-    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point they would take forces
-    /// far larger than all loads, while the rest of the body has not come to where it lies. True if there are any.
+    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point
+    /// they would take forces far larger than all loads, while the rest of the body has not come to where it
+    /// lies. True if there are any.
     pub(super) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
         let Settling { candidates, passing, levers, .. } = settling;
         levers.load(region, |body| self.inertia(body));
         candidates.retain(|&index| {
             let record = &region.records[index];
-            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let bodies = record.bodies();
             let passes = !record.parties.bilateral
                 && record.geometry.distance > self.grazing_gap(bodies)
                 && bodies.iter().any(|&body| self.is_tied(body))

@@ -1,5 +1,5 @@
-//! What is held after an event: `settle` poses the problem of the candidates and chooses, `settling` are its buffers and its solver,
-//! `levers` what connectors leave of a row, `leaving` contacts that are over at once.
+//! What is held after an event: `settle` poses the problem of the candidates and chooses, `settling` are its
+//! buffers and its solver, `levers` what connectors leave of a row, `leaving` contacts that are over at once.
 
 pub(super) mod leaving;
 pub(super) mod levers;

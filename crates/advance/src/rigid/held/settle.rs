@@ -1,8 +1,9 @@
 //! Which rows are held after an event: those that carry a force.
 //!
-//! All touching rows that neither close nor open enter one problem a = A f + b. A row that carries a force is held as an
-//! equation from then on; one that does not is left to the search for contacts, which watches its gap. Forces of redundant
-//! rows are not unique: those that the solution leaves without force follow from the others.
+//! All touching rows that neither close nor open enter one problem a = A f + b. A row that carries a force is
+//! held as an equation from then on; one that does not is left to the search for contacts, which watches its
+//! gap. Forces of redundant rows are not unique: those that the solution leaves without force follow from the
+//! others.
 
 use super::settling::{SMALL_CONTRADICTION, Settling};
 use crate::rigid::error::AdvanceError;
@@ -20,19 +21,21 @@ use halfgap_contact::SolveError;
 
 /// Part of the reach of a body from which the half-width of its zone can be seen.
 const SEEN: f64 = 1e-4;
-/// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been lifted may sink once.
+/// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been
+/// lifted may sink once.
 const SUNK: f64 = 1.5;
 /// Depth of an overlap, in target gaps, from which a contact is lifted.
 pub(crate) const DEEPEST: f64 = 0.5;
 /// Part of its accuracy by which a rope or a stop that is lifted stays beyond its end.
 const ROPE_SHARE: f64 = 0.5;
 
-/// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its force. With less it
-/// sinks so slowly that it may as well be touched again.
+/// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its
+/// force. With less it sinks so slowly that it may as well be touched again.
 const RELEASED_SHARE: f64 = 1e-3;
 
-/// Part of the loads of its bodies that a contact carries by rounding only, and need not be held. More than that may be what keeps a
-/// body in balance: one that stands on corners next to each other, as a brick on the joint of two others, falls over without.
+/// Part of the loads of its bodies that a contact carries by rounding only, and need not be held. More than
+/// that may be what keeps a body in balance: one that stands on corners next to each other, as a brick on the
+/// joint of two others, falls over without.
 const IDLE_SHARE: f64 = 1e-13;
 
 /// Part of what counts as rest by which a contact may open, and be held, where such contacts take turns.
@@ -50,8 +53,8 @@ enum Solved {
 }
 
 impl RigidSystem {
-    /// Finds the rows of a region to hold, `with_hops` those too that open in no more than a low hop. Records must be up to
-    /// date; their forces are written into them.
+    /// Finds the rows of a region to hold, `with_hops` those too that open in no more than a low hop. Records
+    /// must be up to date; their forces are written into them.
     pub(crate) fn settle(
         &self,
         region: &mut Region,
@@ -147,8 +150,8 @@ impl RigidSystem {
         Ok(solved)
     }
 
-    /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies included; true if
-    /// there are any.
+    /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies
+    /// included; true if there are any.
     fn add_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         let mut records = region.records.iter().enumerate();
         if !records.any(|record| self.could_hop(region, settling, record)) {
@@ -190,8 +193,9 @@ impl RigidSystem {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
     }
 
-    /// True if forces of contacts are so much larger than what acts on the bodies that rows seem to work against each other,
-    /// as those on both sides of a body that just fits. Connectors with long arms have such forces by themselves.
+    /// True if forces of contacts are so much larger than what acts on the bodies that rows seem to work
+    /// against each other, as those on both sides of a body that just fits. Connectors with long arms have
+    /// such forces by themselves.
     fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
         let forces = settling.candidates.iter().zip(&settling.solution.force);
         let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
@@ -211,9 +215,10 @@ impl RigidSystem {
         self.pose_problem(region, settling, stage);
     }
 
-    /// Lets in again what is pressed all the same by the forces found without it; true if there is any. Of what fits with little
-    /// room only one side is: it goes the way of what it touches. In an arch that is nearly straight all contacts carry forces that
-    /// are far larger than all loads, and where those that were let in again jam, so does the rest.
+    /// Lets in again what is pressed all the same by the forces found without it; true if there is any. Of
+    /// what fits with little room only one side is: it goes the way of what it touches. In an arch that is
+    /// nearly straight all contacts carry forces that are far larger than all loads, and where those that
+    /// were let in again jam, so does the rest.
     fn take_back_pressed(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         if settling.dropped.is_empty() {
             return false;
@@ -304,13 +309,13 @@ impl RigidSystem {
 
     fn held_row(&self, record: &Collision, time: Time) -> Option<HeldRow> {
         let source = self.source_of(record)?;
-        let bodies = [record.parties.primary.body, record.parties.normal.body];
+        let bodies = record.bodies();
         let hint = match source {
             RowSource::Connector(id, _) => self.connector_states[id.index()].hint,
             RowSource::Contact(_) => None,
         };
-        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to move a rope to its
-        // length would move what hangs on it by a long arm by much more.
+        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to
+        // move a rope to its length would move what hangs on it by a long arm by much more.
         let bilateral = record.parties.bilateral;
         let lifted = self.lifted(record);
         let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
@@ -319,9 +324,10 @@ impl RigidSystem {
         Some(self.with_lean(row, time))
     }
 
-    /// The gap [m] to which a row is lifted that has sunk too deep; `None` of others. What touches without force sinks a little each
-    /// time it is touched. A contact is lifted before the search takes it for the far side of a body; where zones can be seen, it is
-    /// lifted into its zone, lest bodies overlap, unless it formed lower.
+    /// The gap [m] to which a row is lifted that has sunk too deep; `None` of others. What touches without
+    /// force sinks a little each time it is touched. A contact is lifted before the search takes it for the
+    /// far side of a body; where zones can be seen, it is lifted into its zone, lest bodies overlap, unless
+    /// it formed lower.
     #[inline]
     fn lifted(&self, record: &Collision) -> Option<f64> {
         let is_contact = record.connector().is_none();
@@ -341,7 +347,7 @@ impl RigidSystem {
 
     /// True if the zone of a record is so wide, beside its bodies, that one sees where in it they are.
     fn is_seen(&self, record: &Collision) -> bool {
-        self.is_zone_seen([record.parties.primary.body, record.parties.normal.body])
+        self.is_zone_seen(record.bodies())
     }
 
     /// The same of two bodies.
@@ -356,9 +362,8 @@ impl RigidSystem {
         time: Time,
         source: SolveError,
     ) -> AdvanceError {
-        let sides = |record: &Collision| [record.parties.primary.body, record.parties.normal.body];
         let mut bodies: Vec<BodyId> =
-            settling.candidates.iter().flat_map(|&index| sides(&region.records[index])).collect();
+            settling.candidates.iter().flat_map(|&index| region.records[index].bodies()).collect();
         bodies.sort_unstable();
         bodies.dedup();
         AdvanceError::Contacts { time: time.seconds(), bodies, source: Box::new(source) }
@@ -370,8 +375,8 @@ impl RigidSystem {
     }
 }
 
-/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, are not to be longer than their
-/// accuracy, however they sink.
+/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, are not to be
+/// longer than their accuracy, however they sink.
 fn lower_end(record: &Collision) -> f64 {
     let Tolerances { target_gap, accuracy, .. } = record.tolerances;
     if record.connector().is_some() { -ROPE_SHARE * accuracy } else { target_gap - accuracy }
@@ -384,7 +389,7 @@ pub(crate) fn free_offset(region: &Region, record: &Collision, stage: &Stage) ->
 
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
 fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
-    let sides = [record.parties.primary.body, record.parties.normal.body];
+    let sides = record.bodies();
     let spins =
         sides.map(|body| region.place(body).map_or(Spin::default(), |place| spin(accelerations[place])));
     record.motion.kinematics.acceleration(&spins[0], &spins[1])
@@ -398,7 +403,7 @@ fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f
 
 /// Places of the movable bodies of a record.
 fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item = usize> + use<'a> {
-    let bodies = [record.parties.primary.body, record.parties.normal.body];
+    let bodies = record.bodies();
     bodies.into_iter().filter_map(|body| region.place(body))
 }
 
@@ -416,8 +421,8 @@ mod tests {
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
-    /// Whether a beam on two posts holds a disc, too, that lies against it from below, comes away at 1e-8 m/s, and is pushed up with
-    /// an acceleration [m/s^2].
+    /// Whether a beam on two posts holds a disc, too, that lies against it from below, comes away at 1e-8
+    /// m/s, and is pushed up with an acceleration [m/s^2].
     fn beam_holds_disc_below(push: f64) -> bool {
         const GAP: f64 = FINE.tolerances.target_gap;
         let shape = |shape: Result<Shape, _>| shape.expect("a fine size");

@@ -1,4 +1,5 @@
-//! The problem of an event's candidates: its solvers and buffers, what is expected of it, and which rows come out of it.
+//! The problem of an event's candidates: its solvers and buffers, what is expected of it, and which rows come
+//! out of it.
 //!
 //! Which rows are candidates, and which of them are held, is decided in `settle`.
 
@@ -9,8 +10,8 @@ use crate::rigid::step::rows::HeldRow;
 use halfgap_collision::BodyId;
 use halfgap_contact::{Auto, Inertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
-/// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares: that of rows which
-/// move by what counts as rest. What crushes a body is of the order of 1.
+/// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares:
+/// that of rows which move by what counts as rest. What crushes a body is of the order of 1.
 pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
 
 /// Residual that is then accepted, in units of the largest acceleration: the answer only says which rows to hold.
@@ -35,7 +36,8 @@ pub(crate) struct Settling {
     likely: Vec<Option<bool>>,
     /// Records that opened in spite of all that presses on them when their low hops were stilled: they leave.
     leaving: Vec<bool>,
-    /// Force [N] of each in the last solve of the event, if it was in it; before the first that at which its contact was cut.
+    /// Force [N] of each in the last solve of the event, if it was in it; before the first that at which its
+    /// contact was cut.
     forces: Vec<Option<f64>>,
     /// Contacts that were cut in the event, sorted, with their forces [N].
     ended: Vec<(Touch, f64)>,
@@ -207,7 +209,7 @@ impl Settling {
         for (&index, force) in records.iter().zip(&self.solution.force) {
             let record = &region.records[index];
             let j = &record.motion.kinematics.jacobian;
-            let sides = [record.parties.primary.body, record.parties.normal.body];
+            let sides = record.bodies();
             for (side, body) in sides.into_iter().enumerate() {
                 let Some(place) = region.place(body) else { continue };
                 let Inertia { inverse_mass, inverse_moment } = inertia(body);

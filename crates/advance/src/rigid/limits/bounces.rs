@@ -1,15 +1,16 @@
 //! Bounces too low to be told from contact: between two events the gap stayed within the target zone.
 //!
-//! How high a pair has risen follows from its rate when it was seen last, its rate now, and the time between: under a
-//! constant acceleration that is v1^2 t / (2 (v1 + v2)). Such a pair meets without elasticity, unless something else in the
-//! same event closes fast. What is cut off is shorter than the fall through the zone and no higher than it.
+//! How high a pair has risen follows from its rate when it was seen last, its rate now, and the time between:
+//! under a constant acceleration that is v1^2 t / (2 (v1 + v2)). Such a pair meets without elasticity, unless
+//! something else in the same event closes fast. What is cut off is shorter than the fall through the zone
+//! and no higher than it.
 //!
-//! That holds of what forces turn. What something else has struck since bounces as it would anywhere, unless it is so slow that forces
-//! make it as fast within the zone.
+//! That holds of what forces turn. What something else has struck since bounces as it would anywhere, unless
+//! it is so slow that forces make it as fast within the zone.
 //!
-//! What is perfectly elastic and has come to bounce a few target gaps high, as when something light hits it while it rests,
-//! would go on with that for ever, hundreds of thousands of times a second. The energy of that is what the gap itself is
-//! worth: after very many such bounces in a row it is let go as well.
+//! What is perfectly elastic and has come to bounce a few target gaps high, as when something light hits it
+//! while it rests, would go on with that for ever, hundreds of thousands of times a second. The energy of
+//! that is what the gap itself is worth: after very many such bounces in a row it is let go as well.
 
 use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::search::pairs::{PairId, Seen};
@@ -19,8 +20,9 @@ use halfgap_geometry::FeatureId;
 
 /// Forces may press bodies together by so many times the acceleration of the scene.
 const FORCED: f64 = 1e3;
-/// So many times it they press together what something else has struck within its zone, as in a heap so many bodies deep. What is faster
-/// bounces: else the energy of a blow would be lost, which an elastic body passes on and gets back at once.
+/// So many times it they press together what something else has struck within its zone, as in a heap so many
+/// bodies deep. What is faster bounces: else the energy of a blow would be lost, which an elastic body passes
+/// on and gets back at once.
 const STRUCK: f64 = 1e2;
 /// So many feature pairs are remembered of a pair of bodies.
 const MOST_SEEN: usize = 16;
@@ -89,7 +91,8 @@ impl RigidSystem {
         before.unwrap_or(record.geometry.distance)
     }
 
-    /// True if two features that close at a rate [m/s] were seen within the target zone before and have not left it since.
+    /// True if two features that close at a rate [m/s] were seen within the target zone before and have not
+    /// left it since.
     pub(crate) fn has_stayed_low(
         &self,
         pair: PairId,
@@ -108,9 +111,9 @@ impl RigidSystem {
         let lasted = self.now.since(seen.time);
         let rise = 0.5 * up * up * lasted / (up + down);
         let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
-        // What moved so under a constant acceleration is where it was. Else, as when something has lifted it in between, it has
-        // stayed only if it is no faster than forces make it within the zone. Without contact forces it would sink then, and that is
-        // for what is low beyond doubt.
+        // What moved so under a constant acceleration is where it was. Else, as when something has lifted it
+        // in between, it has stayed only if it is no faster than forces make it within the zone. Without
+        // contact forces it would sink then, and that is for what is low beyond doubt.
         let went = 0.5 * (up - down).abs() * lasted;
         let forced = |times: f64| {
             self.settings.impulse_step.is_none() && down * down <= 2.0 * times * self.acceleration() * most
@@ -120,7 +123,8 @@ impl RigidSystem {
         seen.gap + rise <= most && is_low()
     }
 
-    /// True if the velocity of a body of a pair was changed at once since a contact of it was seen: what has turned it is no force.
+    /// True if the velocity of a body of a pair was changed at once since a contact of it was seen: what has
+    /// turned it is no force.
     fn is_struck_since(&self, pair: PairId, seen: &Seen) -> bool {
         let strikes = self.pairs.bodies(pair).into_iter().filter_map(|body| self.struck[body.index()]);
         strikes.into_iter().any(|strike| strike > seen.time)

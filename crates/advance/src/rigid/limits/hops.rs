@@ -1,9 +1,11 @@
-//! Hops too low to be told from contact: a contact opens so slowly that what acts on its bodies brings it back before it
-//! has opened by much. Such a contact is held at once, instead of being caught again a moment later.
+//! Hops too low to be told from contact: a contact opens so slowly that what acts on its bodies brings it
+//! back before it has opened by much. Such a contact is held at once, instead of being caught again a moment
+//! later.
 //!
-//! A hop takes T = 2 v/|a|, and what it lands with is stopped: it stays within the target zone. If the row's coefficients and
-//! its acceleration a are constant meanwhile, a contact that is stopped when it opens comes to the same places and
-//! velocities at T. So a hop may be the higher the less its bodies move in T, up to the half-width of the target zone.
+//! A hop takes T = 2 v/|a|, and what it lands with is stopped: it stays within the target zone. If the row's
+//! coefficients and its acceleration a are constant meanwhile, a contact that is stopped when it opens comes
+//! to the same places and velocities at T. So a hop may be the higher the less its bodies move in T, up to
+//! the half-width of the target zone.
 
 use super::bounces::closes_fast;
 use crate::rigid::event::cause::EventWork;
@@ -11,22 +13,21 @@ use crate::rigid::event::events::Booking;
 use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
-use halfgap_contact::CollisionRow;
 
 /// Part of the accuracy by which a contact may open and come back, and count as closed all the while.
 const HOP_SHARE: f64 = 1e-4;
 /// The same of a hop in which nothing moves much.
 const SHORT_HOP_SHARE: f64 = 0.5;
-/// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide; more where that is
-/// less than the same share of the accuracy, which is all that is asked of where they are.
+/// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide;
+/// more where that is less than the same share of the accuracy, which is all that is asked of where they are.
 const HOP_TURN: f64 = 1e-4;
 
 /// A hop that comes down may make others hop: all of them together take no more than so many times the longest.
 const HOPS_IN_TURN: f64 = 10.0;
 
 impl RigidSystem {
-    /// True if a contact of a region opens so slowly that it may be no more than a low hop. Of a contact without others it is
-    /// told how long it bounces: that is stopped when it lands.
+    /// True if a contact of a region opens so slowly that it may be no more than a low hop. Of a contact
+    /// without others it is told how long it bounces: that is stopped when it lands.
     pub(crate) fn may_hop(&self, region: &Region, record: &Collision) -> bool {
         let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
         self.opens(record) && (region.records.len() > 1 || is_slow)
@@ -38,7 +39,7 @@ impl RigidSystem {
         let accuracy = record.tolerances.accuracy;
         let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * accuracy;
         let is_short = || {
-            let bodies = [record.parties.primary.body, record.parties.normal.body];
+            let bodies = record.bodies();
             let turn = HOP_TURN.max(SHORT_HOP_SHARE * accuracy / self.largest_reach(bodies));
             2.0 * rate * self.turning(record) <= -acceleration * turn
         };
@@ -77,12 +78,13 @@ impl RigidSystem {
         work.settling.held.iter().any(|&(index, _)| self.opens(&records[index]))
     }
 
-    /// Brings the bodies of held contacts that open in low hops to the velocities with which they will have landed, and lets those
-    /// leave that open all the same. False if nothing is changed.
+    /// Brings the bodies of held contacts that open in low hops to the velocities with which they will have
+    /// landed, and lets those leave that open all the same. False if nothing is changed.
     ///
-    /// The forces at which contacts are held say what impulses they carry until then. Without these the hops come down, and an
-    /// impact without elasticity gives as much of them back as is needed. So contacts are stopped by no more than what presses on
-    /// them: where normals hardly differ, large impulses that cancel each other would stop whatever slides over them, too.
+    /// The forces at which contacts are held say what impulses they carry until then. Without these the hops
+    /// come down, and an impact without elasticity gives as much of them back as is needed. So contacts are
+    /// stopped by no more than what presses on them: where normals hardly differ, large impulses that cancel
+    /// each other would stop whatever slides over them, too.
     pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> bool {
         // At the start there may be blows to come, which are not to be stopped along with the rest.
         if work.region.records.iter().any(closes_fast) {
@@ -108,14 +110,14 @@ impl RigidSystem {
         true
     }
 
-    /// How long [s] it takes until what hops is at rest, one after another; `None` if none of those that open comes down by itself.
+    /// How long [s] it takes until what hops is at rest, one after another; `None` if none of those that open
+    /// comes down by itself.
     fn time_of_hops(&self, work: &EventWork) -> Option<f64> {
         let records = &work.region.records;
         let held = work.settling.held.iter().map(|&(index, _)| &records[index]);
         let times = held.filter(|record| self.opens(record)).filter_map(|record| {
             let rate = record.motion.normal_velocity;
-            let sides = [record.parties.primary.body, record.parties.normal.body];
-            let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
+            let row = self.row_of(record);
             // All forces together leave its gap as it is: without its own it closes.
             let closing = force_of(record) * row.coupling(&row);
             self.is_low_hop(record, -closing).then(|| 2.0 * rate / closing)

@@ -1,5 +1,6 @@
-//! What would go on for ever, or counts for nothing: `bounces` that are too low, `hops` of what closes without an impact, `repeats` of an event
-//! at one time, `storms` of impacts, and the `pace` of steps that never come to an end.
+//! What would go on for ever, or counts for nothing: `bounces` that are too low, `hops` of what closes
+//! without an impact, `repeats` of an event at one time, `storms` of impacts, and the `pace` of steps that
+//! never come to an end.
 
 pub(super) mod bounces;
 pub(super) mod hops;

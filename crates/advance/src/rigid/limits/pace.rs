@@ -1,12 +1,12 @@
-//! Pace: how far a group comes with its steps. One that all but stands still, and of which nothing is heard, must not go on
-//! for days.
+//! Pace: how far a group comes with its steps. One that all but stands still, and of which nothing is heard,
+//! must not go on for days.
 //!
-//! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres pass each other
-//! closely. So only steps without an impact count, many of them, and only if the time that is to be simulated would take a
-//! hopeless number of such.
+//! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres
+//! pass each other closely. So only steps without an impact count, many of them, and only if the time that is
+//! to be simulated would take a hopeless number of such.
 //!
-//! A group may also be hasty because contacts that count as resting take turns: to hold one brings what it opens by to rest, and
-//! another, moved along, pulls or closes. Then those that open are let go.
+//! A group may also be hasty because contacts that count as resting take turns: to hold one brings what it
+//! opens by to rest, and another, moved along, pulls or closes. Then those that open are let go.
 
 use crate::rigid::event::region::Region;
 use crate::rigid::step::group::Group;
@@ -55,8 +55,9 @@ impl<const STEPS: u32> Count<STEPS> {
 }
 
 impl RigidSystem {
-    /// Tells for how long [s] the system will be advanced in all. With that, steps are told that will never come to an end
-    /// ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for ever.
+    /// Tells for how long [s] the system will be advanced in all. With that, steps are told that will never
+    /// come to an end ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for
+    /// ever.
     pub fn set_duration(&mut self, duration: f64) {
         self.duration = duration;
     }
@@ -93,7 +94,8 @@ mod tests {
     use super::*;
     use crate::rigid::test_scene::resting_discs;
 
-    /// Whether a disc that makes 64 steps in succession of a length [s] is hasty, and whether it still is when that is asked anew.
+    /// Whether a disc that makes 64 steps in succession of a length [s] is hasty, and whether it still is
+    /// when that is asked anew.
     fn haste(step: f64) -> [bool; 2] {
         let mut system = resting_discs(&[0.0]);
         let mut work = system.work.take().expect("the start has made it");

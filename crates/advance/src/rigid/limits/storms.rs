@@ -1,31 +1,33 @@
 //! Storms: more events in a short time than forces can resolve. They are ended by an impact without elasticity.
 //!
-//! The resolution time is what acceleration takes to make `velocity_tol`; without acceleration, what the fastest body takes
-//! to cross the target gap. Events between which bodies go far beyond the target gap are resolved in space all the same: many
-//! more of them are no storm, and so are those in which much energy would be lost; more still where both is so. A light body that
-//! heavy ones close on takes up all their energy before it turns them back, and to do so it must hit them about as often as the
-//! root of the masses' ratio; a die that jams in its slot is turned back by blows between which it goes a gap or two.
+//! The resolution time is what acceleration takes to make `velocity_tol`; without acceleration, what the
+//! fastest body takes to cross the target gap. Events between which bodies go far beyond the target gap are
+//! resolved in space all the same: many more of them are no storm, and so are those in which much energy
+//! would be lost; more still where both is so. A light body that heavy ones close on takes up all their
+//! energy before it turns them back, and to do so it must hit them about as often as the root of the masses'
+//! ratio; a die that jams in its slot is turned back by blows between which it goes a gap or two.
 
 use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::Tolerances;
-use halfgap_contact::CollisionRow;
 
 /// Events of a body within the resolution time that are always allowed, and those for each row beyond them.
 const CALM_EVENTS: usize = 20;
 const CALM_EVENTS_PER_ROW: usize = 10;
-/// An event is wide if its bodies came towards each other by more than so many target gaps since the one before: a light body between
-/// heavy ones that close on it rattles ever faster until it has turned them back. Of wide ones so many times as many are allowed.
+/// An event is wide if its bodies came towards each other by more than so many target gaps since the one
+/// before: a light body between heavy ones that close on it rattles ever faster until it has turned them
+/// back. Of wide ones so many times as many are allowed.
 const WIDE: f64 = 10.0;
 const CALM_WIDE_EVENTS: usize = 50;
-/// Events between which bodies come towards each other by less than such a part of the target zone, and which follow each other in
-/// less than such a part of the time in which what is usually fast crosses the smallest body, are counted on, however long they go
-/// on: forces that nothing at the start foretold press contacts together, of which now the one, now the other gives way.
+/// Events between which bodies come towards each other by less than such a part of the target zone, and which
+/// follow each other in less than such a part of the time in which what is usually fast crosses the smallest
+/// body, are counted on, however long they go on: forces that nothing at the start foretold press contacts
+/// together, of which now the one, now the other gives way.
 const STILL: f64 = 1e-6;
 const AT_ONCE: f64 = 1e-8;
-/// An event is costly if what closes would lose more than such a part of the energy of all that takes part: it counts as a wide one.
-/// Of those that are both so many times as many again are allowed.
+/// An event is costly if what closes would lose more than such a part of the energy of all that takes part:
+/// it counts as a wide one. Of those that are both so many times as many again are allowed.
 const COSTLY: f64 = 1e-3;
 const CALM_COSTLY_EVENTS: usize = 100;
 /// What counts for so many wide and costly ones.
@@ -33,8 +35,8 @@ const NARROW: usize = CALM_WIDE_EVENTS * CALM_COSTLY_EVENTS;
 /// What counts for so many wide and costly ones is not looked at for what it would cost.
 const MANY: usize = 10 * CALM_COSTLY_EVENTS;
 
-/// What does not go farther in the resolution time than such a part of the target zone, and is not faster than so many times
-/// `velocity_tol`, is at rest in a storm.
+/// What does not go farther in the resolution time than such a part of the target zone, and is not faster
+/// than so many times `velocity_tol`, is at rest in a storm.
 const STORM_WAY: f64 = 1e-3;
 const STORM_SLOW: f64 = 10.0;
 
@@ -50,8 +52,9 @@ pub(crate) struct Recent {
 }
 
 impl RigidSystem {
-    /// Rates [m/s] up to which a row is at rest in a storm: contacts of which now the one, now the other is left to open by rounding,
-    /// though they are pressed, go on for ever. With such a rate nothing gets out of the target zone before the storm is over.
+    /// Rates [m/s] up to which a row is at rest in a storm: contacts of which now the one, now the other is
+    /// left to open by rounding, though they are pressed, go on for ever. With such a rate nothing gets out
+    /// of the target zone before the storm is over.
     pub(crate) fn storm_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         let slow = (STORM_WAY * accuracy / self.settings.resolution_time).min(STORM_SLOW * velocity_tol);
@@ -100,8 +103,7 @@ impl RigidSystem {
     /// True if what closes in a region has a good part of the kinetic energy of its bodies.
     fn is_costly(&self, region: &Region) -> bool {
         let closing = region.records.iter().map(|record| {
-            let sides = [record.parties.primary.body, record.parties.normal.body];
-            let row = CollisionRow::of_collision(record, sides.map(|body| self.inertia(body)));
+            let row = self.row_of(record);
             let (rate, inverse_mass) = (row.rate.min(0.0), row.coupling(&row));
             if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
         });

@@ -84,8 +84,8 @@ impl Flyer {
         self.path().state_at(self.offset(time))
     }
 
-    /// Lets the angle of a flight start within a turn of zero: numbers tell angles the worse the larger they are, and with them where
-    /// corners are.
+    /// Lets the angle of a flight start within a turn of zero: numbers tell angles the worse the larger they
+    /// are, and with them where corners are.
     pub(crate) fn unwind(&mut self) {
         let angle = self.flight.start().angle;
         if !self.is_integrated && angle.abs() > TAU {
@@ -132,8 +132,8 @@ impl Flyer {
         self.reach
     }
 
-    /// How fast [m/s] the fastest point of the body is at a velocity (x, y, angle) of its centre; of accelerations and displacements
-    /// likewise.
+    /// How fast [m/s] the fastest point of the body is at a velocity (x, y, angle) of its centre; of
+    /// accelerations and displacements likewise.
     pub(crate) fn fastest_point(&self, [x, y, angle]: [f64; 3]) -> f64 {
         DVec2::new(x, y).length() + angle.abs() * self.reach
     }

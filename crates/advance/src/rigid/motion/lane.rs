@@ -1,7 +1,7 @@
 //! What is asked of a body most often, in one place: its parabola, its size, how long it stays in its box.
 //!
-//! An event asks this of every neighbour of its bodies. The body itself, with all else that is known of it, is then left
-//! where it is: memory is slower than what is computed here.
+//! An event asks this of every neighbour of its bodies. The body itself, with all else that is known of it,
+//! is then left where it is: memory is slower than what is computed here.
 
 use super::flyer::Flyer;
 use super::path::Path;
@@ -39,8 +39,8 @@ pub(crate) struct Lane {
     pub(crate) radius: f64,
     /// Gap [m] at which the body fires.
     pub(crate) halo: f64,
-    /// Of what has no parabola: how far [m] its centre of mass gets from `position` during its segment, beside what it gets by
-    /// `velocity` and `acceleration`.
+    /// Of what has no parabola: how far [m] its centre of mass gets from `position` during its segment,
+    /// beside what it gets by `velocity` and `acceleration`.
     course: f64,
     pub(crate) kind: LaneKind,
     /// The body neither moves nor is about to.

@@ -72,18 +72,18 @@ impl<'a> Wrenches<'a> {
 
 /// A force law.
 ///
-/// A law must not change branch inside a step: where it does, it says so by a switching function, whose sign changes are
-/// located like impacts.
+/// A law must not change branch inside a step: where it does, it says so by a switching function, whose sign
+/// changes are located like impacts.
 pub trait ForceLaw: Debug + Send + Sync {
     /// What the law is called in messages and in the energy ledger.
     fn name(&self) -> &str;
 
-    /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps; what is added to a
-    /// body that is not named is ignored, and refused where a world is built.
+    /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps;
+    /// what is added to a body that is not named is ignored, and refused where a world is built.
     fn bodies(&self) -> &[BodyId];
 
-    /// Adds the forces and torques of this moment: a function of the snapshot alone, which is asked for as often as it takes, and not
-    /// in the order of time.
+    /// Adds the forces and torques of this moment: a function of the snapshot alone, which is asked for as
+    /// often as it takes, and not in the order of time.
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
 
     /// Potential energy [J] of which the forces are the gradient; `None` if there is none: its work is then integrated.
@@ -97,8 +97,8 @@ pub trait ForceLaw: Debug + Send + Sync {
         None
     }
 
-    /// Length [m] over which the forces vary by as much as they are, where that may be less than bodies are large; `None`
-    /// if it may not.
+    /// Length [m] over which the forces vary by as much as they are, where that may be less than bodies are
+    /// large; `None` if it may not.
     fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None

@@ -39,8 +39,8 @@ pub(crate) struct DensePath {
     known: Known,
 }
 
-/// What the searches of all pairs of a body ask first: where it is at the start of its segment and in the middle, and what
-/// bounds hold along all of it.
+/// What the searches of all pairs of a body ask first: where it is at the start of its segment and in the
+/// middle, and what bounds hold along all of it.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     /// Length of the segment [s].

@@ -1,8 +1,8 @@
 //! A body's room to move: a fat box in the broad phase, and when the body could leave it.
 //!
-//! While a body stays in its box, only bodies whose boxes overlap can meet it. How fat a box is follows what it finds:
-//! many neighbours make it shrink, few make it grow, between bounds that depend on the body's size. A body in flight has most of
-//! its room ahead.
+//! While a body stays in its box, only bodies whose boxes overlap can meet it. How fat a box is follows what
+//! it finds: many neighbours make it shrink, few make it grow, between bounds that depend on the body's size.
+//! A body in flight has most of its room ahead.
 
 use crate::rigid::motion::flyer::Flyer;
 use crate::rigid::motion::lane::Lane;
@@ -12,8 +12,8 @@ use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
 use halfgap_geometry::Aabb;
 
-/// More neighbours than this make a box shrink. Fewer cost more moves of boxes in a gas, more cost more predictions: from 8
-/// to 14 there is little between them.
+/// More neighbours than this make a box shrink. Fewer cost more moves of boxes in a gas, more cost more
+/// predictions: from 8 to 14 there is little between them.
 const MANY: usize = 10;
 /// Fewer neighbours than this make a box grow.
 const FEW: usize = 5;
@@ -21,8 +21,8 @@ const FEW: usize = 5;
 const FACTOR: f64 = 1.5;
 /// A box is set ahead of a body in flight by this part of its margin: a gas has a seventh fewer moves of boxes for it.
 const AHEAD: f64 = 0.6;
-/// A margin is at least this part of the body's reach, and at most so many times, beyond all coordinates: what flies off, or is small
-/// and far from all else, as a moon, would leave its boxes without end.
+/// A margin is at least this part of the body's reach, and at most so many times, beyond all coordinates:
+/// what flies off, or is small and far from all else, as a moon, would leave its boxes without end.
 const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
 const LARGEST_MARGIN: f64 = 1e80;
 
@@ -121,8 +121,8 @@ fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
     leaving_time_within(path, [a, a], core)
 }
 
-/// A time [s] before which a damped flight from an offset [s] surely stays in a box: its acceleration keeps its direction
-/// and dies away, so that along each axis the flight is between a straight line and a parabola.
+/// A time [s] before which a damped flight from an offset [s] surely stays in a box: its acceleration keeps
+/// its direction and dies away, so that along each axis the flight is between a straight line and a parabola.
 fn damped_leaving_time(flight: &Flight, offset: f64, core: &Aabb) -> Option<f64> {
     let state = flight.state_at(offset);
     let acceleration = flight.acceleration_at(offset);
@@ -130,8 +130,8 @@ fn damped_leaving_time(flight: &Flight, offset: f64, core: &Aabb) -> Option<f64>
     leaving_time_within(&path, [acceleration.min(DVec2::ZERO), acceleration.max(DVec2::ZERO)], core)
 }
 
-/// When a point first leaves a box at the earliest, if its accelerations [m/s^2] lie between a least and a greatest along
-/// each axis.
+/// When a point first leaves a box at the earliest, if its accelerations [m/s^2] lie between a least and a
+/// greatest along each axis.
 fn leaving_time_within(path: &Polynomial, [least, greatest]: [DVec2; 2], core: &Aabb) -> Option<f64> {
     let (x, v) = (path.position, path.velocity);
     [

@@ -1,9 +1,9 @@
 //! Corners that pass over each other where two surfaces are flush.
 //!
-//! What rests has its target gap under it. A block on a fixed table and a cart beside it are both lifted by that, so that the
-//! block, as it slides from the table onto the cart, has its corner at the very height of the cart's: whether it runs against it
-//! is for the last digit to say. Where the two edges that lead away from the corners are parallel, and the one is to slide along
-//! the other, it does not.
+//! What rests has its target gap under it. A block on a fixed table and a cart beside it are both lifted by
+//! that, so that the block, as it slides from the table onto the cart, has its corner at the very height of
+//! the cart's: whether it runs against it is for the last digit to say. Where the two edges that lead away
+//! from the corners are parallel, and the one is to slide along the other, it does not.
 
 use super::pairs::PairId;
 use crate::rigid::event::region::Touch;
@@ -35,8 +35,8 @@ struct Corner {
 }
 
 impl RigidSystem {
-    /// True if two features that fire are those of corners that pass over each other: the search leaves these alone from now
-    /// on.
+    /// True if two features that fire are those of corners that pass over each other: the search leaves these
+    /// alone from now on.
     pub(crate) fn passes_over(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let is_left_alone = |rule: &FeatureRule| rule.features == features && rule.target.is_none();
         if self.pairs.rules(pair).iter().any(is_left_alone) {
@@ -62,8 +62,8 @@ impl RigidSystem {
                 .is_some_and(|touch| self.passing_features(touch.bodies, touch.features).is_some())
     }
 
-    /// The pairs of features that do not run against each other where two features meet, these among them: those of corners that
-    /// pass over each other.
+    /// The pairs of features that do not run against each other where two features meet, these among them:
+    /// those of corners that pass over each other.
     fn passing_features(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<Passing> {
         if bodies.iter().any(|&body| self.flyer(body).disc().is_some()) {
             return None;
@@ -107,8 +107,8 @@ impl RigidSystem {
         }
     }
 
-    /// Which side of each of two corners that meet is flush with that of the other, if they are to pass over each other: that
-    /// which ends there or that which starts there.
+    /// Which side of each of two corners that meet is flush with that of the other, if they are to pass over
+    /// each other: that which ends there or that which starts there.
     fn flush_sides(&self, [first, second]: [&Corner; 2]) -> Option<[usize; 2]> {
         let (gap, accuracy) = (self.settings.tolerances.target_gap, self.settings.tolerances.accuracy);
         let (offset, velocity) = (first.place - second.place, first.velocity - second.velocity);

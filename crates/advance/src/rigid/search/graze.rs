@@ -1,10 +1,10 @@
 //! Contacts that graze: features that come nearer than where bodies fire, and turn back before they touch.
 //!
-//! Near a dead point of what connectors hold, a part of a body comes towards another at a speed that vanishes with the gap: the
-//! corner beside the hinge of a lid that falls shut, a bob that just clears the floor, a slider at its dead centre. To stop such a
-//! part stops the whole mechanism, by a lever that is next to none; and where it lies flush in the end, it is the far corner that
-//! should do so. What fires at the target gap, but is turned back by its own motion before it lies deeper than contacts may anyway,
-//! is let pass.
+//! Near a dead point of what connectors hold, a part of a body comes towards another at a speed that vanishes
+//! with the gap: the corner beside the hinge of a lid that falls shut, a bob that just clears the floor, a
+//! slider at its dead centre. To stop such a part stops the whole mechanism, by a lever that is next to none;
+//! and where it lies flush in the end, it is the far corner that should do so. What fires at the target gap,
+//! but is turned back by its own motion before it lies deeper than contacts may anyway, is let pass.
 
 use super::pairs::PairId;
 use crate::rigid::event::region::Touch;
@@ -50,21 +50,21 @@ impl RigidSystem {
         if self.is_zone_seen(bodies) { 0.0 } else { -DEPTH * self.settings.tolerances.target_gap }
     }
 
-    /// True if features of which one is held by connectors, as they move now, part again before they are as deep as what grazes never
-    /// is.
+    /// True if features of which one is held by connectors, as they move now, part again before they are as
+    /// deep as what grazes never is.
     fn turns_back(&self, touch: Touch) -> bool {
         self.parts_again(touch.bodies, self.least_grazing_gap(touch.bodies), |time| self.gap_at(touch, time))
     }
 
-    /// The gap [m] to which what grazes may seem to come: between the ends of a step its dense output has bodies off what holds them,
-    /// and that is no depth.
+    /// The gap [m] to which what grazes may seem to come: between the ends of a step its dense output has
+    /// bodies off what holds them, and that is no depth.
     fn least_grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
         let errors = bodies.iter().filter_map(|&body| self.group_of(body)).map(|group| group.largest_error);
         self.grazing_gap(bodies) - SEEMING * errors.sum::<f64>()
     }
 
-    /// True if a rope one end of which is held by other connectors, too, as it moves now, is slack again before it is longer by as much
-    /// as what grazes may be deep.
+    /// True if a rope one end of which is held by other connectors, too, as it moves now, is slack again
+    /// before it is longer by as much as what grazes may be deep.
     pub(crate) fn rope_grazes(&self, id: ConnectorId) -> bool {
         let connector = self.connector(id);
         let bodies = connector.bodies();
@@ -80,8 +80,9 @@ impl RigidSystem {
         DEPTH * self.settings.tolerances.target_gap
     }
 
-    /// True if a gap that closes between bodies of which one is held by connectors, as they move now, opens again before it is less than
-    /// so much [m]. It is given, with its rate [m/s], at any time of the present motion.
+    /// True if a gap that closes between bodies of which one is held by connectors, as they move now, opens
+    /// again before it is less than so much [m]. It is given, with its rate [m/s], at any time of the present
+    /// motion.
     fn parts_again(&self, bodies: [BodyId; 2], least: f64, gap_at: impl Fn(Time) -> (f64, f64)) -> bool {
         let is_moved = |body: &BodyId| !body.is_world() && self.group_of(*body).is_some();
         if !bodies.iter().any(|&body| self.is_tied(body)) || !bodies.iter().any(is_moved) {

@@ -1,13 +1,15 @@
-//! How far ahead of its bodies a pair is searched: what comes first changes their motions, and what would come later is looked
-//! for when it has not.
+//! How far ahead of its bodies a pair is searched: what comes first changes their motions, and what would
+//! come later is looked for when it has not.
 
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::BodyId;
 
-/// A search goes beyond the first contact by this part of the time until it: where that is corrected, what comes close after is known.
+/// A search goes beyond the first contact by this part of the time until it: where that is corrected, what
+/// comes close after is known.
 const BEYOND: f64 = 1.0 / 8.0;
-/// What ends no sooner than after this part of what is known of the motions is searched to the end: bounds on all of a step are at hand.
+/// What ends no sooner than after this part of what is known of the motions is searched to the end: bounds on
+/// all of a step are at hand.
 const WORTHWHILE: f64 = 0.5;
 
 impl RigidSystem {

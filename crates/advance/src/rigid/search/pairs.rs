@@ -76,7 +76,8 @@ pub(crate) struct Seen {
     pub(crate) rate: f64,
     /// How many low bounces have come before, one after another.
     pub(crate) low: u32,
-    /// It has fired although it did not close, and has not left its target since: it opens too slowly for the search to see it leave.
+    /// It has fired although it did not close, and has not left its target since: it opens too slowly for the
+    /// search to see it leave.
     pub(crate) fires_open: bool,
 }
 

@@ -165,8 +165,8 @@ impl RigidSystem {
         self.note_prediction(pair, (prediction, clear));
     }
 
-    /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near each other: in a
-    /// heap, where steps are short, few of those that are neighbours do.
+    /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near
+    /// each other: in a heap, where steps are short, few of those that are neighbours do.
     fn stays_apart(&self, pair: PairId, from: Time, until: Time) -> bool {
         let [a, b] = self.pairs.bodies(pair).map(|body| &self.lanes[body.index()]);
         let span = until.since(from);

@@ -1,4 +1,5 @@
-//! What the search is told about features that touch: which to leave alone, and how far others may sink before they fire.
+//! What the search is told about features that touch: which to leave alone, and how far others may sink
+//! before they fire.
 
 use super::pairs::PairId;
 use crate::rigid::event::cause::EventWork;
@@ -24,9 +25,9 @@ impl RigidSystem {
         (gap - self.sink()).min(self.settings.tolerances.target_gap)
     }
 
-    /// Gap [m] at which a contact fires that opens: where any pair does, however low the halos of its bodies. When others are
-    /// brought to where they are held it may be moved so deep that the search would take it for the far side of a body, and
-    /// it may come back before it is out: such a one fires where it lies.
+    /// Gap [m] at which a contact fires that opens: where any pair does, however low the halos of its bodies.
+    /// When others are brought to where they are held it may be moved so deep that the search would take it
+    /// for the far side of a body, and it may come back before it is out: such a one fires where it lies.
     fn returns_to(&self, touch: Touch) -> f64 {
         let [a, b] = [0, 1]
             .map(|side: usize| self.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
@@ -51,7 +52,8 @@ impl RigidSystem {
             } else if settling.lets_pass(*touch) {
                 touch.lowered_to(self.grazing_gap(touch.bodies))
             } else {
-                // What fires although it does not close would do so again at once. It may sink no farther than its zone.
+                // What fires although it does not close would do so again at once. It may sink no farther
+                // than its zone.
                 let stays = rate <= rest || (gap > least && self.fires_open(pair, touch.features));
                 touch.lowered_to(if stays { self.sinks_to(*touch, gap) } else { self.returns_to(*touch) })
             };
@@ -65,7 +67,8 @@ impl RigidSystem {
         self.give_back_deep();
     }
 
-    /// Drops what the search was told of the bodies of a region, and puts aside what it was told of contacts that lie deep.
+    /// Drops what the search was told of the bodies of a region, and puts aside what it was told of contacts
+    /// that lie deep.
     fn take_rules(&mut self, region: &Region) {
         let deepest = self.deepest();
         self.deep.clear();
@@ -81,8 +84,8 @@ impl RigidSystem {
         }
     }
 
-    /// A contact that was moved so deep that it fires where it lies is not seen by an event of other bodies, but goes on to do so
-    /// until it is out.
+    /// A contact that was moved so deep that it fires where it lies is not seen by an event of other bodies,
+    /// but goes on to do so until it is out.
     fn give_back_deep(&mut self) {
         let deepest = self.deepest();
         for index in 0..self.deep.len() {
@@ -98,15 +101,16 @@ impl RigidSystem {
         }
     }
 
-    /// The gap [m] below which the search would take a contact for the far side of a body. Where contacts carry impulses only, it
-    /// looks as deep as they may sink.
+    /// The gap [m] below which the search would take a contact for the far side of a body. Where contacts
+    /// carry impulses only, it looks as deep as they may sink.
     fn deepest(&self) -> f64 {
         let with_forces = self.settings.impulse_step.is_none();
         if with_forces { -DEEPEST * self.settings.tolerances.target_gap } else { f64::NEG_INFINITY }
     }
 
-    /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they would meet the other
-    /// of its features: they are no nearer than the contact, until that has run off its features and they take over.
+    /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they
+    /// would meet the other of its features: they are no nearer than the contact, until that has run off its
+    /// features and they take over.
     fn leave_ends_alone(&mut self, pair: PairId, touch: &Touch) {
         let ends = [0, 1].map(|side: usize| {
             self.flyers[touch.bodies[side].index()].body().shape.ends_of(touch.features[side])
@@ -155,7 +159,8 @@ impl RigidSystem {
         rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
     }
 
-    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it touches already.
+    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it
+    /// touches already.
     ///
     /// So a body that slides along at less than its target does not run against the seam of the next floor.
     fn set_halos(&mut self, region: &Region) {

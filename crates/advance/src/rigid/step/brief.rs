@@ -1,6 +1,7 @@
-//! How the steps of a group are made: by the method that is asked for, or, in place of the default one, by the method of
-//! order 5, which has half as many stages. That serves where a higher order gains nothing: between events that come fast
-//! one after another, and over the kinks of a spline. Implicit steps are in `stiff`.
+//! How the steps of a group are made: by the method that is asked for, or, in place of the default one, by
+//! the method of order 5, which has half as many stages. That serves where a higher order gains nothing:
+//! between events that come fast one after another, and over the kinks of a spline. Implicit steps are in
+//! `stiff`.
 
 use super::group::Group;
 use super::rows::RowSource;
@@ -15,8 +16,8 @@ const BRIEF: f64 = 4.0;
 /// A brief step is at least this part of a full one: to be cut short later costs less than to go on too often.
 const BRIEFEST: f64 = 1.0 / 32.0;
 
-/// Where a step is expected to be cut short, it is made shorter by this factor: its error is then so small that it can be cut
-/// by its dense output, and need not be repeated up to the event.
+/// Where a step is expected to be cut short, it is made shorter by this factor: its error is then so small
+/// that it can be cut by its dense output, and need not be repeated up to the event.
 const CUT_SHARE: f64 = 0.6;
 
 /// A group stays brief while its steps may grow by this factor.

@@ -1,8 +1,8 @@
 //! Dense output that waits until somebody looks.
 //!
-//! Where no body of a group can meet another, nothing can go taut or run off, and no force law changes branch, only who
-//! asks from outside needs to know the motion between the ends of steps. It is made from the stages of the last step, so
-//! it must be made before the stepper goes on with another group.
+//! Where no body of a group can meet another, nothing can go taut or run off, and no force law changes
+//! branch, only who asks from outside needs to know the motion between the ends of steps. It is made from the
+//! stages of the last step, so it must be made before the stepper goes on with another group.
 
 use super::group::Group;
 use crate::rigid::system::RigidSystem;

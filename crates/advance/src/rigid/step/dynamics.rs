@@ -283,9 +283,9 @@ pub(crate) struct Dynamics<'a> {
 }
 
 impl Dynamics<'_> {
-    /// Measures the rows with the bodies in place and factorises; calls `visit` with the gap of each less the one at which
-    /// it formed, and its rate. Returns how many rows depend on others. Of a group that is stepped as a tree, only rows beside
-    /// its pins count.
+    /// Measures the rows with the bodies in place and factorises; calls `visit` with the gap of each less the
+    /// one at which it formed, and its rate. Returns how many rows depend on others. Of a group that is
+    /// stepped as a tree, only rows beside its pins count.
     pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) -> usize {
         if self.group.tree.is_used() {
             self.factorize_by_tree(visit);
@@ -436,8 +436,8 @@ impl Dynamics<'_> {
         x * x + y * y <= linear * linear && angular.abs() <= force * inertia.inverse_moment * reach
     }
 
-    /// Takes those bodies out of the level ones that rows push along with others that are not: what is rounding of the forces
-    /// on a light body may be how a heavy one moves that it is tied to.
+    /// Takes those bodies out of the level ones that rows push along with others that are not: what is
+    /// rounding of the forces on a light body may be how a heavy one moves that it is tied to.
     fn keep_pushed(&mut self) {
         let flyers = self.physics.mechanism.flyers;
         let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
@@ -465,8 +465,8 @@ impl Dynamics<'_> {
 impl ExtraAcceleration {
     /// Acceleration [m/s^2] that is added to a gap's own, for a gap too large by `gap` [m] that grows at `rate` [m/s].
     ///
-    /// Kept out of loops over rows, which else compute with `time` where there is none: what memory then holds is often a
-    /// denormal number, which takes long.
+    /// Kept out of loops over rows, which else compute with `time` where there is none: what memory then
+    /// holds is often a denormal number, which takes long.
     #[inline(never)]
     fn acceleration(&self, gap: f64, rate: f64) -> f64 {
         if self.distance {
@@ -529,8 +529,8 @@ impl Dynamics<'_> {
         self.find_rates(offset, state, rates, constrain);
     }
 
-    /// Rates of the group's state, with its largest acceleration without the forces of rows, and the forces of rows unless
-    /// it is stepped as a tree.
+    /// Rates of the group's state, with its largest acceleration without the forces of rows, and the forces
+    /// of rows unless it is stepped as a tree.
     pub(crate) fn evaluate_with_free(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         self.stage.asks_free_acceleration = true;
         self.find_rates_at(offset, state, rates);
@@ -539,7 +539,8 @@ impl Dynamics<'_> {
         self.group.force_length = self.stage.force_length;
     }
 
-    /// The largest distance [m] by which a connector is off, with the bodies in place; the rows of one follow each other.
+    /// The largest distance [m] by which a connector is off, with the bodies in place; the rows of one follow
+    /// each other.
     pub(crate) fn connector_error(&self) -> f64 {
         let (mut last, mut square, mut largest) = (None, 0.0, 0.0f64);
         for row in &self.group.rows {

@@ -9,9 +9,9 @@ use crate::rigid::motion::law::Snapshot;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, BodyState};
 
-/// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it. Where rows all
-/// but depend on each other, or near a centre of attraction, what is rounding elsewhere does work, and no error estimate
-/// tells.
+/// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it.
+/// Where rows all but depend on each other, or near a centre of attraction, what is rounding elsewhere does
+/// work, and no error estimate tells.
 const LOST_ERRORS: f64 = 1e2;
 const LOST_ROUNDINGS: f64 = 1e3;
 
@@ -51,7 +51,8 @@ impl RigidSystem {
 }
 
 impl Dynamics<'_> {
-    /// Projects the end onto the held rows and notes what energy that took. Returns the energy there, if anybody had to look.
+    /// Projects the end onto the held rows and notes what energy that took. Returns the energy there, if
+    /// anybody had to look.
     pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) -> Option<Energy> {
         let settings = tools.settings;
         self.group.projected = 0.0;
@@ -77,8 +78,8 @@ impl Dynamics<'_> {
         energy
     }
 
-    /// Energy that the last step has lost or made, in units of what it may; 0 where errors of steps are all there is. The energy
-    /// at its end, where it is known.
+    /// Energy that the last step has lost or made, in units of what it may; 0 where errors of steps are all
+    /// there is. The energy at its end, where it is known.
     pub(crate) fn lost_energy(&mut self, control: &StepControl, end: Option<Energy>) -> f64 {
         let holds = !self.group.rows.is_empty() && !self.group.tree.holds_all();
         if !holds && self.group.force_length >= control.length {

@@ -7,8 +7,8 @@ use crate::rigid::system::RigidSettings;
 
 /// Shorter steps that are tried for one that keeps to its rows.
 const SHORTENINGS: usize = 2;
-/// More of them where the dense output errs by more than so many times what is allowed, so that bodies would overlap; and more
-/// still as long as each leaves less than so much of the error.
+/// More of them where the dense output errs by more than so many times what is allowed, so that bodies would
+/// overlap; and more still as long as each leaves less than so much of the error.
 const DEEP_SHORTENINGS: usize = 5;
 const MOST_SHORTENINGS: usize = 8;
 const DEEP: f64 = 4.0;
@@ -40,8 +40,8 @@ impl Dynamics<'_> {
         Ok(())
     }
 
-    /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go on otherwise, it keeps to
-    /// its rows and its energy, too.
+    /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go
+    /// on otherwise, it keeps to its rows and its energy, too.
     fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let mut tries = 0;
         loop {
@@ -69,8 +69,9 @@ impl Dynamics<'_> {
         self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
     }
 
-    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not swing:
-    /// shorter ones are tried until it does. Tells how fast the fastest part is, if somebody has looked.
+    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and
+    /// does not swing: shorter ones are tried until it does. Tells how fast the fastest part is, if somebody
+    /// has looked.
     fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();

@@ -87,8 +87,8 @@ pub(crate) struct Group {
     pub(crate) pulled: Vec<f64>,
     /// x, y and angle of each body along the segment.
     pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
-    /// Their velocities, by place as in the state, and then works [J], along the segment. The paths' own derivatives hold
-    /// what a projection has moved the end by, too: over a short step that is much.
+    /// Their velocities, by place as in the state, and then works [J], along the segment. The paths' own
+    /// derivatives hold what a projection has moved the end by, too: over a short step that is much.
     pub(crate) rate_paths: Vec<SegmentPolynomial>,
     /// Length of the next step to try [s]; `None` if nothing is known.
     pub(crate) next_step: Option<f64>,
@@ -103,8 +103,8 @@ pub(crate) struct Group {
     /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
     pub(crate) has_kinks: bool,
     pub(crate) stiffness: Stiffness,
-    /// By how much [1/s^2] the acceleration of each body varied last where the bodies were moved by a little; empty where
-    /// nobody had to look, and among contacts.
+    /// By how much [1/s^2] the acceleration of each body varied last where the bodies were moved by a little;
+    /// empty where nobody had to look, and among contacts.
     pub(crate) roughness: Vec<f64>,
     /// The last step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,
@@ -112,7 +112,8 @@ pub(crate) struct Group {
     pub(crate) steady_step: Option<f64>,
     /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
     pub(crate) free_acceleration: f64,
-    /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies are large.
+    /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies
+    /// are large.
     pub(crate) force_length: f64,
     /// Energy [J] that the projection of the end changed.
     pub(crate) projected: f64,
@@ -122,12 +123,14 @@ pub(crate) struct Group {
     pub(crate) least_gap: Option<f64>,
     /// What ends the segment early, if something does, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
-    /// Offset [s] up to which no contact can lose its force, as the stages of the step tell, while nobody has looked further.
+    /// Offset [s] up to which no contact can lose its force, as the stages of the step tell, while nobody has
+    /// looked further.
     pub(crate) look: Option<f64>,
 }
 
 impl Group {
-    /// How deep [m] a held contact lies below where its bodies touch: rows that contradict each other do not keep to their gaps.
+    /// How deep [m] a held contact lies below where its bodies touch: rows that contradict each other do not
+    /// keep to their gaps.
     pub(crate) fn depth(&self) -> f64 {
         self.least_gap.map_or(0.0, |gap| (-gap).max(0.0))
     }

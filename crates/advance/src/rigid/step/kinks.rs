@@ -1,21 +1,22 @@
-//! Steps up to the joints of rails through points. The third derivatives of a spline jump there, so that a step across loses
-//! the order of its method; one that ends there does not. Joints of lines and arcs are events (`watch`).
+//! Steps up to the joints of rails through points. The third derivatives of a spline jump there, so that a
+//! step across loses the order of its method; one that ends there does not. Joints of lines and arcs are
+//! events (`watch`).
 
 use super::dynamics::{Dynamics, body_state};
 use super::rows::{HeldRow, RowSource};
 use super::segment::StepControl;
 use halfgap_collision::Moving;
 
-/// By how much of h^2 a velocity errs, after a step h of the method of order 5, per jump of the derivative of its
-/// acceleration: between what the error estimate sees of it and what it can be, the largest values (0.0019 and 0.022) of
-/// their Peano kernels. Over m joints as far from each other it is m times as much, not m^2: between them the curve strays
-/// from a smooth one by as much on either side.
+/// By how much of h^2 a velocity errs, after a step h of the method of order 5, per jump of the derivative of
+/// its acceleration: between what the error estimate sees of it and what it can be, the largest values
+/// (0.0019 and 0.022) of their Peano kernels. Over m joints as far from each other it is m times as much, not
+/// m^2: between them the curve strays from a smooth one by as much on either side.
 const KERNEL: f64 = 1.0 / 256.0;
 
 impl Dynamics<'_> {
-    /// The step [s] up to the next joint of a spline on which a point of the group runs, by its velocity and acceleration at
-    /// the start; longer ones where to cross it is no error. It need not be hit: what a step errs falls with the part of
-    /// it that lies beyond.
+    /// The step [s] up to the next joint of a spline on which a point of the group runs, by its velocity and
+    /// acceleration at the start; longer ones where to cross it is no error. It need not be hit: what a step
+    /// errs falls with the part of it that lies beyond.
     pub(crate) fn longest_smooth_step(&self, control: &StepControl) -> f64 {
         if !self.group.has_kinks {
             return f64::INFINITY;

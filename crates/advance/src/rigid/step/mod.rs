@@ -1,11 +1,13 @@
-//! Steps of the bodies that move together: a `group` and the `rows` it holds (contacts, connectors), from its equations of motion to its
-//! end on the rows. What ends a step early is in `ending`, what begins a group in `event`.
+//! Steps of the bodies that move together: a `group` and the `rows` it holds (contacts, connectors), from its
+//! equations of motion to its end on the rows. What ends a step early is in `ending`, what begins a group in
+//! `event`.
 //!
-//! * equations of motion: `dynamics`; `tree` where bodies hang together by pins, in angles; `on_rows` where stages lie if rows depend
-//!   on each other; `singular` where loops could go on in two ways;
-//! * one step: `segment`; by which method, `brief` and `stiff`; where splines have `kinks`; its end moved onto the rows, `projection`; what it
-//!   may not lose, `energy`;
-//! * in time: `extending` adds a step to a group, `deferred` puts that off until somebody looks, `placing` says where the bodies are along it.
+//! * equations of motion: `dynamics`; `tree` where bodies hang together by pins, in angles; `on_rows` where
+//!   stages lie if rows depend on each other; `singular` where loops could go on in two ways;
+//! * one step: `segment`; by which method, `brief` and `stiff`; where splines have `kinks`; its end moved
+//!   onto the rows, `projection`; what it may not lose, `energy`;
+//! * in time: `extending` adds a step to a group, `deferred` puts that off until somebody looks, `placing`
+//!   says where the bodies are along it.
 
 pub(super) mod brief;
 pub(super) mod deferred;

@@ -1,8 +1,9 @@
 //! Stages of a step, moved onto held rows of which some depend on others.
 //!
-//! Where states are on the rows, what one of them asks for the others give already. A stage is off them, by far more than the error
-//! of its step: there the rows all but depend on each other, and what they disagree in makes large forces of nothing. To move a stage
-//! changes nothing of the motion, which is on the rows. Ends of steps are moved in `projection`, with more care.
+//! Where states are on the rows, what one of them asks for the others give already. A stage is off them, by
+//! far more than the error of its step: there the rows all but depend on each other, and what they disagree
+//! in makes large forces of nothing. To move a stage changes nothing of the motion, which is on the rows.
+//! Ends of steps are moved in `projection`, with more care.
 
 use super::dynamics::Dynamics;
 use super::projection::ALL_OF_IT;
@@ -27,7 +28,8 @@ impl Dynamics<'_> {
     /// Moves a state onto the held rows, and stops what its velocities would move it off them by.
     fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
         let length = self.physics.steps.length;
-        // Near a point where loops could go on in two ways every digit counts; else what is lacking comes with the next round.
+        // Near a point where loops could go on in two ways every digit counts; else what is lacking comes
+        // with the next round.
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..MOST_ROUNDS {

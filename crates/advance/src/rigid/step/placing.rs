@@ -1,5 +1,5 @@
-//! Where a group's bodies are along its segment: all of them with their velocities, or, as far as gaps depend on it, those
-//! that somebody watches.
+//! Where a group's bodies are along its segment: all of them with their velocities, or, as far as gaps depend
+//! on it, those that somebody watches.
 
 use super::dynamics::Dynamics;
 use super::group::Group;
@@ -83,8 +83,8 @@ mod tests {
     use glam::DVec2;
     use halfgap_collision::{BodyId, Moving};
 
-    /// The bodies of the group of a body that slides and turns, in the middle of its segment, as all are placed and as the
-    /// watched ones are put.
+    /// The bodies of the group of a body that slides and turns, in the middle of its segment, as all are
+    /// placed and as the watched ones are put.
     fn placed_and_put(mut system: RigidSystem, body: BodyId) -> [Vec<Moving>; 2] {
         let mut group = system.groups.take(body).expect("it is held");
         system.with_group(&mut group, |dynamics, tools| {

@@ -6,16 +6,17 @@ use super::segment::{ROUNDING_SHARE, StepControl};
 
 /// Newton steps of one projection.
 const PROJECTIONS: usize = 5;
-/// The same where rows share what they hold, which converges more slowly, while each leaves less than so much of the error.
+/// The same where rows share what they hold, which converges more slowly, while each leaves less than so much
+/// of the error.
 const SOFT_PROJECTIONS: usize = 20;
 const WORTHWHILE: f64 = 0.5;
-/// Bodies that move by so many times the error of their rows have other rates there: rows that all but depend on each other
-/// carry forces that do work on what is left of them.
+/// Bodies that move by so many times the error of their rows have other rates there: rows that all but depend
+/// on each other carry forces that do work on what is left of them.
 const FAR: f64 = 8.0;
 /// What bodies of loops move by for less than this part of the length changes none of their rates.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
-/// A change of velocities by more than so many times what is fast corrects nothing: to stop a group altogether, some points change
-/// by a little more than the fastest moves.
+/// A change of velocities by more than so many times what is fast corrects nothing: to stop a group
+/// altogether, some points change by a little more than the fastest moves.
 pub(crate) const ALL_OF_IT: f64 = 2.0;
 
 impl Dynamics<'_> {
@@ -36,8 +37,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Moves the end state onto the held rows, by the least displacement and the least change of velocities in the metric
-    /// of the masses; each row to the gap at which it formed.
+    /// Moves the end state onto the held rows, by the least displacement and the least change of velocities
+    /// in the metric of the masses; each row to the gap at which it formed.
     pub(crate) fn project_end(&mut self, control: &StepControl) {
         let length = control.length;
         let mut end = std::mem::take(&mut self.group.end_state);
@@ -53,8 +54,9 @@ impl Dynamics<'_> {
         for round in 0..rounds {
             let error = self.measure_errors(&end, &mut rates);
             self.respond();
-            // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask for more than
-            // what holds near here, and for what rounding makes of their gaps: errors far within the zone are not worth more.
+            // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask
+            // for more than what holds near here, and for what rounding makes of their gaps: errors far
+            // within the zone are not worth more.
             let way = self.largest_change();
             let is_noise = error < ROUNDING_SHARE * zone && way > zone;
             if way.powi(2) > error * length || is_noise {
@@ -88,8 +90,8 @@ impl Dynamics<'_> {
         self.group.end_state = end;
     }
 
-    /// Measures the rows in a state and factorises: by how far [m] each gap is off, left in the stage's offsets, and its rate. Returns the
-    /// largest error.
+    /// Measures the rows in a state and factorises: by how far [m] each gap is off, left in the stage's
+    /// offsets, and its rate. Returns the largest error.
     pub(crate) fn measure_errors(&mut self, state: &[f64], rates: &mut Vec<f64>) -> f64 {
         self.stage.load(&self.group.bodies, state);
         let mut offsets = std::mem::take(&mut self.stage.offsets);

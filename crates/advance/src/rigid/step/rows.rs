@@ -94,8 +94,8 @@ impl Mechanism<'_> {
         self.sample_here(row.bodies, features, row.bodies.map(|body| moving_of(movings, body))).gap
     }
 
-    /// Gap and kinematics of a contact; inlined with all that it calls, so that what is not asked for is not computed and what
-    /// is does not go through memory.
+    /// Gap and kinematics of a contact; inlined with all that it calls, so that what is not asked for is not
+    /// computed and what is does not go through memory.
     #[inline(always)]
     pub(crate) fn measure_contact(
         &self,
@@ -234,8 +234,8 @@ impl Mechanism<'_> {
         to_ends(0).min(to_ends(1)).max(0.0)
     }
 
-    /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet what touches them
-    /// from behind after half a turn. How far a sharp corner leans does not count.
+    /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet
+    /// what touches them from behind after half a turn. How far a sharp corner leans does not count.
     pub(crate) fn overrun(
         &self,
         bodies: [BodyId; 2],
@@ -275,8 +275,9 @@ impl Mechanism<'_> {
         sample.overrun > 0.0 || !self.is_corner_on_line(&sample, bodies, features, movings)
     }
 
-    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If it leans a little off the line, so that
-    /// the next corner along is nearer, it still touches it: so a block rocks from one corner to the other.
+    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If it leans a
+    /// little off the line, so that the next corner along is nearer, it still touches it: so a block rocks
+    /// from one corner to the other.
     fn is_corner_on_line(
         &self,
         sample: &GapSample,
@@ -325,7 +326,8 @@ fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f
     rooms.flatten().min_by(f64::total_cmp)
 }
 
-/// Distance [m] along a rail to a joint at the end and to one at the start of the piece on which a place is, if it is one.
+/// Distance [m] along a rail to a joint at the end and to one at the start of the piece on which a place is,
+/// if it is one.
 pub(crate) fn knot_rooms(path: &RailPath, knot: &RailKnot, place: &RailPlace) -> [Option<f64>; 2] {
     // On a closed path the joint at its start is at both of its ends.
     let end = if path.is_closed() && knot.arc_length == 0.0 { path.length() } else { knot.arc_length };

@@ -1,5 +1,5 @@
-//! A group's segment: an accepted step, its dense output, and its repetition up to an event. Its end is moved onto the held rows in
-//! `projection`.
+//! A group's segment: an accepted step, its dense output, and its repetition up to an event. Its end is moved
+//! onto the held rows in `projection`.
 
 use super::brief::Stepping;
 use super::dynamics::{Dynamics, body_state};
@@ -31,7 +31,8 @@ const COLLAPSED: f64 = 64.0;
 const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
 /// A step is divided by this where the state is not a number.
 const RETREAT: f64 = 0.1;
-/// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance less well.
+/// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance
+/// less well.
 const STEADY_GROWTH: f64 = 2.0;
 /// Part of the accuracy by which rounding may move a body along a step.
 pub(crate) const ROUNDING_SHARE: f64 = 1.0 / 8.0;
@@ -41,7 +42,8 @@ const CLEAR_SHARE: f64 = 0.5;
 
 /// Error norm of a step up to which its dense output counts as exact.
 const DENSE_ERROR: f64 = 0.1;
-/// What is smooth and begins with the square of the part of a step is at most this times that square of what it is in the middle.
+/// What is smooth and begins with the square of the part of a step is at most this times that square of what
+/// it is in the middle.
 const EARLY_SHARE: f64 = 16.0;
 
 /// How often a step is made otherwise so that no stage of it comes near a point where its rows depend on each other.
@@ -50,8 +52,8 @@ const MOST_PLACEMENTS: usize = 4;
 /// Part of its reach by which a body with contacts may move in one step.
 const WATCHED_SHARE: f64 = 0.5;
 
-/// Contact forces that vary along a step by no more than such a part of what they are are steady: the next may be longer by so much,
-/// wherever it takes the bodies.
+/// Contact forces that vary along a step by no more than such a part of what they are are steady: the next
+/// may be longer by so much, wherever it takes the bodies.
 const STEADY_PART: f64 = 1e-4;
 
 /// What rounding of positions may add to the energy in a step, in local errors of what is usual in the scene: more, and
@@ -85,8 +87,8 @@ impl Dynamics<'_> {
         self.group.rates = rates;
     }
 
-    /// Extends the group by one accepted step from its state and rates; its end is projected, and the rates there are known.
-    /// Returns the energy at the end, if anybody had to look.
+    /// Extends the group by one accepted step from its state and rates; its end is projected, and the rates
+    /// there are known. Returns the energy at the end, if anybody had to look.
     pub(crate) fn extend(&mut self, tools: &mut Tools<'_>) -> Result<Option<Energy>, StepFailure> {
         let control = &tools.settings.steps;
         if !self.is_resolved(control) {
@@ -153,7 +155,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// True if a step with such an error is kept. Where nothing touches, errors follow the step, and it is not by chance that one errs.
+    /// True if a step with such an error is kept. Where nothing touches, errors follow the step, and it is
+    /// not by chance that one errs.
     fn keeps(&self, error: f64) -> bool {
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         if any_contact { is_kept(error) } else { error <= 1.0 }
@@ -202,8 +205,8 @@ impl Dynamics<'_> {
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
     }
 
-    /// By how much a step may be longer than the one before. Contacts soon cut steps short anyway, and where something has
-    /// decayed steps are much longer at once.
+    /// By how much a step may be longer than the one before. Contacts soon cut steps short anyway, and where
+    /// something has decayed steps are much longer at once.
     fn largest_growth(&self) -> f64 {
         let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
         if is_smooth && self.group.stepping() != Stepping::Stiff {
@@ -213,9 +216,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The factor by which a step may grow so that no contact's force varies along it by more than it is, if it goes on to vary as
-    /// along the last. Forces that hold bodies where they are show in no error, and along a step that is longer than they
-    /// take to come and go, none could tell when they vanish.
+    /// The factor by which a step may grow so that no contact's force varies along it by more than it is, if
+    /// it goes on to vary as along the last. Forces that hold bodies where they are show in no error, and
+    /// along a step that is longer than they take to come and go, none could tell when they vanish.
     fn growth_by_forces(&self) -> f64 {
         let contacts = self.group.rows.iter().zip(&self.stage.force_ranges).filter(|(row, _)| !row.bilateral);
         let growths = contacts.map(|(_, &[least, largest])| {
@@ -231,8 +234,8 @@ impl Dynamics<'_> {
         self.group.next_step = Some(self.group.next_step.map_or(longest, |next| next.min(longest)));
     }
 
-    /// Repeats the segment up to an offset [s] within it, into the end state; false if that is seen to err by more than a step may, as
-    /// where it ends at what the whole step has passed astride.
+    /// Repeats the segment up to an offset [s] within it, into the end state; false if that is seen to err by
+    /// more than a step may, as where it ends at what the whole step has passed astride.
     pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) -> bool {
         self.set_scales(&tools.settings.steps, tools.scales);
         tools.stepper.set_scales(tools.scales);
@@ -245,9 +248,9 @@ impl Dynamics<'_> {
         offset <= 0.0 || tools.stepper.needs_end_rates() || self.keeps(tools.stepper.error_norm(tools.scales))
     }
 
-    /// True if dense output errs at an offset [s] by little of what a step may err by: that of explicit methods is of the order
-    /// of the error estimate, and since it has the values and the rates at the start, near that by less with the square of
-    /// the offset.
+    /// True if dense output errs at an offset [s] by little of what a step may err by: that of explicit
+    /// methods is of the order of the error estimate, and since it has the values and the rates at the start,
+    /// near that by less with the square of the offset.
     pub(crate) fn is_dense_exact(&self, offset: f64) -> bool {
         let part = offset / self.group.span;
         let share = (EARLY_SHARE * part * part).min(1.0);
@@ -270,17 +273,19 @@ impl Dynamics<'_> {
         self.group.span = offset;
     }
 
-    /// The longest step [s] over which rounding does not matter: that of accelerations, which grows with its square and which no
-    /// error estimate sees of a group at rest, and that of the places where it ends, which all of it shares.
+    /// The longest step [s] over which rounding does not matter: that of accelerations, which grows with its
+    /// square and which no error estimate sees of a group at rest, and that of the places where it ends,
+    /// which all of it shares.
     fn longest_sound_step(&self) -> f64 {
         let allowed = ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / f64::EPSILON;
         let of_places = allowed / self.top_speed(&self.group.state);
         (2.0 * allowed / self.group.free_acceleration).sqrt().min(of_places)
     }
 
-    /// The longest step [s] along which contacts are surely sampled well: their forces, which no error estimate sees where
-    /// nothing accelerates, and the gaps of those without force vary as bodies move by a part of their size. Where forces have not varied
-    /// along the last step, as of what slides or is carried along, they need not be expected to.
+    /// The longest step [s] along which contacts are surely sampled well: their forces, which no error
+    /// estimate sees where nothing accelerates, and the gaps of those without force vary as bodies move by a
+    /// part of their size. Where forces have not varied along the last step, as of what slides or is carried
+    /// along, they need not be expected to.
     fn longest_watched_step(&self) -> f64 {
         let group = &self.group;
         let any_idle = !group.idle.is_empty();
@@ -332,20 +337,22 @@ impl Dynamics<'_> {
         f64::EPSILON * positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max)
     }
 
-    /// The part of errors that is acceptable where forces vary over less than the length asked for, as near a centre of
-    /// attraction. The bodies are faster there than before and after by much: an error that is small for that speed is not
-    /// for the others. Energy as of a pull by the inverse square is told from less to the same part.
+    /// The part of errors that is acceptable where forces vary over less than the length asked for, as near a
+    /// centre of attraction. The bodies are faster there than before and after by much: an error that is
+    /// small for that speed is not for the others. Energy as of a pull by the inverse square is told from
+    /// less to the same part.
     fn depth_share(&self, control: &StepControl) -> f64 {
         (self.group.force_length / control.length).min(1.0)
     }
 
-    /// The length [m] to which errors of position are relative: that over which forces vary, if it is less than asked for.
+    /// The length [m] to which errors of position are relative: that over which forces vary, if it is less
+    /// than asked for.
     fn length(&self, control: &StepControl) -> f64 {
         control.length.min(self.group.force_length)
     }
 
-    /// A speed [m/s] of the group: of its fastest point now, or what forces would make of it over the length. What forces
-    /// of rows cancel counts too, so that a group at rest is not held to its rounding.
+    /// A speed [m/s] of the group: of its fastest point now, or what forces would make of it over the length.
+    /// What forces of rows cancel counts too, so that a group at rest is not held to its rounding.
     pub(crate) fn speed(&self, control: &StepControl) -> f64 {
         self.speed_in(&self.group.state, control)
     }
@@ -383,8 +390,9 @@ impl Dynamics<'_> {
         time * control.local_error.powf(FIRST_STEP_POWER)
     }
 
-    /// Error [J] of a work that is just acceptable: what errors of velocities, just acceptable too, make of the energy. Works
-    /// mostly err by far less, but where the motion is simple, as under a constant force, nothing else may err at all.
+    /// Error [J] of a work that is just acceptable: what errors of velocities, just acceptable too, make of
+    /// the energy. Works mostly err by far less, but where the motion is simple, as under a constant force,
+    /// nothing else may err at all.
     fn work_scale(&self, control: &StepControl) -> f64 {
         let masses = self.group.bodies.iter().map(|&body| self.mass(body));
         let speed = self.speed(control);
@@ -429,8 +437,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Errors of positions and velocities that are no errors of a step: what rounding of positions makes of them where the
-    /// group is fast because forces are steep. What else it makes of velocities is a matter of each body.
+    /// Errors of positions and velocities that are no errors of a step: what rounding of positions makes of
+    /// them where the group is fast because forces are steep. What else it makes of velocities is a matter of
+    /// each body.
     fn least_errors(&self, share: f64, speed: f64) -> [f64; 2] {
         let rounding = self.rounding();
         let steep = if share < 1.0 { self.group.free_acceleration / speed } else { 0.0 };
@@ -449,8 +458,8 @@ impl Dynamics<'_> {
         (self.group.end_state, self.group.end_rates) = (end, rates);
     }
 
-    /// Notes where on splines the points of rails are at the end: searches from nearby are short, and do not stray where a
-    /// rail crosses itself. On other rails events tell.
+    /// Notes where on splines the points of rails are at the end: searches from nearby are short, and do not
+    /// stray where a rail crosses itself. On other rails events tell.
     pub(crate) fn follow_rails(&mut self) {
         let mechanism = &self.physics.mechanism;
         let Group { rows, bodies, end_state, .. } = &mut *self.group;

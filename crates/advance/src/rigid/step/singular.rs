@@ -1,11 +1,12 @@
-//! Steps over points where the rows of loops depend on each other for a moment, as those of a parallelogram do when it lies
-//! flat.
+//! Steps over points where the rows of loops depend on each other for a moment, as those of a parallelogram
+//! do when it lies flat.
 //!
-//! There a loop could go on in two ways, and its motion says in which it does. Forces near such a point follow from the rows
-//! divided by what a row keeps once the others are held, which falls with the square of the distance, so near it rates are all
-//! rounding, and errors of the loop decide which way it goes. Far from it nothing of that shows, so steps are made such that no
-//! stage comes near it: it is passed in the widest interval between stages. Whether a loop does pass such a point, or only
-//! nearly, tells how it is held along the step, which `extending` looks at.
+//! There a loop could go on in two ways, and its motion says in which it does. Forces near such a point
+//! follow from the rows divided by what a row keeps once the others are held, which falls with the square of
+//! the distance, so near it rates are all rounding, and errors of the loop decide which way it goes. Far from
+//! it nothing of that shows, so steps are made such that no stage comes near it: it is passed in the widest
+//! interval between stages. Whether a loop does pass such a point, or only nearly, tells how it is held along
+//! the step, which `extending` looks at.
 
 use crate::ode::Method;
 
@@ -20,7 +21,8 @@ const EARLY: f64 = 40.0;
 /// Where a step cannot pass the point between its stages, it ends at this part of the way there.
 const SHORT_OF_IT: f64 = 0.5;
 
-/// A step astride of such a point may err by so many times what is acceptable: to come nearer to the point costs more than that.
+/// A step astride of such a point may err by so many times what is acceptable: to come nearer to the point
+/// costs more than that.
 const ASTRIDE_ERROR: f64 = 4.0;
 /// And by so many times, if shorter ones err by no less: that is rounding.
 const MOST_ROUNDING: f64 = 1e3;
@@ -115,15 +117,17 @@ impl Kept {
         self.least < LOWER * self.most
     }
 
-    /// A length [s] for the last step with which it will not come near such a point by one of its stages; `None` if it has not.
+    /// A length [s] for the last step with which it will not come near such a point by one of its stages;
+    /// `None` if it has not.
     pub(crate) fn better_length(&self, length: f64, method: Method) -> Option<f64> {
         let (point, away) = self.point()?;
         let better = led(point, length, method)?;
         (away <= CLOSE * length).then_some(better)
     }
 
-    /// True if a step that passed such a point between its stages, and whose error norm is too large, may pass all the same: it is
-    /// not by much, or a longer one before it erred by no more, so no shorter one will err by less.
+    /// True if a step that passed such a point between its stages, and whose error norm is too large, may
+    /// pass all the same: it is not by much, or a longer one before it erred by no more, so no shorter one
+    /// will err by less.
     pub(crate) fn passes_astride(&mut self, length: f64, error: f64) -> bool {
         let is_astride = self.point().is_some_and(|(point, away)| point < length && away > CLOSE * length);
         if !is_astride {
@@ -134,7 +138,8 @@ impl Kept {
         error <= if is_rounding { MOST_ROUNDING } else { ASTRIDE_ERROR }
     }
 
-    /// Notes that a step was accepted: beyond a point, or where none is ahead, what erred before it tells nothing any more.
+    /// Notes that a step was accepted: beyond a point, or where none is ahead, what erred before it tells
+    /// nothing any more.
     pub(crate) fn note_accepted(&mut self, length: f64) {
         let rises = || self.stages.last().map(|stage| stage.1) >= self.stages.first().map(|stage| stage.1);
         if self.lowest.is_none() || rises() || self.point().is_some_and(|(point, _)| point < length) {
@@ -142,16 +147,16 @@ impl Kept {
         }
     }
 
-    /// A length [s] for a step that erred by so much that it is to be made shorter, to a length given: it would come near such a
-    /// point by its stages, or by its end.
+    /// A length [s] for a step that erred by so much that it is to be made shorter, to a length given: it
+    /// would come near such a point by its stages, or by its end.
     pub(crate) fn shorter_length(&self, shorter: f64, method: Method) -> f64 {
         let better = self.point().and_then(|(point, _)| led(point, shorter, method));
         better.map_or(shorter, |better| better.min(shorter))
     }
 }
 
-/// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends well before it; `None` if
-/// that is behind, or so near the start that no stage can be farther from it.
+/// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends well
+/// before it; `None` if that is behind, or so near the start that no stage can be farther from it.
 fn led(point: f64, length: f64, method: Method) -> Option<f64> {
     let astride = point / method.middle_between_stages()?;
     let is_at_start = point <= 0.0 || EARLY * point <= length;

@@ -1,5 +1,5 @@
-//! Groups parts of which decay so fast that an explicit method is held up: their steps are implicit, as long as that costs
-//! less. Which steps are made otherwise is in `brief`.
+//! Groups parts of which decay so fast that an explicit method is held up: their steps are implicit, as long
+//! as that costs less. Which steps are made otherwise is in `brief`.
 
 use super::brief::Stepping;
 use super::dynamics::Dynamics;
@@ -10,8 +10,8 @@ use glam::DVec2;
 
 /// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
 const HELD_UP: f64 = 0.9;
-/// The same where rounding may be what errors are made of: an explicit method feels that of the fastest forces whatever its
-/// steps, an implicit one does not.
+/// The same where rounding may be what errors are made of: an explicit method feels that of the fastest
+/// forces whatever its steps, an implicit one does not.
 const ROUGH_HELD_UP: f64 = 0.1;
 /// What is less than this part of it is far from held up.
 const FAR: f64 = 0.5;
@@ -19,8 +19,8 @@ const FAR: f64 = 0.5;
 const UNTOLD_STEPS: u32 = 15;
 /// Somebody looks sooner where steps have shrunk to this part: what ends them may be new.
 const SHRUNK: f64 = 0.5;
-/// So many more steps are held up than are not before implicit ones are tried; twice as many after each time in vain, and
-/// one where implicit ones have served before.
+/// So many more steps are held up than are not before implicit ones are tried; twice as many after each time
+/// in vain, and one where implicit ones have served before.
 const TELLING_STEPS: u32 = 8;
 /// Cap on such doublings.
 const MOST_DOUBLINGS: u32 = 6;
@@ -30,7 +30,8 @@ const MOST_NUMBERS: usize = 300;
 const EXPLICIT_COST: f64 = 15.0;
 /// An implicit step asks for so many rates beside one for each number of the state.
 const IMPLICIT_COST: f64 = 14.0;
-/// The equations cost so many rates for each square of the numbers of the state: an estimate, by the operations of both.
+/// The equations cost so many rates for each square of the numbers of the state: an estimate, by the
+/// operations of both.
 const EQUATIONS_COST: f64 = 0.02;
 /// So many implicit steps that save nothing are in vain.
 const PATIENCE: f64 = 10.0;
@@ -108,7 +109,8 @@ impl Dynamics<'_> {
         })
     }
 
-    /// The fastest rate [1/s] at which damping lets a body of the group come to rest. What is at rest already does not show it.
+    /// The fastest rate [1/s] at which damping lets a body of the group come to rest. What is at rest already
+    /// does not show it.
     fn damping_rate(&self) -> f64 {
         let laws = self.group.bodies.iter().map(|&body| self.physics.mechanism.flyers[body.index()].law());
         laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
@@ -121,8 +123,8 @@ impl Dynamics<'_> {
         stiffness.rate = stiffness.rate.max(rate);
     }
 
-    /// The longest step [s] of a method that is stable under damping. A longer one from rest ends at rest, too, by luck, but what
-    /// rounding sets in motion grows on the way, and dense output is far off.
+    /// The longest step [s] of a method that is stable under damping. A longer one from rest ends at rest,
+    /// too, by luck, but what rounding sets in motion grows on the way, and dense output is far off.
     pub(crate) fn longest_stable_step(&self, method: Method) -> f64 {
         let rate = self.damping_rate();
         let limit = method.stability_limit().filter(|_| rate > 0.0 && method.is_adaptive());
@@ -158,8 +160,8 @@ impl Dynamics<'_> {
 }
 
 impl Dynamics<'_> {
-    /// Finds how steep forces are at the end of an explicit step, if rounding may be what its errors are made of: by what they
-    /// change where bodies are moved a little, each time in other directions.
+    /// Finds how steep forces are at the end of an explicit step, if rounding may be what its errors are made
+    /// of: by what they change where bodies are moved a little, each time in other directions.
     fn probe(&mut self, tools: &Tools<'_>) {
         let (rounding, span) = (self.rounding(), self.group.span);
         let scale = self.velocity_scale(&tools.settings.steps);
@@ -215,9 +217,9 @@ impl Dynamics<'_> {
 }
 
 impl Group {
-    /// What rounding of places [m] makes of the velocity [m/s] of a body, by its place, in a step as short as the fastest
-    /// part of the group asks for. Where it is not known how rough each body is, it may be of that part. An implicit method knows
-    /// what is rounding itself.
+    /// What rounding of places [m] makes of the velocity [m/s] of a body, by its place, in a step as short as
+    /// the fastest part of the group asks for. Where it is not known how rough each body is, it may be of
+    /// that part. An implicit method knows what is rounding itself.
     pub(crate) fn rough_velocity(&self, place: usize, rounding: f64) -> f64 {
         let rate = self.stiffness.rate.max(self.stiffness.steep);
         if rate == 0.0 || self.stepping() == Stepping::Stiff {
@@ -226,8 +228,9 @@ impl Group {
         rounding * self.roughness.get(place).map_or(rate, |roughness| roughness / rate)
     }
 
-    /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and where steps are
-    /// short enough for explicit ones: as something begins to decay, a higher order serves better.
+    /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and
+    /// where steps are short enough for explicit ones: as something begins to decay, a higher order serves
+    /// better.
     pub(crate) fn choose_stiffness(&mut self, asked: Method) {
         let numbers = self.numbers();
         let cost = cost(numbers);

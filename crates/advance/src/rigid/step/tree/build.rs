@@ -9,8 +9,8 @@ use crate::rigid::system::RigidSettings;
 use glam::DVec2;
 use halfgap_collision::Anchor;
 
-/// Order and size of the error of a polynomial through both ends of a step, with rates, and the inner nodes: where a point at
-/// the distance 1 turns steadily by two radians, it errs by so much at most.
+/// Order and size of the error of a polynomial through both ends of a step, with rates, and the inner nodes:
+/// where a point at the distance 1 turns steadily by two radians, it errs by so much at most.
 const INNER_DEGREE: f64 = 9.0;
 const INNER_ERROR: f64 = 3.86e-8;
 
@@ -23,9 +23,9 @@ struct Pin {
 }
 
 impl Dynamics<'_> {
-    /// Finds the tree of the group, whose bodies are in place: none unless it hangs by pins, with at most one row beside them
-    /// for each, none of these redundant, and is stepped without any of the remedies against drift that scenes may
-    /// ask for.
+    /// Finds the tree of the group, whose bodies are in place: none unless it hangs by pins, with at most one
+    /// row beside them for each, none of these redundant, and is stepped without any of the remedies against
+    /// drift that scenes may ask for.
     pub(crate) fn find_tree(&mut self, settings: &RigidSettings) {
         self.group.tree.clear();
         if settings.projection && self.physics.extra.is_none() && settings.method.is_adaptive() {
@@ -106,8 +106,8 @@ impl JointTree {
         });
     }
 
-    /// Sums up what hangs on each body, finds by how much each may turn so that polynomials follow its points to within an
-    /// error [m], and makes room.
+    /// Sums up what hangs on each body, finds by how much each may turn so that polynomials follow its points
+    /// to within an error [m], and makes room.
     fn complete(&mut self, error: f64) {
         for link in &mut self.links {
             let reach = link.lever_square.sqrt();

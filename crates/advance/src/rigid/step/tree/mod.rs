@@ -1,14 +1,14 @@
 //! Bodies that hang on each other by pins, as a tree: their motion in as many coordinates as they have freedoms.
 //!
-//! Where a group is held by pins that close no loop, a state of angles, and of positions of those bodies that hang on
-//! nothing, says where everything is. Steps in these coordinates keep to the pins by themselves, have a third of the numbers,
-//! and their accelerations follow from one sweep from the tips to the roots and one back, without any system of equations but
-//! for a few rows beside the pins. All other rooms go on with bodies: this one translates at both ends of a step, and its
-//! dense output.
+//! Where a group is held by pins that close no loop, a state of angles, and of positions of those bodies that
+//! hang on nothing, says where everything is. Steps in these coordinates keep to the pins by themselves, have
+//! a third of the numbers, and their accelerations follow from one sweep from the tips to the roots and one
+//! back, without any system of equations but for a few rows beside the pins. All other rooms go on with
+//! bodies: this one translates at both ends of a step, and its dense output.
 //!
-//! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest` holds what is held
-//! beside the pins, `stepping` makes the steps of a group. Angles are those of the bodies, not those between them, so a coordinate of the tree is a number of the
-//! group's state.
+//! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest`
+//! holds what is held beside the pins, `stepping` makes the steps of a group. Angles are those of the bodies,
+//! not those between them, so a coordinate of the tree is a number of the group's state.
 
 mod build;
 mod placing;
@@ -55,8 +55,8 @@ struct Link {
     moment: f64,
     /// The largest angle [rad] by which it may turn in a step.
     most_turn: f64,
-    /// Sum over all bodies of the squares of the distances [m] by which they move as this one turns by a radian; its own
-    /// points count by its reach.
+    /// Sum over all bodies of the squares of the distances [m] by which they move as this one turns by a
+    /// radian; its own points count by its reach.
     lever_square: f64,
     /// How many bodies hang on it, by whatever others.
     descendants: usize,

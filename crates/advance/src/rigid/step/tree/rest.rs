@@ -1,28 +1,30 @@
 //! Rows that are held beside the pins of a tree: those that close loops, slots, rods, rails.
 //!
-//! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and J the rows,
-//! the forces follow from G f = -(J v' + gamma), G = J C. There are few of them, so G is dense.
+//! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and
+//! J the rows, the forces follow from G f = -(J v' + gamma), G = J C. There are few of them, so G is dense.
 
 use super::{Hinge, JointTree};
 use crate::rigid::step::dynamics::{Dynamics, Stage};
 use crate::rigid::step::group::Group;
 use glam::DVec2;
 
-/// A tree of which a row keeps a lesser part than this of its square in the measure of the masses, once pins and the other
-/// rows before it are held, is not stepped as one: its rows depend on each other.
+/// A tree of which a row keeps a lesser part than this of its square in the measure of the masses, once pins
+/// and the other rows before it are held, is not stepped as one: its rows depend on each other.
 const SINGULAR: f64 = 1e-6;
 
-/// What is added to the part that a row keeps when it keeps nothing. Loops go through points where their rows depend on each
-/// other for a moment, and what holds them there is lost in rounding, though it is finite. The error this makes lasts as long
-/// as the loop is within the square root of this (as an angle) of such a point, and falls fast farther away.
+/// What is added to the part that a row keeps when it keeps nothing. Loops go through points where their rows
+/// depend on each other for a moment, and what holds them there is lost in rounding, though it is finite. The
+/// error this makes lasts as long as the loop is within the square root of this (as an angle) of such a
+/// point, and falls fast farther away.
 const SOFTNESS: f64 = 1e-8;
 
 /// What a row may keep is measured by no more than so many times the square of its heavier side.
 const HEAVIER: f64 = 10.0;
 
-/// Cap on the rounds in which what softness leaves lacking is made good. Of what is lacking, each leaves the part that softness
-/// makes of what a row keeps, softness included: two do where a row keeps a millionth, as what a light body pushes along its
-/// pin. Nearer to nothing, the error falls as one over the rounds, and noise grows with them.
+/// Cap on the rounds in which what softness leaves lacking is made good. Of what is lacking, each leaves the
+/// part that softness makes of what a row keeps, softness included: two do where a row keeps a millionth, as
+/// what a light body pushes along its pin. Nearer to nothing, the error falls as one over the rounds, and
+/// noise grows with them.
 const MOST_REFINEMENTS: usize = 10;
 
 /// The rows beside the pins of a tree, with their buffers.
@@ -66,8 +68,9 @@ impl JointTree {
         self.rest.columns = columns;
     }
 
-    /// J M^-1 J^T of a row by itself, without pins, of which no more counts than some times that of the heavier side: what a
-    /// much lighter body may add, it often cannot, because it hangs on a pin that the row points to.
+    /// J M^-1 J^T of a row by itself, without pins, of which no more counts than some times that of the
+    /// heavier side: what a much lighter body may add, it often cannot, because it hangs on a pin that the
+    /// row points to.
     fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
         let of_side = |(side, place): (usize, Option<u32>)| {
             let Some(link) =
@@ -228,8 +231,8 @@ impl Dynamics<'_> {
         tree.rest.rows = rows;
     }
 
-    /// Measures the rows beside the pins, with the bodies in place, and factorises; calls `visit` with the gap of each less
-    /// the one at which it formed, and its rate.
+    /// Measures the rows beside the pins, with the bodies in place, and factorises; calls `visit` with the
+    /// gap of each less the one at which it formed, and its rate.
     pub(crate) fn factorize_by_tree(&mut self, mut visit: impl FnMut(f64, f64)) {
         self.stage.jacobians.clear();
         let mut twin = None;

@@ -7,12 +7,12 @@ use crate::rigid::step::group::Group;
 use glam::DVec2;
 use std::convert::Infallible;
 
-/// Part of what errors may be that is allowed to angles. Their estimates see less than those of positions, which vary faster:
-/// at equal estimates a pendulum errs by ten times as much.
+/// Part of what errors may be that is allowed to angles. Their estimates see less than those of positions,
+/// which vary faster: at equal estimates a pendulum errs by ten times as much.
 const SHARE: f64 = 0.25;
 
-/// A body that turns ever faster is followed as well as one that turns by the same angle steadily, and by the square root of
-/// its angular acceleration times this, in radians, for each second of a step.
+/// A body that turns ever faster is followed as well as one that turns by the same angle steadily, and by the
+/// square root of its angular acceleration times this, in radians, for each second of a step.
 const UNSTEADY: f64 = 1.6;
 
 /// A group whose state is that of its tree.
@@ -118,8 +118,8 @@ impl Dynamics<'_> {
         self.group.tree.end = state;
     }
 
-    /// Turns the accelerations in the stage, which are without forces of rows, into those of the tree; bodies are in place.
-    /// Forces of rows are not known then.
+    /// Turns the accelerations in the stage, which are without forces of rows, into those of the tree; bodies
+    /// are in place. Forces of rows are not known then.
     pub(crate) fn hang(&mut self) {
         self.stage.gap_error = self.largest_gap_error();
         let Group { tree, bodies, .. } = &mut *self.group;
@@ -136,9 +136,9 @@ impl Dynamics<'_> {
         stepper.stiffness(Point { offset: *span, state: &tree.end, rates: &tree.end_rates }, scales)
     }
 
-    /// Errors that are just acceptable of the tree's coordinates and rates, where those of bodies are so large: the mean square
-    /// over the coordinates is to be that of the farthest points of the bodies. An angle turns its body about its pin, and
-    /// shifts all that hangs on it.
+    /// Errors that are just acceptable of the tree's coordinates and rates, where those of bodies are so
+    /// large: the mean square over the coordinates is to be that of the farthest points of the bodies. An
+    /// angle turns its body about its pin, and shifts all that hangs on it.
     pub(crate) fn scale_tree(&self, linear: [f64; 2], scales: &mut Vec<f64>) {
         let tree = &self.group.tree;
         let share = tree.count() as f64 / tree.links.len() as f64;
@@ -153,8 +153,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The longest step [s] over which no body of the tree turns by more than it may. Dense output of what turns unsteadily errs
-    /// as if it turned by more: high derivatives of its points are of angles and of angular accelerations.
+    /// The longest step [s] over which no body of the tree turns by more than it may. Dense output of what
+    /// turns unsteadily errs as if it turned by more: high derivatives of its points are of angles and of
+    /// angular accelerations.
     pub(crate) fn longest_turning_step(&self) -> f64 {
         let Group { tree, state, rates, .. } = &*self.group;
         let velocities = self.group.velocities();

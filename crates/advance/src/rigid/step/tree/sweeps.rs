@@ -1,15 +1,17 @@
-//! Accelerations of a tree by articulated bodies: R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7, written
-//! for pins in the plane.
+//! Accelerations of a tree by articulated bodies: R. Featherstone, Rigid Body Dynamics Algorithms (2008),
+//! chapter 7, written for pins in the plane.
 //!
-//! What hangs on a pin resists the pin's acceleration a by the force A a + d. A body's own unknowns are the acceleration a
-//! of its pin and its angular acceleration; what hangs on it, at the arm u from its own pin, adds to the equations of both:
+//! What hangs on a pin resists the pin's acceleration a by the force A a + d. A body's own unknowns are the
+//! acceleration a of its pin and its angular acceleration; what hangs on it, at the arm u from its own pin,
+//! adds to the equations of both:
 //!
-//! force on the pin: M a + g alpha + e,   with M = m + sum A,   g = m c' + sum A u',   e = sum (d - w^2 A u) - w^2 m c - F
+//! force on the pin: M a + g alpha + e, with M = m + sum A, g = m c' + sum A u', e = sum (d - w^2 A u) - w^2
+//! m c - F
 //!
 //! moment about it: g.a + H alpha + h = 0,   with H = I + m c^2 + sum u'.A u',   h = sum u'.(d - w^2 A u) - c'.F - T
 //!
-//! where c is the arm of the centre of mass, w the angular velocity, F and T force and torque without pins, and ' a quarter
-//! turn. The second gives alpha; put into the first, A = M - g g^T/H and d = e - g h/H.
+//! where c is the arm of the centre of mass, w the angular velocity, F and T force and torque without pins,
+//! and ' a quarter turn. The second gives alpha; put into the first, A = M - g g^T/H and d = e - g h/H.
 
 use super::{Hinge, JointTree, Link, Stance};
 use glam::DVec2;
@@ -108,8 +110,8 @@ impl Bundle {
         self.mass.less_square(self.coupling, self.per_moment).solve(-self.resistance())
     }
 
-    /// Notes the pin's acceleration and what follows for the angle; the acceleration of the centre of mass, but for what it
-    /// has by turning, where the pin is at an arm from it.
+    /// Notes the pin's acceleration and what follows for the angle; the acceleration of the centre of mass,
+    /// but for what it has by turning, where the pin is at an arm from it.
     #[inline]
     pub(super) fn turn(&mut self, acceleration: DVec2, own: DVec2) -> DVec2 {
         self.acceleration = acceleration;
@@ -119,8 +121,8 @@ impl Bundle {
 }
 
 impl JointTree {
-    /// Turns accelerations without the forces of pins, body by body of the group, into those with them. The stances must be
-    /// right.
+    /// Turns accelerations without the forces of pins, body by body of the group, into those with them. The
+    /// stances must be right.
     pub(super) fn accelerate(&mut self, accelerations: &mut [[f64; 3]]) {
         self.sweep_in(accelerations);
         self.sweep_out(accelerations);

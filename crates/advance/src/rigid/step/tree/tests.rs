@@ -250,8 +250,8 @@ fn what_softness_leaves_lacking_is_made_good() {
 
 #[test]
 fn what_a_light_body_passes_on_to_a_heavy_one_is_not_softened() {
-    // A slot that pushes a light body towards its pin moves nothing but a heavy one: a part of the light one's square that is
-    // less than all softness. The lighter the body, the less it matters how light.
+    // A slot that pushes a light body towards its pin moves nothing but a heavy one: a part of the light
+    // one's square that is less than all softness. The lighter the body, the less it matters how light.
     const LIGHT: f64 = 1e-6;
     const LIGHTER: f64 = 1e-9;
     let of = |mass| slot_beside_a_pin([mass, 1.0], On::Nothing, DVec2::new(2.0, 1.0)).accelerations();
