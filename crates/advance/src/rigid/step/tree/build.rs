@@ -14,6 +14,11 @@ use halfgap_collision::Anchor;
 const INNER_DEGREE: f64 = 9.0;
 const INNER_ERROR: f64 = 3.86e-8;
 
+/// Rows of pins from which on a group is stepped in angles though it has as many others beside them: three pins make a
+/// loop, which may fold, and only in angles it is led over that. Of fewer pins no more than half as many, or steps
+/// along the rows are cheaper.
+const LOOP: usize = 6;
+
 /// A pin between two bodies, or a body and the world.
 #[derive(Clone, Copy, Debug)]
 struct Pin {
@@ -23,9 +28,8 @@ struct Pin {
 }
 
 impl Dynamics<'_> {
-    /// Finds the tree of the group, whose bodies are in place: none unless it hangs by pins, with at most one
-    /// row beside them for each, none of these redundant, and is stepped without any of the remedies against
-    /// drift that scenes may ask for.
+    /// Finds the tree of the group, whose bodies are in place: none unless it hangs by pins, with few rows beside them,
+    /// none of these redundant, and is stepped without any of the remedies against drift that scenes may ask for.
     pub(crate) fn find_tree(&mut self, settings: &RigidSettings) {
         self.group.tree.clear();
         if settings.projection && self.physics.extra.is_none() && settings.method.is_adaptive() {
@@ -78,7 +82,8 @@ impl Dynamics<'_> {
         hung.sort_unstable();
         rest.rows.extend((0..rows.len()).filter(|row| hung.binary_search(row).is_err()));
         let is_sound = |link: &Link| link.mass.is_finite() && link.moment.is_finite();
-        if rest.rows.len() > hung.len() || hung.is_empty() || !links.iter().all(is_sound) {
+        let most = if hung.len() < LOOP { hung.len() / 2 } else { hung.len() };
+        if rest.rows.len() > most || hung.is_empty() || !links.iter().all(is_sound) {
             tree.clear();
             return;
         }
