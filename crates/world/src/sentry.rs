@@ -196,18 +196,6 @@ mod tests {
     }
 
     #[test]
-    fn projections_that_take_a_good_part_of_the_energy_end_the_advance() {
-        let world = pendulum();
-        let books = Books { projections: -1e-3, ..Books::from(&world.ledger()) };
-        let found = world.books_astray(&books, 10.0);
-        assert_eq!(found, Some(Finding::Projected { energy: 1e-3, turned_over: 10.0 }));
-        let told = "moving bodies back onto what holds them changed 0.001 J of 10 J turned over";
-        assert_eq!(found.map(|finding| finding.to_string()).as_deref(), Some(told));
-        let books = Books { projections: -1e-7, ..books };
-        assert_eq!(world.books_astray(&books, 10.0), None);
-    }
-
-    #[test]
     fn nothing_is_looked_at_while_next_to_nothing_happens() {
         let mut world = pendulum();
         world.start.energy += 1.0;
