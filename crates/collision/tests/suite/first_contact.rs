@@ -1,6 +1,7 @@
 //! First contact against an oracle that shares nothing with it but the shapes: dense sampling of the distance between
 //! outlines (edges as closed curves), refined where it comes near the target gap.
 
+use crate::random::Random;
 use glam::DVec2;
 use halfgap_collision::{
     BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
@@ -14,31 +15,6 @@ const PAIRS: u64 = 10_000;
 const SAMPLES: u32 = 100;
 /// A sampled least gap within this part of the scale of the target may count as a contact or not.
 const UNDECIDED: f64 = 1e-10;
-
-/// SplitMix64: the same pairs on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[(self.next() % choices.len() as u64) as usize]
-    }
-
-    fn direction(&mut self) -> DVec2 {
-        DVec2::from_angle(self.between(0.0, std::f64::consts::TAU))
-    }
-}
 
 /// A crescent: a convex and a concave arc.
 fn crescent() -> Shape {

@@ -2,9 +2,11 @@
 
 mod connector_kinematics;
 mod connectors;
+mod differences;
 mod first_contact;
 mod invariance;
 mod kinematics;
 mod rails;
+mod random;
 mod records;
 mod ropes;

@@ -1,30 +1,10 @@
 //! Paths of rails: splines against curves that are known, nearest places against dense sampling.
 
+use crate::random::Random;
 use glam::DVec2;
 use halfgap_collision::{RailError, RailPath, RailPlace};
 use halfgap_geometry::{Aabb, EdgeSpec};
 use std::f64::consts::{PI, TAU};
-
-/// SplitMix64: the same points on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn point(&mut self, size: f64) -> DVec2 {
-        DVec2::new(self.between(-size, size), self.between(-size, size))
-    }
-}
 
 fn at(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)

@@ -1,5 +1,6 @@
 //! Ropes going taut, against dense sampling of the distance of their ends.
 
+use crate::random::Random;
 use glam::DVec2;
 use halfgap_collision::{
     Ball, BodyState, Flight, Motion, MotionBounds, Polynomial, Rope, RopeSearch, SearchSettings, rope_contact,
@@ -11,27 +12,6 @@ const ROPES: u32 = 3000;
 const SAMPLES: u32 = 1000;
 /// A sampled least gap within this [m] of 0 may count as taut or not.
 const UNDECIDED: f64 = 1e-10;
-
-/// SplitMix64: the same ropes on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn point(&mut self, size: f64) -> DVec2 {
-        DVec2::new(self.between(-size, size), self.between(-size, size))
-    }
-}
 
 /// A body that runs on a circle: nothing that has a closed form.
 #[derive(Clone, Copy, Debug)]

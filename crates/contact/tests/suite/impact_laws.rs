@@ -1,18 +1,10 @@
 //! What every impact law owes: no energy out of nothing, momentum kept, no row left closing.
 
+use crate::laws::{LAWS, ORDERS};
 use halfgap_collision::BodyId;
 use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder};
 use proptest::prelude::*;
 
-const LAWS: [ImpactLaw; 6] = [
-    ImpactLaw::Simultaneous,
-    ImpactLaw::Hybrid,
-    ImpactLaw::SerialSeparate,
-    ImpactLaw::SerialGrouped,
-    ImpactLaw::SerialSeparateLastpass,
-    ImpactLaw::SerialGroupedLastpass,
-];
-const ORDERS: [ImpactOrder; 2] = [ImpactOrder::Fastest, ImpactOrder::Seeded(7)];
 /// Sums of a few products of numbers near 1.
 const ROUNDING: f64 = 1e-12;
 

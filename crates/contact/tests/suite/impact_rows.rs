@@ -2,19 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::laws::{LAWS, ORDERS};
 use halfgap_collision::BodyId;
 use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, Inertia};
 use proptest::prelude::*;
 
-const LAWS: [ImpactLaw; 6] = [
-    ImpactLaw::Simultaneous,
-    ImpactLaw::Hybrid,
-    ImpactLaw::SerialSeparate,
-    ImpactLaw::SerialGrouped,
-    ImpactLaw::SerialSeparateLastpass,
-    ImpactLaw::SerialGroupedLastpass,
-];
-const ORDERS: [ImpactOrder; 2] = [ImpactOrder::Fastest, ImpactOrder::Seeded(7)];
 /// Sums of some products of numbers near 1.
 const ROUNDING: f64 = 1e-12;
 /// The body of the test that stands for the background.

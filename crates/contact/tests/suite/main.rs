@@ -3,5 +3,6 @@
 mod impact_found;
 mod impact_laws;
 mod impact_rows;
+mod laws;
 #[cfg(feature = "json")]
 mod problems;
