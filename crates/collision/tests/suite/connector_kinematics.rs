@@ -1,11 +1,12 @@
 //! Rate, Jacobian, gamma and normal rate of every row of every connector against finite differences of the gap itself.
 
 use crate::differences::{first, second};
+use crate::path::{Path, any_path, any_vector};
 use glam::DVec2;
 use halfgap_collision::{
     Anchor, BodyId, Connector, ConnectorKind, ConnectorSample, Moving, RailPath, SlotFrame, Spin,
 };
-use halfgap_geometry::{EdgeSpec, Pose, Rotation};
+use halfgap_geometry::{EdgeSpec, Rotation};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -16,16 +17,6 @@ const STEP: f64 = 0.004;
 /// Kinds of cases.
 const KINDS: usize = 16;
 
-/// A body on a path of constant acceleration.
-#[derive(Clone, Copy, Debug)]
-struct Path {
-    position: DVec2,
-    angle: f64,
-    velocity: DVec2,
-    spin: f64,
-    push: Spin,
-}
-
 const STILL: Path = Path {
     position: DVec2::ZERO,
     angle: 0.0,
@@ -33,19 +24,6 @@ const STILL: Path = Path {
     spin: 0.0,
     push: Spin { linear: DVec2::ZERO, angular: 0.0 },
 };
-
-impl Path {
-    fn at(&self, t: f64) -> Moving {
-        Moving {
-            pose: Pose::new(
-                self.position + self.velocity * t + self.push.linear * (0.5 * t * t),
-                self.angle + self.spin * t + 0.5 * self.push.angular * t * t,
-            ),
-            velocity: self.velocity + self.push.linear * t,
-            angular_velocity: self.spin + self.push.angular * t,
-        }
-    }
-}
 
 /// A row of a connector and the paths of its bodies.
 #[derive(Clone)]
@@ -171,16 +149,6 @@ fn connector(kind: usize, points: [DVec2; 2], angle: f64) -> (Connector, usize) 
         _ => (stop(wave(), true), 0),
     };
     (Connector::new(kind, 0.5).expect("a fine connector"), row)
-}
-
-fn any_vector(size: f64) -> impl Strategy<Value = DVec2> {
-    (-size..size, -size..size).prop_map(|(x, y)| DVec2::new(x, y))
-}
-
-fn any_path() -> impl Strategy<Value = Path> {
-    let push = (any_vector(2.0), -2.0..2.0f64).prop_map(|(linear, angular)| Spin { linear, angular });
-    (any_vector(2.0), -3.2..3.2f64, any_vector(1.0), -1.0..1.0f64, push)
-        .prop_map(|(position, angle, velocity, spin, push)| Path { position, angle, velocity, spin, push })
 }
 
 fn any_case() -> impl Strategy<Value = Case> {

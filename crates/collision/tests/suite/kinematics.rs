@@ -1,9 +1,10 @@
 //! Rate, Jacobian and gamma of every kind of feature pair against finite differences of the gap itself.
 
 use crate::differences::{first, second};
+use crate::path::{Path, any_path, any_vector};
 use glam::DVec2;
-use halfgap_collision::{Arms, GapKinematics, Moving, Spin};
-use halfgap_geometry::{DirectionRange, Feature, GapSample, LineFeature, Pose, RoundFeature};
+use halfgap_collision::{Arms, GapKinematics, Spin};
+use halfgap_geometry::{DirectionRange, Feature, GapSample, LineFeature, RoundFeature};
 use proptest::prelude::*;
 
 /// What the kinematics promise, relative to the scale of the terms.
@@ -12,29 +13,6 @@ const PROMISE: f64 = 1e-6;
 const DIFFERENCE: f64 = 1e-8;
 /// Steps [s] of the differences, at which rounding and truncation stay below that: order 8, h^8 against eps/h^2.
 const STEP: f64 = 0.004;
-
-/// A body on a path of constant acceleration.
-#[derive(Clone, Copy, Debug)]
-struct Path {
-    position: DVec2,
-    angle: f64,
-    velocity: DVec2,
-    spin: f64,
-    push: Spin,
-}
-
-impl Path {
-    fn at(&self, t: f64) -> Moving {
-        Moving {
-            pose: Pose::new(
-                self.position + self.velocity * t + self.push.linear * (0.5 * t * t),
-                self.angle + self.spin * t + 0.5 * self.push.angular * t * t,
-            ),
-            velocity: self.velocity + self.push.linear * t,
-            angular_velocity: self.spin + self.push.angular * t,
-        }
-    }
-}
 
 /// Two features and the paths of their bodies.
 #[derive(Clone, Copy, Debug)]
@@ -97,16 +75,6 @@ fn features(kind: usize, centers: [DVec2; 2], [small, size, angle]: [f64; 3]) ->
         5 => [round(a, 0.0), line(angle, size)],
         _ => [round(a, small), line(angle, size)],
     }
-}
-
-fn any_vector(size: f64) -> impl Strategy<Value = DVec2> {
-    (-size..size, -size..size).prop_map(|(x, y)| DVec2::new(x, y))
-}
-
-fn any_path() -> impl Strategy<Value = Path> {
-    let push = (any_vector(2.0), -2.0..2.0f64).prop_map(|(linear, angular)| Spin { linear, angular });
-    (any_vector(2.0), -3.2..3.2f64, any_vector(1.0), -1.0..1.0f64, push)
-        .prop_map(|(position, angle, velocity, spin, push)| Path { position, angle, velocity, spin, push })
 }
 
 fn any_case() -> impl Strategy<Value = Case> {

@@ -6,6 +6,7 @@ mod differences;
 mod first_contact;
 mod invariance;
 mod kinematics;
+mod path;
 mod rails;
 mod random;
 mod records;
