@@ -237,7 +237,10 @@ impl World {
     fn overlaps(&self, excluded: &[(BodyId, BodyId)], near: &mut NearPairs, findings: &mut Vec<Finding>) {
         let allowed = self.leniency() * GAPS * self.tolerances().target_gap;
         let pose = |body: BodyId| self.state(body).pose();
-        let boxes = self.bodies().map(|body| (self.shape(body).bounds_at(&pose(body)), self.is_fixed(body)));
+        // What lies in both of two boxes is no deeper in either than these overlap by along one of their sides:
+        // bricks that lie flush overlap by rounding.
+        let core = |body: BodyId| self.shape(body).bounds_at(&pose(body)).grown(-0.5 * allowed);
+        let boxes = self.bodies().map(|body| (core(body), self.is_fixed(body)));
         for &(a, b) in near.find(boxes, excluded) {
             let depth = overlap_depth(self.shape(a), &pose(a), self.shape(b), &pose(b));
             // Without contact forces bodies sink a little between impacts.
