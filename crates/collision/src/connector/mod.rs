@@ -229,12 +229,13 @@ impl Connector {
 
     /// Both rows of a pin at once, which have most of their terms in common; `None` for other connectors.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn measure_pin(&self, a: &Moving, b: &Moving) -> Option<[ConnectorSample; 2]> {
         let ConnectorKind::Pin { a: on_a, b: on_b } = &self.kind else { return None };
         let points = [a.pose.point_to_world(on_a.point), b.pose.point_to_world(on_b.point)];
         let ends = Ends::of(points, [a, b]);
-        Some([DVec2::X, DVec2::Y].map(|normal| ends.along(normal.dot(points[0] - points[1]), normal, 0.0)))
+        let off = points[0] - points[1];
+        Some([ends.along(off.x, DVec2::X, 0.0), ends.along(off.y, DVec2::Y, 0.0)])
     }
 
     /// As [`Connector::measure`]; rails look for the nearest point near `hint`, or stay on its piece.
