@@ -125,12 +125,13 @@ impl ImpactLaw {
         let slow = impact.slow_speed();
         let may_rebound = |row: &&CollisionRow| !row.bilateral && row.elasticity > 0.0;
         let counts = [impact.rows.len(), impact.rows.iter().filter(may_rebound).count()];
-        let mut patience = Patience::new(counts, impact.lightness(), small.max(QUIET * slow), slow);
+        let quiet = QUIET * slow;
+        let mut patience = Patience::new(counts, impact.lightness(), small.max(quiet), slow);
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }
         match self.grouping() {
-            None => impact.solve_all(small, &mut patience)?,
+            None => impact.solve_all(small.max(quiet.min(NEARLY * impact.fastest)), &mut patience)?,
             Some(grouping) => impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?,
         }
         if matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass) {
