@@ -5,7 +5,7 @@ use super::region::{Region, Touch};
 use super::ticks::Lift;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::system::RigidSystem;
-use halfgap_collision::{BodyId, BodyState};
+use halfgap_collision::{BodyId, BodyState, ConnectorId};
 use halfgap_contact::Impact;
 
 /// Why an event is handled.
@@ -15,6 +15,8 @@ pub(crate) enum Cause {
     Start,
     /// A contact fires: it takes part, however near it is to the ends of its features.
     Fired(Touch),
+    /// A rope goes taut, or the point of a rail comes to its stop.
+    Taut(ConnectorId),
     /// A contact has run off its features: its neighbours take over, if they touch.
     RunOff(Touch),
     /// A contact has lost its force: what is found of it again may be what others were moved by meanwhile.
@@ -23,7 +25,7 @@ pub(crate) enum Cause {
     Tick,
     /// A point on a rail goes over a smooth joint, where what stops connectors is rounding and no impact.
     SmoothJoint,
-    /// None of these: a connector, a force law, somebody outside.
+    /// None of these: a corner of a rail, a force law, somebody outside.
     #[default]
     Other,
 }

@@ -34,7 +34,7 @@ pub(crate) struct ConnectorState {
     rests_in_corner: u32,
     /// By how much longer [m] a rope is taken that has just gone slack.
     slack: f64,
-    /// The rope is taut and held.
+    /// It is unilateral, and held: wherever that was begun, it stays.
     held: bool,
     /// When the rope went taut last, and how often before that without time going by.
     last_taut: Option<Time>,
@@ -75,7 +75,8 @@ impl RigidSystem {
             let tolerances = &self.settings.tolerances;
             for row in 0..connector.row_count() {
                 let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
-                if !connector.is_bilateral() && sample.gap > tolerances.accuracy {
+                let is_held = connector.is_bilateral() || self.connector_states[id.index()].held;
+                if !is_held && sample.gap > tolerances.accuracy {
                     continue;
                 }
                 // What neither closes nor opens is held, or may be.
@@ -105,12 +106,18 @@ impl RigidSystem {
     pub(crate) fn remeasure_connector(&self, record: &mut Collision, id: ConnectorId, row: u32, time: Time) {
         let connector = self.connector(id);
         let moving = connector.bodies().map(|body| self.moving_at(body, time));
-        let hint = self.connector_states[id.index()].hint;
-        let sample = connector.measure_near(row as usize, &moving[0], &moving[1], hint.as_ref());
+        let sample = self.measure_connector(id, row as usize, time);
         let response = record.response;
         let (bodies, tolerances) = ([&moving[0], &moving[1]], &self.settings.tolerances);
         *record = Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
         record.response = response;
+    }
+
+    /// Measures a row of a connector at a time.
+    pub(super) fn measure_connector(&self, id: ConnectorId, row: usize, time: Time) -> ConnectorSample {
+        let connector = self.connector(id);
+        let [a, b] = connector.bodies().map(|body| self.moving_at(body, time));
+        connector.measure_near(row, &a, &b, self.connector_states[id.index()].hint.as_ref())
     }
 
     /// What makes the row of a record.
@@ -171,8 +178,21 @@ impl RigidSystem {
         Ok(())
     }
 
+    /// Notes which ropes and stops of a region are held from now on.
+    pub(crate) fn note_held_connectors(&mut self, region: &Region, settling: &Settling) {
+        for &body in &region.bodies {
+            for &id in self.connectors_of.of(body) {
+                if !self.connectors[id.index()].is_bilateral() {
+                    let mut held = settling.held.iter();
+                    let is_held = held.any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                    self.connector_states[id.index()].held = is_held;
+                }
+            }
+        }
+    }
+
     /// Predicts when the ropes of a region go taut.
-    pub(crate) fn predict_ropes(&mut self, region: &Region, settling: &Settling) {
+    pub(crate) fn predict_ropes(&mut self, region: &Region) {
         let sink = self.sink();
         for &body in &region.bodies {
             for index in 0..self.connectors_of.of(body).len() {
@@ -182,7 +202,6 @@ impl RigidSystem {
                 let sample = self.connector(id).measure(0, &a, &b);
                 let slack = self.slack_of(&sample);
                 let state = &mut self.connector_states[id.index()];
-                state.held = settling.held.iter().any(|(_, row)| row.source == RowSource::Connector(id, 0));
                 state.slack = slack + f64::from(state.repeats_at(self.now)) * sink;
                 state.clear = self.now;
                 self.predict_rope(id, &rope);

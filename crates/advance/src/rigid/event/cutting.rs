@@ -6,6 +6,7 @@
 //! where it was seen, as of what closes slowly, or brings a body into another, the event stays on the dense
 //! output, along which nothing penetrates.
 
+use super::cause::Cause;
 use super::region::{Region, Touch};
 use crate::rigid::search::pairs::{Link, Prediction};
 use crate::rigid::sources::Source as EventSource;
@@ -37,11 +38,11 @@ impl RigidSystem {
     /// Cuts the groups of a region at the present time, or a little off, and ends them: their bodies fly on from there.
     pub(crate) fn cut_groups(&mut self, region: &mut Region) {
         self.complete_dense();
-        let (seen, fired) = (self.now, region.cause.fired());
+        let seen = self.now;
         self.measure_touches(region);
-        let gap = fired.map(|fired| self.gap_at(fired, seen).0);
-        let time = self.cut_exactly(region, fired, gap);
-        if self.is_off(region, time) {
+        let gap = self.gap_of_cause(region.cause, seen).map(|(gap, _)| gap);
+        let time = self.cut_exactly(region, gap);
+        if self.is_off(region, gap, time) {
             for &leader in &region.groups {
                 self.cut_group(leader, seen, Source::Dense);
             }
@@ -53,9 +54,9 @@ impl RigidSystem {
         }
     }
 
-    /// Cuts the groups of a region where steps made anew bring the contact that fired to the gap [m] that it
-    /// was seen with; the answer is when.
-    fn cut_exactly(&mut self, region: &Region, fired: Option<Touch>, gap: Option<f64>) -> Time {
+    /// Cuts the groups of a region where steps made anew bring what fired to the gap [m] that it was seen with;
+    /// the answer is when.
+    fn cut_exactly(&mut self, region: &Region, gap: Option<f64>) -> Time {
         let mut time = self.now;
         for round in 0..=MOST_CORRECTIONS {
             for &leader in &region.groups {
@@ -64,7 +65,7 @@ impl RigidSystem {
             if round == MOST_CORRECTIONS {
                 break;
             }
-            let corrected = self.passed(region, time).or_else(|| self.corrected(fired, gap, time));
+            let corrected = self.passed(region, time).or_else(|| self.corrected(region.cause, gap, time));
             let Some(corrected) = corrected else { break };
             let starts =
                 region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
@@ -77,9 +78,9 @@ impl RigidSystem {
         time
     }
 
-    /// When a pair has the gap [m] that it had by dense output, if the time given is off and that can be told.
-    fn corrected(&self, fired: Option<Touch>, wanted: Option<f64>, time: Time) -> Option<Time> {
-        let (gap, rate) = self.gap_at(fired?, time);
+    /// When what fired has the gap [m] that it had by dense output, if the time given is off and that can be told.
+    fn corrected(&self, cause: Cause, wanted: Option<f64>, time: Time) -> Option<Time> {
+        let (gap, rate) = self.gap_of_cause(cause, time)?;
         let error = gap - wanted?;
         let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
         (counts && rate < -self.settings.tolerances.velocity_tol).then(|| time.plus(-error / rate))
@@ -105,13 +106,16 @@ impl RigidSystem {
     }
 
     /// True if what touches in a region is not where the search saw it: of an event whose time was corrected,
-    /// what fired. So it is where a body lies within another that it did not touch.
-    fn is_off(&self, region: &Region, time: Time) -> bool {
+    /// what fired, seen with a gap [m]. So it is where a body lies within another that it did not touch.
+    fn is_off(&self, region: &Region, gap: Option<f64>, time: Time) -> bool {
         let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
+        let fired = self.gap_of_cause(region.cause, time).zip(gap);
+        if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
+            return true;
+        }
         let mut seen = region.touches.iter().zip(&region.motions);
         let moves_touches = seen.any(|(&touch, &(gap, _))| {
-            let counts = time == self.now || region.cause.fired() == Some(touch);
-            counts && (self.gap_at(touch, time).0 - gap).abs() > allowed
+            time == self.now && (self.gap_at(touch, time).0 - gap).abs() > allowed
         });
         moves_touches || self.strayed(region, time).any(|body| self.is_in_another(body, region, time))
     }

@@ -129,7 +129,10 @@ impl RigidSystem {
                 work.region.cause = Cause::Fired(touch);
                 self.handle_impact(work)
             }
-            SegmentEnd::Stop => self.handle_impact(work),
+            SegmentEnd::Stop(id) => {
+                work.region.cause = Cause::Taut(id);
+                self.handle_impact(work)
+            }
             SegmentEnd::Switch => self.handle_change(work),
         }
     }
@@ -168,7 +171,7 @@ impl RigidSystem {
 
     /// A rope goes taut; true if there was an impact.
     pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
-        self.with_work(Cause::Other, |system, work| {
+        self.with_work(Cause::Taut(id), |system, work| {
             work.seeds.clear();
             work.seeds.extend(system.connector(id).bodies());
             system.handle_impact(work)
@@ -312,7 +315,8 @@ impl RigidSystem {
             self.renew_stay(body);
         }
         self.predict_all_of(&work.region.bodies, true);
-        self.predict_ropes(&work.region, &work.settling);
+        self.note_held_connectors(&work.region, &work.settling);
+        self.predict_ropes(&work.region);
         Ok(())
     }
 
@@ -402,6 +406,18 @@ impl RigidSystem {
         let Region { touches, motions, .. } = region;
         motions.clear();
         motions.extend(touches.iter().map(|&touch| self.gap_at(touch, self.now)));
+    }
+
+    /// Gap [m] and rate [m/s] at a time of what fires an event: a contact, a rope or a stop.
+    pub(super) fn gap_of_cause(&self, cause: Cause, time: Time) -> Option<(f64, f64)> {
+        match cause {
+            Cause::Fired(touch) => Some(self.gap_at(touch, time)),
+            Cause::Taut(id) => {
+                let sample = self.measure_connector(id, 0, time);
+                Some((sample.gap, sample.kinematics.rate))
+            }
+            _ => None,
+        }
     }
 
     /// Gap [m] and rate [m/s] of two features at a time.

@@ -28,7 +28,7 @@ pub(crate) enum SegmentEnd {
     /// A contact that is touched without force sinks.
     Sink(usize),
     /// A unilateral connector within the group closes.
-    Stop,
+    Stop(ConnectorId),
     /// A force law changes branch.
     Switch,
 }
