@@ -1,7 +1,8 @@
 //! How deep two shapes overlap.
 
 use glam::DVec2;
-use halfgap_geometry::{Edge, GapSample, Pose, Relation, Shape};
+use halfgap_geometry::{Edge, GapSample, Pose, Relation, Shape, edge_crossings};
+use std::f64::consts::TAU;
 
 /// Points at which an edge is looked at, beside its ends and the places where it could touch.
 const SAMPLES: u32 = 16;
@@ -9,16 +10,19 @@ const SAMPLES: u32 = 16;
 /// The largest distance [m] of a point of one outline inside the other shape from that shape's outline; `None` if the
 /// shapes are apart.
 ///
-/// Exact for a shallow overlap, whose deepest point is a vertex or the touching point of a pair of features.
+/// Exact for a shallow overlap, whose deepest point is a vertex or the touching point of a pair of features. Of others it
+/// is the depth of some point of each piece of an outline that lies in the other shape, however short that is.
 pub(crate) fn overlap_depth(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Option<f64> {
     if a.relation(pose_a, b, pose_b) == Relation::Apart {
         return None;
     }
     let touching = feature_points(a, pose_a, b, pose_b);
-    let points_of_a =
-        outline_points(a).map(|point| pose_a.point_to_world(point)).chain(touching.iter().map(|p| p[0]));
-    let points_of_b =
-        outline_points(b).map(|point| pose_b.point_to_world(point)).chain(touching.iter().map(|p| p[1]));
+    let [edges_a, edges_b] = [(a, pose_a), (b, pose_b)].map(|(shape, pose)| {
+        let edges = shape.edges().map(|edge| edge.posed(pose));
+        edges.collect::<Vec<_>>()
+    });
+    let points_of_a = outline_points(&edges_a, &edges_b).chain(touching.iter().map(|p| p[0]));
+    let points_of_b = outline_points(&edges_b, &edges_a).chain(touching.iter().map(|p| p[1]));
     let deepest = |points: &mut dyn Iterator<Item = DVec2>, shape: &Shape, pose: &Pose| {
         points.map(|point| -shape.nearest(pose.point_to_body(point)).signed_distance).fold(0.0, f64::max)
     };
@@ -40,11 +44,29 @@ fn feature_points(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Vec<[DV
     points
 }
 
-/// Points along the outline of a shape in body coordinates.
-fn outline_points(shape: &Shape) -> impl Iterator<Item = DVec2> + '_ {
-    shape.edges().flat_map(|edge| {
-        (0..SAMPLES).map(move |step| point_along(edge, f64::from(step) / f64::from(SAMPLES)))
+/// Points along the edges of an outline, at least one on each piece between two crossings with other edges.
+fn outline_points<'a>(edges: &'a [Edge], others: &'a [Edge]) -> impl Iterator<Item = DVec2> + 'a {
+    edges.iter().flat_map(|edge| {
+        let crossings = others.iter().flat_map(|other| edge_crossings(edge, other));
+        let mut ends: Vec<f64> = crossings.map(|point| part_at(edge, point)).chain([0.0, 1.0]).collect();
+        ends.sort_by(f64::total_cmp);
+        let evenly = (0..SAMPLES).map(|step| f64::from(step) / f64::from(SAMPLES));
+        let middles = ends.windows(2).map(|piece| 0.5 * (piece[0] + piece[1]));
+        let parts: Vec<f64> = evenly.chain(middles).collect();
+        parts.into_iter().map(move |part| point_along(edge, part))
     })
+}
+
+/// Which part of an edge lies before a point on it.
+fn part_at(edge: &Edge, point: DVec2) -> f64 {
+    let part = match edge {
+        Edge::Line(line) => (point - line.from()).dot(line.direction()) / line.length(),
+        Edge::Arc(arc) => {
+            let turn = (point - arc.center()).to_angle() - arc.start_angle();
+            (turn * arc.sweep_angle().signum()).rem_euclid(TAU) / arc.sweep_angle().abs()
+        }
+    };
+    part.clamp(0.0, 1.0)
 }
 
 fn point_along(edge: &Edge, part: f64) -> DVec2 {
@@ -53,6 +75,35 @@ fn point_along(edge: &Edge, part: f64) -> DVec2 {
         Edge::Arc(arc) => {
             let angle = arc.start_angle() + arc.sweep_angle() * part;
             arc.center() + DVec2::from_angle(angle) * arc.radius()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How deep a bar of a length and width [m], turned about the middle of a shape and moved, lies in it.
+    fn depth_of_bar(shape: &Shape, length: f64, width: f64, pose: Pose) -> f64 {
+        let bar = Shape::block(length, width).expect("a bar");
+        overlap_depth(shape, &Pose::IDENTITY, &bar, &pose).expect("they cross")
+    }
+
+    #[test]
+    fn of_a_bar_through_a_wall_the_thicker_one_counts() {
+        let wall = Shape::block(0.05, 4.0).expect("a wall");
+        for (x, y, width) in [(0.06, 0.1, 0.02), (-0.7, 1.3, 0.002), (0.3, 0.3, 0.2)] {
+            let depth = depth_of_bar(&wall, 2.0, width, Pose::new(DVec2::new(x, y), 0.0));
+            assert!((depth - 0.5 * width.max(0.05)).abs() < 1e-12, "{depth} m of a bar of {width} m");
+        }
+    }
+
+    #[test]
+    fn a_bar_through_a_thin_ring_is_found_wherever_it_goes_through() {
+        let ring = Shape::ring(2.02, 2.0).expect("a ring");
+        for angle in [0.0, 0.2, 1.0, 2.0, 3.1, 4.4] {
+            let depth = depth_of_bar(&ring, 10.0, 0.3, Pose::new(DVec2::new(0.1, -0.2), angle));
+            assert!((0.149..=0.15).contains(&depth), "{depth} m at {angle} rad");
         }
     }
 }
