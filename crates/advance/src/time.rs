@@ -3,7 +3,8 @@
 use std::cmp::Ordering;
 use std::fmt;
 
-/// A time [s] as a number and the rest that it cannot hold; compared exactly.
+/// A time [s] as a number and the rest that it cannot hold; compared exactly. What is not a number, as of 0/0, is
+/// [`NEVER`](Self::NEVER).
 ///
 /// Adding a step is exact to about 1e-32 of the time, so that an event a million seconds into a run is as sharp as one
 /// at its start. Source of the exact sum: D. Knuth, The Art of Computer Programming 2, 4.2.2, theorem B.
@@ -22,7 +23,7 @@ impl Time {
     /// The time nearest to a number of seconds: exactly that.
     #[must_use]
     pub fn from_seconds(seconds: f64) -> Self {
-        Self { seconds, rest: 0.0 }
+        if seconds.is_nan() { Self::NEVER } else { Self { seconds, rest: 0.0 } }
     }
 
     /// Both numbers; the first alone decides between times whose first differ.
@@ -49,9 +50,8 @@ impl Time {
     #[inline]
     pub fn plus(self, step: f64) -> Self {
         let sum = self.seconds + step;
-        debug_assert!(!sum.is_nan(), "a step is a number");
         if !sum.is_finite() {
-            return Self { seconds: sum, rest: 0.0 };
+            return Self::from_seconds(sum);
         }
         let step_part = sum - self.seconds;
         let error = (self.seconds - (sum - step_part)) + (step - step_part);
@@ -175,5 +175,10 @@ mod tests {
     fn never_is_later_than_everything() {
         assert!(Time::NEVER > Time::from_seconds(f64::MAX));
         assert_eq!(Time::ZERO.plus(f64::INFINITY), Time::NEVER);
+        for none in
+            [Time::from_seconds(f64::NAN), Time::ZERO.plus(f64::NAN), Time::NEVER.plus(-f64::INFINITY)]
+        {
+            assert_eq!(none, Time::NEVER);
+        }
     }
 }

@@ -2,7 +2,8 @@
 
 /// First time t >= 0 at which c + v t + a t^2/2 is at most 0 while not growing (v + a t <= 0).
 ///
-/// That is 0 if it starts there and closes; `None` if it never happens, nor if it stays at 0 for ever. Roots
+/// That is 0 if it starts there and closes; `None` if it never happens, or if it stands still at the start and
+/// does not close from there (v = 0 and a >= 0). Roots
 /// are taken in the form in which nothing cancels, so that a = 0 and a double root need no special care. Of
 /// numbers that are none, or whose squares and products are none, nothing is said.
 #[must_use]

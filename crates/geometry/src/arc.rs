@@ -63,7 +63,7 @@ impl Arc {
     /// `fit_tol` [m] says by how much the radii at the two ends may differ before the center is moved.
     ///
     /// # Errors
-    /// Ends that coincide, radii that differ by more than `fit_tol`, or a number that is not finite.
+    /// Ends that coincide, radii that differ by more than `fit_tol`, or a number that is not finite (`fit_tol` may be infinite).
     pub fn between(
         from: DVec2,
         to: DVec2,
@@ -71,7 +71,7 @@ impl Arc {
         clockwise: bool,
         fit_tol: f64,
     ) -> Result<Self, ArcError> {
-        if !(center.is_finite() && from.is_finite() && to.is_finite()) {
+        if !(center.is_finite() && from.is_finite() && to.is_finite() && !fit_tol.is_nan()) {
             return Err(ArcError::NotFinite);
         }
         let chord = to - from;

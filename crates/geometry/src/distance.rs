@@ -75,6 +75,7 @@ impl Shape {
     #[must_use]
     pub fn distance(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> ShapeDistance {
         let relative = pose.seen_from(other_pose);
+        assert!(relative.is_finite(), "the numbers of a pose are finite");
         let mut search = Search { a: self, b: other, relative, best: f64::INFINITY, found: None };
         search.improve(0, 0, 0.0);
         let (pair, edge_a, edge_b) =
@@ -96,6 +97,9 @@ impl Shape {
     #[must_use]
     pub fn relation(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> Relation {
         let relative = pose.seen_from(other_pose);
+        if !relative.is_finite() {
+            return Relation::Apart;
+        }
         let best = touching_distance(self, other, &relative).next_up();
         let mut search = Search { a: self, b: other, relative, best, found: None };
         search.improve(0, 0, 0.0);

@@ -4,8 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
-    /// An end point is infinite or not a number.
-    #[error("end points must be finite")]
+    /// An end point is infinite or not a number, or the square of their distance is.
+    #[error("end points, and the square of their distance, must be finite")]
     NotFinite,
     /// The end points coincide.
     #[error("end points coincide at ({0}, {1}) m")]
@@ -17,7 +17,7 @@ pub enum LineError {
 #[non_exhaustive]
 pub enum ArcError {
     /// A coordinate is infinite or not a number.
-    #[error("arc center and end points must be finite")]
+    #[error("arc center and end points must be finite, their tolerance a number")]
     NotFinite,
     /// The radius is not a positive, finite length.
     #[error("arc radius must be positive and finite, got {0} m")]

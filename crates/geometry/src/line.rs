@@ -17,7 +17,7 @@ impl Line {
     /// The edge between two points [m].
     ///
     /// # Errors
-    /// A point that is not finite, or two points that coincide.
+    /// A point that is not finite, two points that coincide, or whose distance has a square that is no number.
     pub fn new(from: DVec2, to: DVec2) -> Result<Self, LineError> {
         if !(from.is_finite() && to.is_finite()) {
             return Err(LineError::NotFinite);
@@ -25,6 +25,9 @@ impl Line {
         let length = (to - from).length();
         if length == 0.0 {
             return Err(LineError::ZeroLength(from.x, from.y));
+        }
+        if !length.is_finite() {
+            return Err(LineError::NotFinite);
         }
         Ok(Self { from, to, direction: (to - from) / length, length })
     }

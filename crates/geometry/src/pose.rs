@@ -62,6 +62,13 @@ impl Pose {
         Self { position, rotation: Rotation::from_angle(angle) }
     }
 
+    /// True if all its numbers are finite.
+    #[must_use]
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.rotation.cos.is_finite() && self.rotation.sin.is_finite()
+    }
+
     /// World coordinates of a point given in body coordinates.
     #[must_use]
     #[inline]

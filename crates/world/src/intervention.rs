@@ -1,5 +1,6 @@
 //! What a user does to a world while it runs: velocities and impulses. What is built in is in `builder`.
 
+use crate::builder::LARGEST;
 use crate::event::Event;
 use crate::run_error::RunError;
 use crate::world::{World, tell};
@@ -84,7 +85,8 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// A body that is fixed, or not there, or a number that is not finite: then nothing is done. The impact,
+    /// A body that is fixed, or not there, a number that is not finite, or a change of a velocity by more than
+    /// 1e60: then nothing is done. The impact,
     /// or the forces after it, cannot be found: then there is no going on, as after such an error of
     /// [`advance_to`](Self::advance_to).
     pub fn intervene(
@@ -94,6 +96,7 @@ impl World {
     ) -> Result<(), RunError> {
         interventions.iter().try_for_each(|intervention| self.check_intervention(intervention))?;
         let changes = self.changes_by(interventions);
+        changes.iter().try_for_each(|change| self.check_change(change))?;
         let has_failed = self.system.failure().is_some();
         let outcome = self.system.intervene(self.now, &changes);
         let mut go_on = |event: &Event| {
@@ -124,6 +127,13 @@ impl World {
             return Err(RunError::BadIntervention { body: name() });
         }
         Ok(())
+    }
+
+    /// Refuses velocities that are larger than those from which a world can be built.
+    fn check_change(&self, change: &VelocityChange) -> Result<(), RunError> {
+        let VelocityChange { body, velocity, angular_velocity } = *change;
+        let is_sound = velocity.abs().max_element().max(angular_velocity.abs()) <= LARGEST;
+        if is_sound { Ok(()) } else { Err(RunError::BadIntervention { body: self.name(body).to_owned() }) }
     }
 
     /// What interventions, each after those before it, change of the velocities.

@@ -1,5 +1,6 @@
 //! Why a run stopped early, in the words of the world: with the names of bodies.
 
+use crate::builder::LARGEST;
 use crate::finding::Finding;
 use crate::rounded::Rounded;
 use halfgap_advance::rigid::{AdvanceError, Between};
@@ -159,8 +160,10 @@ pub enum RunError {
         /// Name of the body.
         body: String,
     },
-    /// What is to be done to a body is not finite; nothing was done.
-    #[error("what is done to body \"{body}\" must be finite")]
+    /// What is to be done to a body is not finite, or too large; nothing was done.
+    #[error(
+        "what is done to body \"{body}\" must be finite, and change its velocities by {LARGEST:e} at most"
+    )]
     BadIntervention {
         /// Name of the body.
         body: String,

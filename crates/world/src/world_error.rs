@@ -4,7 +4,7 @@ use crate::connector::kind_name;
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::world::BACKGROUND;
-use halfgap_collision::{BodyId, Connector};
+use halfgap_collision::{BodyId, Connector, ConnectorError};
 
 /// Why a world could not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -66,6 +66,14 @@ pub enum WorldError {
         body: u32,
         /// How many bodies there are.
         bodies: usize,
+    },
+    /// A connector has numbers that none can have.
+    #[error("{connector}: {source}")]
+    BadConnector {
+        /// Which connector.
+        connector: ConnectorName,
+        /// What is wrong with it.
+        source: ConnectorError,
     },
     /// A connector is off at the start by more than is allowed.
     #[error("{connector} is off by {} m at the start; at most {} m are allowed", Rounded(*error), Rounded(*allowed))]

@@ -142,7 +142,8 @@ impl Stepper {
     /// Size of the estimated error of the last step: the weighted root mean square over the first `scales.len()`
     /// components, where `scales` are the errors that are just acceptable; so 1 is just acceptable.
     ///
-    /// Methods with fixed steps answer 0. The answer is not finite if the step went out of all bounds.
+    /// Methods with fixed steps answer 0, whatever came of the step. Of others the answer is not finite if the
+    /// step went out of all bounds.
     #[must_use]
     pub fn error_norm(&self, scales: &[f64]) -> f64 {
         if scales.is_empty() {

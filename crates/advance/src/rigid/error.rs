@@ -20,6 +20,14 @@ pub enum AdvanceError {
     /// A system cannot be made of what it was to be made of.
     #[error(transparent)]
     Parts(#[from] PartsError),
+    /// A time or a velocity of an intervention is not a finite number: nothing is done.
+    #[error("the {quantity} of an intervention must be finite, got {value}")]
+    BadIntervention {
+        /// Which.
+        quantity: &'static str,
+        /// What it is.
+        value: f64,
+    },
     /// An impact cannot be resolved.
     #[error("at {time} s, between bodies {bodies:?}: {source}")]
     Impact {

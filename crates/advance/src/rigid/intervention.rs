@@ -27,7 +27,8 @@ impl RigidSystem {
     /// `interventions`.
     ///
     /// # Errors
-    /// As of an event: the impact, or the forces after it, cannot be found. There is no going on from that.
+    /// A time or a change that is not finite: nothing is done. As of an event: the impact, or the forces after it,
+    /// cannot be found; there is no going on from that.
     ///
     /// # Panics
     /// If there is no such body.
@@ -36,6 +37,7 @@ impl RigidSystem {
         time: Time,
         changes: &[VelocityChange],
     ) -> Result<Option<Handled>, AdvanceError> {
+        check_finite(time, changes)?;
         let outcome = self.happen(time.max(self.now), |system| {
             system.with_work(Cause::Other, |system, work| system.change_velocities(work, changes))
         });
@@ -99,5 +101,16 @@ impl RigidSystem {
             self.links = links;
         }
         self.forget_paces(&work.region.bodies);
+    }
+}
+
+fn check_finite(time: Time, changes: &[VelocityChange]) -> Result<(), AdvanceError> {
+    let of_changes = changes.iter().flat_map(|change| {
+        let VelocityChange { velocity, angular_velocity, .. } = *change;
+        [("velocity.x", velocity.x), ("velocity.y", velocity.y), ("angular velocity", angular_velocity)]
+    });
+    match of_changes.chain([("time", time.seconds())]).find(|(_, value)| !value.is_finite()) {
+        Some((quantity, value)) => Err(AdvanceError::BadIntervention { quantity, value }),
+        None => Ok(()),
     }
 }

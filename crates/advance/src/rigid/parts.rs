@@ -4,7 +4,7 @@ use super::motion::flyer::FlightLaw;
 use super::motion::law::ForceLaw;
 use super::system::RigidSettings;
 use crate::time::Time;
-use halfgap_collision::{Body, BodyId, BodyState, Connector};
+use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, ConnectorId};
 use std::sync::Arc;
 
 /// What a system is made of.
@@ -48,6 +48,14 @@ pub enum PartsError {
         /// What it is.
         value: f64,
     },
+    /// A connector has numbers that none can have.
+    #[error("connector {}: {source}", connector.0)]
+    BadConnector {
+        /// Which.
+        connector: ConnectorId,
+        /// What is wrong with it.
+        source: ConnectorError,
+    },
     /// A setting is out of range.
     #[error("{setting} must be {rule}, got {value}")]
     BadSetting {
@@ -77,7 +85,13 @@ impl RigidParts {
             let bad = |(quantity, rule, value)| PartsError::BadBody { body, quantity, rule, value };
             check_body(part).map_err(bad)?;
         }
-        self.check_names()
+        self.check_names()?;
+        for (index, connector) in self.connectors.iter().enumerate() {
+            let connector_id = ConnectorId(u32::try_from(index).unwrap_or(u32::MAX));
+            let bad = |source| PartsError::BadConnector { connector: connector_id, source };
+            connector.check().map_err(bad)?;
+        }
+        Ok(())
     }
 
     /// Refuses what names bodies that are not there.

@@ -186,7 +186,8 @@ pub struct RigidSystem {
 }
 
 impl RigidSystem {
-    /// The system of the given parts at a time.
+    /// The system of the given parts at a time. That bodies do not overlap, and connectors hold what they tie
+    /// together, is for the caller to see to.
     ///
     /// # Errors
     /// Parts or settings out of range. The forces at the start cannot be found.

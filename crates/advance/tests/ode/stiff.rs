@@ -267,3 +267,14 @@ fn a_step_to_where_there_are_no_rates_is_none() {
         assert!(is_kept(stepper.error_norm(&[1e-9])), "{method:?}");
     }
 }
+
+#[test]
+fn an_empty_system_goes_on_by_any_method() {
+    for method in [Method::RadauIia5, Method::Dop853, Method::DormandPrince5, Method::Euler] {
+        let mut stepper = Stepper::new(method);
+        stepper.set_scales(&[]);
+        let from = Point { offset: 0.0, state: &[], rates: &[] };
+        let Ok(_) = stepper.step(&mut Nothing, from, 0.1, &mut []);
+        assert_eq!(stepper.error_norm(&[]), 0.0, "{method:?}");
+    }
+}

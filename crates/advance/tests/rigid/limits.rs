@@ -2,7 +2,9 @@
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
-use halfgap_collision::BodyState;
+use halfgap_advance::Time;
+use halfgap_advance::rigid::{AdvanceError, VelocityChange};
+use halfgap_collision::{BodyId, BodyState};
 
 #[test]
 fn a_damped_disc_coasts_into_a_wall_when_the_exponential_says() {
@@ -49,4 +51,18 @@ fn bodies_far_from_each_other_cost_nothing() {
     advance(&mut system, 10.0).expect("nothing happens");
     assert_eq!(system.counts().impacts, 0);
     assert!(system.counts().events < 3000, "{} events", system.counts().events);
+}
+
+#[test]
+fn an_intervention_without_numbers_is_refused_and_nothing_is_done() {
+    let mut system = system(vec![body(&disc(0.5), BodyState::default())]);
+    let (now, never) = (Time::from_seconds(0.5), Time::from_seconds(f64::NAN));
+    let times = [(now, f64::NAN, 0.0), (now, 0.0, f64::INFINITY), (never, 1.0, 0.0)];
+    for (time, speed, angular_velocity) in times {
+        let change = VelocityChange { body: BodyId(0), velocity: DVec2::new(0.0, speed), angular_velocity };
+        let refused = system.intervene(time, &[change]);
+        assert!(matches!(refused, Err(AdvanceError::BadIntervention { .. })), "{refused:?}");
+    }
+    advance(&mut system, 1.0).expect("it goes on");
+    assert_eq!(states(&system, 1.0)[0], BodyState::default());
 }

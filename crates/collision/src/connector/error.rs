@@ -16,7 +16,7 @@ pub enum ConnectorError {
     #[error("the length of a rod or rope must be positive and finite, got {0} m")]
     BadLength(f64),
     /// The direction of a slot has no direction.
-    #[error("the normal of a slot must be finite and not 0, got ({0}, {1})")]
+    #[error("the normal of a slot must be a direction, finite and not 0, got ({0}, {1})")]
     BadNormal(f64, f64),
     /// The elasticity is out of range.
     #[error("elasticity must lie between 0 and 1, got {0}")]

@@ -34,6 +34,9 @@ use glam::DVec2;
 use row::Ends;
 use std::sync::Arc;
 
+/// By how much the length of a unit vector may be off: rounding.
+const UNIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// Index of a connector in its world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ConnectorId(pub u32);
@@ -142,9 +145,6 @@ impl Connector {
     /// # Errors
     /// Ends on the same body, or a number out of its range.
     pub fn new(mut kind: ConnectorKind, elasticity: f64) -> Result<Self, ConnectorError> {
-        if !(0.0..=1.0).contains(&elasticity) {
-            return Err(ConnectorError::BadElasticity(elasticity));
-        }
         if let ConnectorKind::Slot { normal, .. } = &mut kind {
             // By its larger component first, so that no square overflows or vanishes.
             let scaled = *normal / normal.abs().max_element();
@@ -154,9 +154,20 @@ impl Connector {
             *normal = scaled.normalize();
         }
         let connector = Self { kind, elasticity };
-        connector.check_numbers()?;
-        let [a, b] = connector.bodies();
-        if a == b { Err(ConnectorError::SameBody) } else { Ok(connector) }
+        connector.check().map(|()| connector)
+    }
+
+    /// Checks a connector that was not made by [`new`](Self::new), or changed since.
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new); here the normal of a slot must be a unit vector.
+    pub fn check(&self) -> Result<(), ConnectorError> {
+        if !(0.0..=1.0).contains(&self.elasticity) {
+            return Err(ConnectorError::BadElasticity(self.elasticity));
+        }
+        self.check_numbers()?;
+        let [a, b] = self.bodies();
+        if a == b { Err(ConnectorError::SameBody) } else { Ok(()) }
     }
 
     fn check_numbers(&self) -> Result<(), ConnectorError> {
@@ -168,6 +179,10 @@ impl Connector {
             ConnectorKind::Rod { length, .. } | ConnectorKind::Rope { length, .. } => {
                 let fine = *length > 0.0 && length.is_finite();
                 if fine { Ok(()) } else { Err(ConnectorError::BadLength(*length)) }
+            }
+            ConnectorKind::Slot { normal, .. } => {
+                let fine = (normal.length() - 1.0).abs() <= UNIT_ROUNDING;
+                if fine { Ok(()) } else { Err(ConnectorError::BadNormal(normal.x, normal.y)) }
             }
             ConnectorKind::RailStop { at, path, .. } => {
                 let length = path.length();

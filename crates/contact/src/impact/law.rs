@@ -214,6 +214,8 @@ impl Impact {
                 Some("rate, velocity_tol, jacobian and response must be finite")
             } else if !(0.0..=1.0).contains(&row.elasticity) {
                 Some("elasticity must be between 0 and 1")
+            } else if row.jacobian.iter().zip(&row.response).any(|(entry, response)| entry * response < 0.0) {
+                Some("a response must be that of inverse masses and moments that are not negative")
             } else {
                 None
             }
@@ -289,7 +291,11 @@ mod tests {
             let jacobian = [0.0, 1.0, arm, 0.0, -1.0, 0.0];
             CollisionRow::new([BodyId(0), BodyId(1)], jacobian, [disc; 2], rate, elasticity, 1e-3, false)
         };
-        for bad in [row(f64::NAN, 0.0, 0.5), row(-1.0, f64::INFINITY, 0.5), row(-1.0, 0.0, 2.0)] {
+        let of_negative_mass =
+            CollisionRow { response: [0.0, -0.5, 0.0, 0.0, 0.5, 0.0], ..row(-1.0, 0.0, 0.5) };
+        for bad in
+            [row(f64::NAN, 0.0, 0.5), row(-1.0, f64::INFINITY, 0.5), row(-1.0, 0.0, 2.0), of_negative_mass]
+        {
             for rows in [vec![bad], vec![row(-1.0, 0.0, 0.5), bad]] {
                 let last = rows.len() - 1;
                 let mut impact = Impact::new();

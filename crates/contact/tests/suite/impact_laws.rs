@@ -242,6 +242,24 @@ fn held_rows_at_rest_take_part_in_a_simultaneous_impact() {
     assert!(near(speeds(ImpactLaw::Hybrid), [0.0, 0.0, 1.0]));
 }
 
+#[test]
+fn what_opens_by_rounding_rests_in_a_simultaneous_impact() {
+    // The first disc strikes one that touches a third: by what holds these they go apart, or together, a little.
+    let mover = |velocity: f64| Mover { inverse: [1.0, 1.0, 2.0], velocity: [velocity, 0.0, 0.0] };
+    let touch = |bodies| Touch { bodies, angle: std::f64::consts::PI, moments: [0.0; 2], elasticity: 1.0 };
+    let touches = [touch([0, 1]), touch([1, 2])];
+    for apart in [0.0, 1e-13, 1e-11, 1e-9, -1e-9, 1e-7] {
+        let movers = [mover(1.0), mover(0.0), mover(apart)];
+        let mut impact = Impact::new();
+        let rows = touches.map(|touch| CollisionRow { velocity_tol: 1e-3, ..touch.row(&movers) });
+        impact.set_rows(rows);
+        ImpactLaw::Simultaneous.resolve(&mut impact, ORDERS[0], 0).expect("two rows");
+        let impulses = impact.impulses();
+        let off = (impulses[0] - 4.0 / 3.0).abs().max((impulses[1] - 2.0 / 3.0).abs());
+        assert!(off <= 2.0 * apart.abs() + ROUNDING, "{apart} m/s: {impulses:?}");
+    }
+}
+
 /// The speed with which a mass comes back that a lighter one, at rest between it and a wall, turns round, blow by blow.
 fn turned_round_by(light: f64) -> f64 {
     let (mut heavy_speed, mut light_speed) = (1.0, 0.0);

@@ -1,6 +1,6 @@
 //! Each way in which a shape can be wrong, and what the message says of it.
 
-use halfgap_geometry::{Arc, ArcError, DVec2, EdgeSpec, Line, PathSpec, Shape, ShapeError};
+use halfgap_geometry::{Arc, ArcError, DVec2, EdgeSpec, Line, LineError, PathSpec, Shape, ShapeError};
 use std::f64::consts::TAU;
 
 fn v(x: f64, y: f64) -> DVec2 {
@@ -132,9 +132,14 @@ fn edges_alone_have_their_errors() {
     assert_eq!(text(new(1.0, 0.0)), "arc sweep must be between 0 and a full turn in size, got 0 rad");
     assert_eq!(text(new(1.0, 7.0)), "arc sweep must be between 0 and a full turn in size, got 7 rad");
     let nowhere = Arc::new(DVec2::NAN, 1.0, 0.0, 1.0).expect_err("wrong");
-    assert_eq!(text(nowhere), "arc center and end points must be finite");
+    assert_eq!(text(nowhere), "arc center and end points must be finite, their tolerance a number");
+    let loose = Arc::between(v(1.0, 0.0), v(0.0, 3.0), DVec2::ZERO, false, f64::NAN).expect_err("wrong");
+    assert_eq!(loose, ArcError::NotFinite);
     let to_nowhere = Line::new(DVec2::ZERO, DVec2::INFINITY).expect_err("wrong");
-    assert_eq!(to_nowhere.to_string(), "end points must be finite");
+    assert_eq!(to_nowhere.to_string(), "end points, and the square of their distance, must be finite");
+    for far in [v(1e200, 1e200), v(1e308, 0.0)] {
+        assert_eq!(Line::new(-far, far), Err(LineError::NotFinite));
+    }
     let point = Line::new(v(1.0, 2.0), v(1.0, 2.0)).expect_err("wrong");
     assert_eq!(point.to_string(), "end points coincide at (1, 2) m");
 }

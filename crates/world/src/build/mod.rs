@@ -133,6 +133,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         }
         WorldError::ConnectorError { connector, .. }
         | WorldError::CannotConnect { connector, .. }
+        | WorldError::BadConnector { connector, .. }
         | WorldError::FarConnector { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {
             Some(top.field("connector").element(connector.index).field(connector.kind))

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to
 /// fourth powers of sums of them, which must be numbers.
-const LARGEST: f64 = 1e60;
+pub(crate) const LARGEST: f64 = 1e60;
 
 /// Part of a lap by which stops of a closed rail are apart at least.
 const BACK_TO_BACK: f64 = 2e-3;
@@ -38,6 +38,8 @@ impl WorldBuilder {
         }
         for (index, spec) in self.connectors.iter().enumerate() {
             self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
+            let bad = |source| WorldError::BadConnector { connector: self.connector_name(index), source };
+            spec.connector.check().map_err(bad)?;
             self.require_near(index, &spec.connector, LARGEST)?;
         }
         self.check_stops()?;
@@ -74,6 +76,7 @@ impl WorldBuilder {
         let not_negative = [
             ("start_overlap", self.settings.start_overlap),
             ("start_connector_error", self.settings.start_connector_error),
+            ("duration", self.settings.duration),
         ];
         for (setting, value) in not_negative {
             if let Some(value) = value.filter(|value| !(*value >= 0.0 && value.is_finite())) {
@@ -163,9 +166,9 @@ fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
     if let Some(value) = law.acceleration.to_array().into_iter().find(|value| !value.is_finite()) {
         return bad("gravity", "finite", value);
     }
-    for value in [law.linear_rate, law.angular_rate] {
+    for (quantity, value) in [("damping by mass", law.linear_rate), ("damping by moment", law.angular_rate)] {
         if !(value >= 0.0 && value.is_finite()) {
-            return bad("damping", "finite, and not negative", value);
+            return bad(quantity, "finite, and not negative", value);
         }
     }
     Ok(())

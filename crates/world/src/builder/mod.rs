@@ -12,6 +12,7 @@ use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
 use crate::world_error::WorldError;
+pub(crate) use checks::LARGEST;
 use checks::world_bounds;
 use glam::DVec2;
 use halfgap_advance::Time;

@@ -4,8 +4,8 @@ use glam::DVec2;
 use halfgap::force::{ForceLaw, Snapshot, Wrenches};
 use halfgap::geometry::Shape;
 use halfgap::{
-    BodyId, BodySpec, BodyState, Event, Intervention, RunError, World, WorldBuilder, WorldError,
-    WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Intervention,
+    RunError, SlotFrame, World, WorldBuilder, WorldError, WorldSettings,
 };
 use std::sync::Arc;
 
@@ -93,6 +93,41 @@ fn a_law_that_acts_on_a_body_it_does_not_name_is_refused() {
         let refused = WorldError::UnnamedBody { law: "push".to_owned(), body: "second".to_owned() };
         assert_eq!(builder.build().err(), (!is_fine).then_some(refused));
     }
+}
+
+#[test]
+fn a_connector_with_numbers_that_none_can_have_is_refused() {
+    let rope = |length| ConnectorKind::Rope { a: end(0, DVec2::ZERO), b: end(1, DVec2::ZERO), length };
+    let slot = |normal| ConnectorKind::Slot {
+        a: end(0, DVec2::ZERO),
+        b: end(1, DVec2::ZERO),
+        normal,
+        frame: SlotFrame::World,
+    };
+    let cases = [
+        (rope(f64::NAN), 0.5, "the length of a rod or rope must be positive and finite, got NaN m"),
+        (rope(2.0), 3.0, "elasticity must lie between 0 and 1, got 3"),
+        (slot(DVec2::ZERO), 0.0, "the normal of a slot must be a direction, finite and not 0, got (0, 0)"),
+        (
+            ConnectorKind::Pin { a: end(1, DVec2::ZERO), b: end(1, DVec2::X) },
+            0.0,
+            "a connector needs two different bodies",
+        ),
+    ];
+    for (kind, elasticity, why) in cases {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        for name in ["first", "second"] {
+            let disc = Shape::disc(0.5).expect("a fine radius");
+            builder.add(BodySpec::movable(name, disc, 1.0, BodyState::default()));
+        }
+        builder.add_connector(ConnectorSpec::new(Connector { kind, elasticity }));
+        let refused = builder.build().expect_err("no such connector").to_string();
+        assert!(refused.starts_with("connector 0 (") && refused.ends_with(why), "{refused}");
+    }
+}
+
+fn end(body: u32, point: DVec2) -> Anchor {
+    Anchor { body: BodyId(body), point }
 }
 
 #[test]

@@ -185,7 +185,7 @@ impl Radau {
         real.iter_mut().zip(&self.jacobian).for_each(|(entry, slope)| *entry = -slope);
         (0..active).for_each(|row| real[row * active + row] += REAL / length);
         let pair = self.pair.clear(2 * active);
-        for (row, slopes) in self.jacobian.chunks_exact(active).enumerate() {
+        for (row, slopes) in slopes_of(&self.jacobian, active).enumerate() {
             for half in [0, active] {
                 let entries = &mut pair[(row + half) * 2 * active..][..2 * active];
                 entries[half..half + active]
@@ -205,7 +205,7 @@ impl Radau {
     fn find_rounding(&mut self) {
         let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
         self.rounding.clear();
-        self.rounding.extend(self.jacobian.chunks_exact(self.active).map(|slopes| {
+        self.rounding.extend(slopes_of(&self.jacobian, self.active).map(|slopes| {
             slopes.iter().zip(&self.start).map(|(slope, value)| slope.abs() * rounding(value)).sum::<f64>()
         }));
         if self.solved {
@@ -325,7 +325,7 @@ impl Radau {
                 self.fastest.fill(1.0);
                 break;
             }
-            for (row, slopes) in self.jacobian.chunks_exact(active).enumerate() {
+            for (row, slopes) in slopes_of(&self.jacobian, active).enumerate() {
                 self.right[row] = dot(slopes, &self.fastest) / norm;
             }
             self.fastest.copy_from_slice(&self.right[..active]);
@@ -343,4 +343,9 @@ fn beyond(number: f64, rounding: f64) -> f64 {
 /// Root of the mean of the squares of the first numbers, measured by their scales.
 fn root_mean_square(numbers: &[f64], scales: &[f64]) -> f64 {
     super::explicit::mean_square(&numbers[..scales.len()], scales).sqrt()
+}
+
+/// The rows of a Jacobian of some components; none of none.
+fn slopes_of(jacobian: &[f64], components: usize) -> std::slice::ChunksExact<'_, f64> {
+    jacobian.chunks_exact(components.max(1))
 }

@@ -26,6 +26,9 @@ impl<'a> Snapshot<'a> {
     }
 
     /// A body; the background rests at the origin.
+    ///
+    /// # Panics
+    /// If there is no such body: a law names those that it looks at, and what it names is checked when it is added.
     #[must_use]
     #[inline]
     pub fn body(&self, body: BodyId) -> Moving {
