@@ -11,8 +11,9 @@ use crate::rigid::event::region::Touch;
 use crate::rigid::held::settle::DEEPEST;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
+use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule};
-use halfgap_geometry::FeatureId;
+use halfgap_geometry::{Feature, FeatureId};
 
 /// Depth, in target gaps, that what grazes does not come to: a little less than that from which contacts are lifted.
 const DEPTH: f64 = 0.9 * DEEPEST;
@@ -53,7 +54,33 @@ impl RigidSystem {
     /// True if features of which one is held by connectors, as they move now, part again before they are as
     /// deep as what grazes never is.
     fn turns_back(&self, touch: Touch) -> bool {
-        self.parts_again(touch.bodies, self.least_grazing_gap(touch.bodies), |time| self.gap_at(touch, time))
+        let least = self.least_grazing_gap(touch.bodies);
+        let Some(corners) = self.corners_of(touch) else {
+            return self.parts_again(touch.bodies, least, |time| self.gap_at(touch, time));
+        };
+        // Of two corners that run into each other the distance is never negative: it would grow again.
+        let apart = |time: Time| {
+            let [a, b] = [0, 1].map(|side: usize| {
+                let moving = self.flyer(touch.bodies[side]).moving_at(time);
+                let arm = moving.pose.vector_to_world(corners[side]);
+                (moving.pose.position + arm, moving.velocity_at(arm))
+            });
+            (a.0 - b.0, a.1 - b.1)
+        };
+        let direction = apart(self.now).0.normalize_or_zero();
+        self.parts_again(touch.bodies, least, |time| {
+            let (offset, velocity) = apart(time);
+            (direction.dot(offset), direction.dot(velocity))
+        })
+    }
+
+    /// The places of two sharp corners that touch [m], each in its body's coordinates; `None` of other features.
+    fn corners_of(&self, Touch { bodies, features }: Touch) -> Option<[DVec2; 2]> {
+        let corner = |side: usize| match self.flyer(bodies[side]).body().shape.feature(features[side]) {
+            Feature::Round(round) if round.radius == 0.0 => Some(round.center),
+            _ => None,
+        };
+        Some([corner(0)?, corner(1)?])
     }
 
     /// The gap [m] to which what grazes may seem to come: between the ends of a step its dense output has
