@@ -32,7 +32,29 @@ pub(super) fn correct_positions(
     connectors: &[Connector],
 ) -> Option<f64> {
     let corrections: Vec<_> = records.iter().map(lift).chain(join(bodies, connectors)).collect();
-    let changes = least_changes(bodies, &corrections)?;
+    apply(bodies, &corrections)
+}
+
+/// Moves the bodies so that some gaps come to their target, from whichever side, and others are lifted if they
+/// must be, as [`correct_positions`] does.
+pub(super) fn bring_to_target(
+    bodies: &mut [StartParts],
+    held: &[Collision],
+    others: &[Collision],
+    connectors: &[Connector],
+) -> Option<f64> {
+    let to_target = |record: &Collision| Correction {
+        offset: record.distance_to_target(),
+        bilateral: true,
+        ..lift(record)
+    };
+    let contacts = held.iter().map(to_target).chain(others.iter().map(lift));
+    let corrections: Vec<_> = contacts.chain(join(bodies, connectors)).collect();
+    apply(bodies, &corrections)
+}
+
+fn apply(bodies: &mut [StartParts], corrections: &[Correction]) -> Option<f64> {
+    let changes = least_changes(bodies, corrections)?;
     let turn = changes.iter().fold(0.0f64, |most, change| most.max(change[2].abs()));
     let share = if turn > LARGEST_TURN { LARGEST_TURN / turn } else { 1.0 };
     for ((_, _, state), change) in bodies.iter_mut().zip(changes) {

@@ -6,11 +6,12 @@
 //! problem A f + b >= 0, f >= 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in
 //! the displacement, so this is repeated until they fit, by steps along which they are not curved by much.
 //! `tight` knows the pairs for which that cannot be: they keep their gap, and all others are lifted from
-//! where they were given. `touching` finds the places where bodies touch, `joined` the rows of connectors,
+//! where they were given. What is carried beyond its target `regain` brings back. `touching` finds the places where bodies touch, `joined` the rows of connectors,
 //! `correction` solves for displacements and for velocities.
 
 mod correction;
 mod joined;
+mod regain;
 mod tight;
 mod touching;
 
@@ -21,8 +22,11 @@ use correction::{correct_positions, correct_velocities};
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
+use regain::regain_touches;
 use tight::TightPairs;
-use touching::{KnownTouches, deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touching};
+use touching::{
+    KnownTouches, Touch, deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touch, touching,
+};
 
 /// Rounds of correction that go all the way; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
@@ -89,12 +93,17 @@ pub(crate) fn correct_start(
     let given: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
     let mut tight = TightPairs::default();
     let (mut rounds, mut known) = (Rounds::default(), KnownTouches::default());
+    let mut lifted: Vec<Touch> = Vec::new();
     loop {
         // What has been moved may have come near others, and deeper into them.
         let pairs = rules.near_pairs(&mut near, bodies);
         let ways = ways(bodies, &given);
         let mut records = touching(bodies, pairs, rules, &ways);
         records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
+        if rounds.are_at_first() {
+            lifted.clear();
+            lifted.extend(records.iter().filter(|record| is_below_zone(record)).filter_map(touch));
+        }
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
         let is_done = too_near.is_none() && fits(error, rounds.have_stalled(error), rules);
@@ -119,6 +128,7 @@ pub(crate) fn correct_start(
         rounds = Rounds::default();
         known.clear();
     }
+    regain_touches(bodies, (&lifted, &given), connectors, (rules, &mut near));
     let apart = correct_velocities(bodies, named, connectors)?;
     let moves =
         bodies.iter().zip(&given).map(|((_, _, state), given)| state.position.distance(given.position));
@@ -136,6 +146,10 @@ struct Rounds {
 }
 
 impl Rounds {
+    fn are_at_first(&self) -> bool {
+        self.full == 0 && self.short == 0
+    }
+
     fn are_left(&self) -> bool {
         self.full < MOST_ROUNDS && self.short < MOST_SHORT_ROUNDS
     }

@@ -65,7 +65,16 @@ fn moment(bodies: &[StartParts], id: BodyId) -> Moment<'_> {
 }
 
 /// Two features that touched in some round of a correction, the lesser body's first.
-type Touch = ([BodyId; 2], [FeatureId; 2]);
+pub(super) type Touch = ([BodyId; 2], [FeatureId; 2]);
+
+/// The record of a known place as the bodies lie now.
+pub(super) fn record_of(
+    bodies: &[StartParts],
+    ([a, b], features): Touch,
+    rules: &StartRules<'_>,
+) -> Option<Collision> {
+    record_features([&moment(bodies, a), &moment(bodies, b)], features, rules.tolerances, 0.0)
+}
 
 /// Which features touched in the rounds of a correction so far. What was lifted from one corner comes down on
 /// the other: unless the first is known then, it is lowered again as far as the second is lifted, and so on.
@@ -87,16 +96,15 @@ impl KnownTouches {
     ) {
         let mut present: Vec<Touch> = records.iter().filter_map(touch).collect();
         for &known in self.0.iter().filter(|known| !present.contains(known)) {
-            let ([a, b], features) = known;
-            let moments = [&moment(bodies, a), &moment(bodies, b)];
-            records.extend(record_features(moments, features, rules.tolerances, 0.0));
+            records.extend(record_of(bodies, known, rules));
         }
         present.retain(|touch| !self.0.contains(touch));
         self.0.append(&mut present);
     }
 }
 
-fn touch(record: &Collision) -> Option<Touch> {
+/// The place of a record; `None` of one of a connector.
+pub(super) fn touch(record: &Collision) -> Option<Touch> {
     let mut sides = [&record.parties.primary, &record.parties.normal];
     sides.sort_by_key(|side| side.body);
     let [a, b] = sides;

@@ -1,0 +1,47 @@
+//! What touches as it is given, and touches no more after the correction: the least displacement that lifts all
+//! gaps to their target carries some beyond it, as of three discs two of which push the third away. Such
+//! places are brought back to their target, with all others that were lifted, where that can be.
+
+use super::correction::bring_to_target;
+use super::joined::worst_connector;
+use super::touching::{Touch, is_below_zone, record_of, touch, touching};
+use super::{MOST_ROUNDS, StartParts, StartRules, ways};
+use crate::near::NearPairs;
+use halfgap_collision::{BodyState, Collision, Connector};
+
+/// Brings the places that were lifted to their target gap, from both sides, if some of them lie beyond it; else,
+/// and where that cannot be, leaves the bodies as they are. `given`: the bodies before they were lifted.
+pub(super) fn regain_touches(
+    bodies: &mut [StartParts],
+    (lifted, given): (&[Touch], &[BodyState]),
+    connectors: &[Connector],
+    (rules, near): (&StartRules<'_>, &mut NearPairs),
+) {
+    let sink = rules.tolerances.sink();
+    let is_lost = |record: &Collision| record.distance_to_target() > sink;
+    if !measured(bodies, lifted, rules).iter().any(is_lost) {
+        return;
+    }
+    let corrected: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
+    for _ in 0..MOST_ROUNDS {
+        let ways = ways(bodies, given);
+        let pairs = rules.near_pairs(near, bodies);
+        let mut others = touching(bodies, pairs, rules, &ways);
+        others.retain(|record| touch(record).is_none_or(|touch| !lifted.contains(&touch)));
+        let held = measured(bodies, lifted, rules);
+        let is_at_target = held.iter().all(|record| record.distance_to_target().abs() <= sink);
+        let error = worst_connector(bodies, connectors).map_or(0.0, |off| off.error);
+        if is_at_target && !others.iter().any(is_below_zone) && error <= rules.rounding {
+            return;
+        }
+        if bring_to_target(bodies, &held, &others, connectors).is_none() {
+            break;
+        }
+    }
+    bodies.iter_mut().zip(&corrected).for_each(|((_, _, state), corrected)| *state = *corrected);
+}
+
+/// The records of known places as the bodies lie now.
+fn measured(bodies: &[StartParts], touches: &[Touch], rules: &StartRules<'_>) -> Vec<Collision> {
+    touches.iter().filter_map(|&touch| record_of(bodies, touch, rules)).collect()
+}
