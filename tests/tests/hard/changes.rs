@@ -2,10 +2,12 @@
 
 use super::within;
 use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
-use halfgap::{BodyId, BodySpec, Event, World};
+use halfgap::{Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+use halfgap_tests::world_of;
+use std::f64::consts::FRAC_PI_2;
 
-/// The tolerance of these cases.
+/// The tolerance of most of these cases.
 const TOLERANCE: f64 = 1e-10;
 
 #[test]
@@ -141,4 +143,64 @@ fn turning_time(world: &World, body: BodyId, mut early: f64, mut late: f64) -> f
         if there.state(body).velocity.x > 0.0 { early = middle } else { late = middle }
     }
     early
+}
+
+/// Two bars on a hinge at the origin, each 0.2 m wide, with its end 0.1 m from the hinge: as they fold, their corners
+/// run into each other when they are at right angles.
+#[test]
+fn bars_that_fold_until_their_corners_meet_stop_before_they_do() {
+    for tolerance in [1e-4, 1e-6, 1e-8] {
+        let mut shop = Workshop::weightless(tolerance);
+        let still = shop.fixed("still", block(0.6, 0.2), DVec2::new(0.4, 0.0));
+        let (angle, rate) = (2.2, -1.0);
+        let arm = 0.4 * DVec2::from_angle(angle);
+        let state = BodyState { position: arm, angle, velocity: rate * arm.perp(), angular_velocity: rate };
+        let bar = shop.dull("bar", block(0.6, 0.2), 1.0, state);
+        let ends = [still, bar].map(|body| Anchor { body, point: DVec2::new(-0.4, 0.0) });
+        let pin = Connector::new(ConnectorKind::Pin { a: ends[0], b: ends[1] }, 0.0).expect("a fine pin");
+        shop.builder.add_connector(ConnectorSpec { collide: true, ..ConnectorSpec::new(pin) });
+        let mut world = shop.build();
+        advance(&mut world, 1.0);
+        // The corners are 0.1 sqrt(2) m from the hinge, and the target gap apart.
+        let open = world.tolerances().target_gap / (0.1 * 2.0f64.sqrt());
+        let what = format!("bars folded to their corners at {tolerance:e}: open by, in parts of that");
+        within(&what, (world.state(bar).angle - FRAC_PI_2) / open - 1.0, 1e-2);
+    }
+}
+
+/// Where the end one of three bars is that hang on hinges, after 2.5 s: the first two fold until their corners meet,
+/// and part again.
+fn hanging_bars(tolerance: f64) -> DVec2 {
+    let places = [
+        "position = [-0.10638555024359216, 0.3855931984609793]\nangle = 1.84",
+        "position = [-0.13299121208815518, 1.1631496214814043]\nangle = 1.37",
+        "position = [-0.0010418401938678823, 1.9516961853175248]\nangle = 1.44",
+    ];
+    let mut scene = format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"Bars\"\nrun = {{ duration = 2.5, tolerance = {tolerance:e} }}\n\
+         force = [{{ gravity = {{ acceleration = [0, -9.81] }} }}]\n"
+    );
+    for (index, place) in places.iter().enumerate() {
+        let (above, point) = match index {
+            0 => ("world".to_owned(), "[0, 0]"),
+            _ => (format!("bar{}", index - 1), "[0.4, 0]"),
+        };
+        scene += &format!(
+            "[[body]]\nname = \"bar{index}\"\nshape = {{ block = {{ width = 0.6, height = 0.2 }} }}\ndensity = 1.0\n\
+             elasticity = 0.0\n{place}\n[[connector]]\n[connector.pin]\ncollide = true\n\
+             a = {{ body = \"{above}\", point = {point} }}\nb = {{ body = \"bar{index}\", point = [-0.4, 0] }}\n"
+        );
+    }
+    let mut world = world_of(&scene);
+    advance(&mut world, 2.5);
+    world.state(world.find("bar2").expect("it is there")).position
+}
+
+#[test]
+fn bars_that_have_folded_to_their_corners_part_when_nothing_presses_them() {
+    let exact = hanging_bars(1e-11);
+    let errors = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
+        .map(|tolerance: f64| hanging_bars(tolerance).distance(exact) / tolerance);
+    let largest = errors.into_iter().fold(0.0, f64::max);
+    within("three bars that fold to their corners: place, by the tolerance [m]", largest, 1.0);
 }

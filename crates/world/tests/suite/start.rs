@@ -360,3 +360,28 @@ fn blocks_that_overlap_a_little_with_a_corner_each_are_lifted_together() {
         assert!(gap.distance > 0.2 * world.tolerances().target_gap, "{gap:?} at {pair:?}");
     }
 }
+
+#[test]
+fn discs_that_touch_in_a_triangle_all_touch_after_they_are_lifted() {
+    // The heavy one stays, and the others push each other aside: by the least displacement, beyond their target
+    // from it.
+    let corners = [DVec2::ZERO, DVec2::new(0.6, 0.0), DVec2::new(-0.23333333333333336, 0.5527707983925666)];
+    let radii = [0.1, 0.5, 0.5];
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let discs: Vec<BodyId> = [10.0, 1.0, 1.0]
+        .iter()
+        .zip(corners.iter().zip(radii))
+        .map(|(&mass, (&position, radius))| {
+            let state = BodyState { position, ..BodyState::default() };
+            let shape = Shape::disc(radius).expect("a fine radius");
+            builder.add(BodySpec::movable(&format!("disc of {radius} at {position}"), shape, mass, state))
+        })
+        .collect();
+    let world = build(builder);
+    let target = world.tolerances().target_gap;
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        let places = [a, b].map(|index: usize| world.state(discs[index]).position);
+        let gap = places[0].distance(places[1]) - radii[a] - radii[b];
+        assert!((gap - target).abs() < 0.1 * target, "{a} and {b}: {gap:e} m for {target:e} m");
+    }
+}

@@ -110,14 +110,16 @@ impl RigidSystem {
 
     /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they
     /// would meet the other of its features: they are no nearer than the contact, until that has run off its
-    /// features and they take over.
+    /// features and they take over. So it is with the edges on both sides of corners that are held tip on tip.
     fn leave_ends_alone(&mut self, pair: PairId, touch: &Touch) {
-        let ends = [0, 1].map(|side: usize| {
-            self.flyers[touch.bodies[side].index()].body().shape.ends_of(touch.features[side])
-        });
         let [a, b] = touch.features;
-        let firsts = ends[0].into_iter().flatten().map(|end| [end, b]);
-        let seconds = ends[1].into_iter().flatten().map(|end| [a, end]);
+        let shapes = touch.bodies.map(|body| &self.flyers[body.index()].body().shape);
+        let [next_to_a, next_to_b] = match (shapes[0].sides_of(a), shapes[1].sides_of(b)) {
+            (Some(of_a), Some(of_b)) => [of_a.map(Some), of_b.map(Some)],
+            _ => [shapes[0].ends_of(a), shapes[1].ends_of(b)],
+        };
+        let firsts = next_to_a.into_iter().flatten().map(|next| [next, b]);
+        let seconds = next_to_b.into_iter().flatten().map(|next| [a, next]);
         self.pairs.change_rules(pair, |rules| {
             // What is said of a pair of features first counts.
             rules.extend(firsts.chain(seconds).map(|features| FeatureRule { features, target: None }));
