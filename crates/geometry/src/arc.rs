@@ -60,10 +60,11 @@ impl Arc {
 
     /// The arc from `from` to `to` about the point nearest to `center` that is equally far from both [m].
     ///
-    /// `fit_tol` [m] says by how much the radii at the two ends may differ before the center is moved.
+    /// `fit_tol` [m], which may be infinite, says by how much the radii at the two ends may differ before the
+    /// center is moved.
     ///
     /// # Errors
-    /// Ends that coincide, radii that differ by more than `fit_tol`, or a number that is not finite (`fit_tol` may be infinite).
+    /// Ends that coincide, radii that differ by more than `fit_tol`, or a number that is not finite.
     pub fn between(
         from: DVec2,
         to: DVec2,

@@ -1,10 +1,10 @@
 //! Groups are cut at the time of an event: where their bodies are then, and when that is.
 //!
 //! The search for contacts sees dense output. Where that may err by much of what a step may, the step is made
-//! anew up to the event, so that the restart has full order; the contact that fired is then a little off, and
-//! the time is corrected until it is where the search saw it. Where that does not bring all that touches to
-//! where it was seen, as of what closes slowly, or brings a body into another, the event stays on the dense
-//! output, along which nothing penetrates.
+//! anew up to the event, so that the restart has full order; what fired, a contact, a rope or a stop, is then a
+//! little off, and the time is corrected until it is where the search saw it. Where that does not bring all
+//! that touches to where it was seen, as of what closes slowly, or brings a body into another, the event stays
+//! on the dense output, along which nothing penetrates.
 
 use super::cause::Cause;
 use super::region::{Region, Touch};
