@@ -4,7 +4,6 @@ use super::within;
 use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
 use halfgap::{Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
-use halfgap_tests::world_of;
 use std::f64::consts::FRAC_PI_2;
 
 /// The tolerance of most of these cases.
@@ -145,20 +144,27 @@ fn turning_time(world: &World, body: BodyId, mut early: f64, mut late: f64) -> f
     early
 }
 
-/// Two bars on a hinge at the origin, each 0.2 m wide, with its end 0.1 m from the hinge: as they fold, their corners
-/// run into each other when they are at right angles.
+/// Pins the end of a bar of 0.6 m by 0.2 m, 0.1 m beyond it, to a point of another body [m], with which it collides.
+fn hinge(shop: &mut Workshop, (body, point): (BodyId, DVec2), bar: BodyId) {
+    let kind = ConnectorKind::Pin { a: Anchor { body, point }, b: Anchor { body: bar, point: HINGE } };
+    let pin = Connector::new(kind, 0.0).expect("a fine pin");
+    shop.builder.add_connector(ConnectorSpec { collide: true, ..ConnectorSpec::new(pin) });
+}
+
+/// Where such a bar is pinned [m].
+const HINGE: DVec2 = DVec2::new(-0.4, 0.0);
+
+/// Two bars on a hinge at the origin: as they fold, their corners run into each other when they are at right angles.
 #[test]
 fn bars_that_fold_until_their_corners_meet_stop_before_they_do() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
         let mut shop = Workshop::weightless(tolerance);
-        let still = shop.fixed("still", block(0.6, 0.2), DVec2::new(0.4, 0.0));
+        let still = shop.fixed("still", block(0.6, 0.2), -HINGE);
         let (angle, rate) = (2.2, -1.0);
         let arm = 0.4 * DVec2::from_angle(angle);
         let state = BodyState { position: arm, angle, velocity: rate * arm.perp(), angular_velocity: rate };
         let bar = shop.dull("bar", block(0.6, 0.2), 1.0, state);
-        let ends = [still, bar].map(|body| Anchor { body, point: DVec2::new(-0.4, 0.0) });
-        let pin = Connector::new(ConnectorKind::Pin { a: ends[0], b: ends[1] }, 0.0).expect("a fine pin");
-        shop.builder.add_connector(ConnectorSpec { collide: true, ..ConnectorSpec::new(pin) });
+        hinge(&mut shop, (still, HINGE), bar);
         let mut world = shop.build();
         advance(&mut world, 1.0);
         // The corners are 0.1 sqrt(2) m from the hinge, and the target gap apart.
@@ -168,32 +174,22 @@ fn bars_that_fold_until_their_corners_meet_stop_before_they_do() {
     }
 }
 
-/// Where the end one of three bars is that hang on hinges, after 2.5 s: the first two fold until their corners meet,
-/// and part again.
+/// Where the last of three bars is that stand one on the other on hinges, at angles [rad], 2.5 s after they are let go:
+/// the first two fold until their corners meet, and part again.
 fn hanging_bars(tolerance: f64) -> DVec2 {
-    let places = [
-        "position = [-0.10638555024359216, 0.3855931984609793]\nangle = 1.84",
-        "position = [-0.13299121208815518, 1.1631496214814043]\nangle = 1.37",
-        "position = [-0.0010418401938678823, 1.9516961853175248]\nangle = 1.44",
-    ];
-    let mut scene = format!(
-        "format = \"halfgap-scene-1\"\ntitle = \"Bars\"\nrun = {{ duration = 2.5, tolerance = {tolerance:e} }}\n\
-         force = [{{ gravity = {{ acceleration = [0, -9.81] }} }}]\n"
-    );
-    for (index, place) in places.iter().enumerate() {
-        let (above, point) = match index {
-            0 => ("world".to_owned(), "[0, 0]"),
-            _ => (format!("bar{}", index - 1), "[0.4, 0]"),
-        };
-        scene += &format!(
-            "[[body]]\nname = \"bar{index}\"\nshape = {{ block = {{ width = 0.6, height = 0.2 }} }}\ndensity = 1.0\n\
-             elasticity = 0.0\n{place}\n[[connector]]\n[connector.pin]\ncollide = true\n\
-             a = {{ body = \"{above}\", point = {point} }}\nb = {{ body = \"bar{index}\", point = [-0.4, 0] }}\n"
-        );
+    let mut shop = Workshop::weightless(tolerance);
+    let (mut end, mut above) = (DVec2::ZERO, (BodyId::WORLD, DVec2::ZERO));
+    for (name, angle) in [("first", 1.84), ("second", 1.37), ("third", 1.44)] {
+        let arm = 0.4 * DVec2::from_angle(angle);
+        let state = BodyState { position: end + arm, angle, ..BodyState::default() };
+        let bar = shop.dull(name, block(0.6, 0.2), 0.12, state);
+        shop.builder.add_gravity(bar, DVec2::new(0.0, -9.81));
+        hinge(&mut shop, above, bar);
+        (end, above) = (end + 2.0 * arm, (bar, -HINGE));
     }
-    let mut world = world_of(&scene);
+    let mut world = shop.build();
     advance(&mut world, 2.5);
-    world.state(world.find("bar2").expect("it is there")).position
+    world.state(above.0).position
 }
 
 #[test]

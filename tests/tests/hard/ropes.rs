@@ -76,10 +76,22 @@ fn two_ropes_that_pull_tight_at_once_hold_a_ball() {
     within("two ropes at once, dull: forces [N]", off, 1e-8);
 }
 
+/// How two discs on ropes set out.
+struct Swing {
+    /// Velocity [m/s] and spin [rad/s] of the upper one.
+    velocity: [f64; 2],
+    spin: f64,
+    /// How far beside its middle [m] the ropes are tied to it that lead up and down.
+    ends: [f64; 2],
+    /// Place aside [m] and velocity [m/s] of the lower one.
+    x: f64,
+    below: [f64; 2],
+}
+
 /// Two discs on ropes, one below the other, the lower one elastic, perhaps with a spring beside them; where the
 /// lower one is after a second.
-fn discs_on_ropes(tolerance: f64, [velocity, spin, ends, x, below]: [&str; 5], spring: bool) -> DVec2 {
-    let [first, second] = ends.split_once(' ').map(<[&str; 2]>::from).expect("two ends");
+fn discs_on_ropes(tolerance: f64, swing: &Swing, spring: bool) -> DVec2 {
+    let &Swing { velocity, spin, ends: [first, second], x, below } = swing;
     let spring = match spring {
         true => {
             r#"
@@ -99,14 +111,14 @@ fn discs_on_ropes(tolerance: f64, [velocity, spin, ends, x, below]: [&str; 5], s
         mass = 1.0
         moment = 0.05
         position = [0, -1]
-        velocity = {velocity}
+        velocity = {velocity:?}
         angular_velocity = {spin}
         [[body]]
         name = "b"
         shape = {{ disc = {{ radius = 0.1 }} }}
         mass = 1.0
         position = [{x}, -1.6]
-        velocity = {below}
+        velocity = {below:?}
         [[connector]]
         rope = {{ a = {{ body = "world", point = [0, 0] }}, b = {{ body = "a", point = [{first}, 0.1] }}, length = 1.0, elasticity = 0.0 }}
         [[connector]]
@@ -124,14 +136,14 @@ fn a_rope_that_is_held_hands_on_what_one_below_it_gives() {
     // When the lower rope goes taut, rounding decides whether the upper one opens or closes, and the steps decide
     // where it was when it went taut itself: it is held all the same.
     let swings = [
-        ["[0.02, 0.9]", "-1.42", "0.13 -0.04", "0.27", "[-0.38, -0.15]"],
-        ["[-0.48, -0.81]", "1.26", "0.04 0.18", "0.27", "[0.19, 0.72]"],
-        ["[0.85, 0.32]", "0.77", "-0.11 0.06", "-0.12", "[-0.66, 0.41]"],
+        Swing { velocity: [0.02, 0.9], spin: -1.42, ends: [0.13, -0.04], x: 0.27, below: [-0.38, -0.15] },
+        Swing { velocity: [-0.48, -0.81], spin: 1.26, ends: [0.04, 0.18], x: 0.27, below: [0.19, 0.72] },
+        Swing { velocity: [0.85, 0.32], spin: 0.77, ends: [-0.11, 0.06], x: -0.12, below: [-0.66, 0.41] },
     ];
     let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
     for (spring, beside) in [(false, ""), (true, " and a spring")] {
         let mut largest = 0.0f64;
-        for swing in swings {
+        for swing in &swings {
             let exact = discs_on_ropes(1e-12, swing, spring);
             for tolerance in tolerances {
                 let error = discs_on_ropes(tolerance, swing, spring).distance(exact);

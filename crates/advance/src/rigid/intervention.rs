@@ -4,6 +4,7 @@
 use super::error::AdvanceError;
 use super::event::cause::{Cause, EventWork};
 use super::limits::storms::Recent;
+use super::parts::{FINITE, keep_to};
 use super::system::{Handled, RigidSystem};
 use crate::time::Time;
 use glam::DVec2;
@@ -105,12 +106,16 @@ impl RigidSystem {
 }
 
 fn check_finite(time: Time, changes: &[VelocityChange]) -> Result<(), AdvanceError> {
-    let of_changes = changes.iter().flat_map(|change| {
-        let VelocityChange { velocity, angular_velocity, .. } = *change;
-        [("velocity.x", velocity.x), ("velocity.y", velocity.y), ("angular velocity", angular_velocity)]
-    });
-    match of_changes.chain([("time", time.seconds())]).find(|(_, value)| !value.is_finite()) {
-        Some((quantity, value)) => Err(AdvanceError::BadIntervention { quantity, value }),
-        None => Ok(()),
-    }
+    let check = |numbers: &[(&'static str, f64)]| {
+        let bad = |(quantity, _, value)| AdvanceError::BadIntervention { quantity, value };
+        keep_to(&[(FINITE.0, FINITE.1, numbers)]).map_err(bad)
+    };
+    check(&[("time", time.seconds())])?;
+    changes.iter().try_for_each(|&VelocityChange { velocity, angular_velocity, .. }| {
+        check(&[
+            ("velocity.x", velocity.x),
+            ("velocity.y", velocity.y),
+            ("angular velocity", angular_velocity),
+        ])
+    })
 }

@@ -4,7 +4,7 @@ use super::motion::flyer::FlightLaw;
 use super::motion::law::ForceLaw;
 use super::system::RigidSettings;
 use crate::time::Time;
-use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, ConnectorId};
+use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError};
 use std::sync::Arc;
 
 /// What a system is made of.
@@ -49,10 +49,10 @@ pub enum PartsError {
         value: f64,
     },
     /// A connector has numbers that none can have.
-    #[error("connector {}: {source}", connector.0)]
+    #[error("connector {index}: {source}")]
     BadConnector {
         /// Which.
-        connector: ConnectorId,
+        index: usize,
         /// What is wrong with it.
         source: ConnectorError,
     },
@@ -71,7 +71,7 @@ pub enum PartsError {
 /// Quantities that must keep to a rule.
 type Rule<'a> = (&'static str, fn(f64) -> bool, &'a [(&'static str, f64)]);
 
-const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
+pub(super) const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
 const NOT_NEGATIVE: (&str, fn(f64) -> bool) =
     ("finite, and not negative", |value| value >= 0.0 && value.is_finite());
 const POSITIVE: (&str, fn(f64) -> bool) = ("positive and finite", |value| value > 0.0 && value.is_finite());
@@ -85,13 +85,10 @@ impl RigidParts {
             let bad = |(quantity, rule, value)| PartsError::BadBody { body, quantity, rule, value };
             check_body(part).map_err(bad)?;
         }
-        self.check_names()?;
         for (index, connector) in self.connectors.iter().enumerate() {
-            let connector_id = ConnectorId(u32::try_from(index).unwrap_or(u32::MAX));
-            let bad = |source| PartsError::BadConnector { connector: connector_id, source };
-            connector.check().map_err(bad)?;
+            connector.check().map_err(|source| PartsError::BadConnector { index, source })?;
         }
-        Ok(())
+        self.check_names()
     }
 
     /// Refuses what names bodies that are not there.
@@ -177,7 +174,7 @@ fn check_body((body, law, state): &(Body, FlightLaw, BodyState)) -> Result<(), B
 type Broken = (&'static str, &'static str, f64);
 
 /// The first quantity that breaks its rule, if any.
-fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
+pub(super) fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
     for &(rule, keeps, quantities) in rules {
         if let Some(&(quantity, value)) = quantities.iter().find(|(_, value)| !keeps(*value)) {
             return Err((quantity, rule, value));

@@ -131,7 +131,11 @@ impl ImpactLaw {
             impact.settle_connectors(small)?;
         }
         match self.grouping() {
-            None => impact.solve_all(small.max(quiet.min(NEARLY * impact.fastest)), &mut patience)?,
+            None => {
+                // What rests has been brought to rest by others, to so much.
+                let rest = small.max(quiet.min(NEARLY * impact.fastest));
+                impact.solve_all(rest, &mut patience)?;
+            }
             Some(grouping) => impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?,
         }
         if matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass) {

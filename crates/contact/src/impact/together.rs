@@ -28,17 +28,17 @@ impl Impact {
     }
 
     /// Problems of all rows: each that closes is to rebound, bilateral ones are held, and so are those at rest,
-    /// that open at rates [m/s] up to `slow`: what holds them leaves them some rate of either sign.
+    /// that open at rates [m/s] up to `rest`: what holds them leaves them some rate of either sign.
     ///
     /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it
     /// then closes, it is solved in the next round, with all others that do. Where rows all but depend on
     /// each other, and no impulses hold them all, those found may drive the bodies instead: such a round is
     /// taken back, and what closes is left to be stopped.
-    pub(super) fn solve_all(&mut self, slow: f64, patience: &mut Patience) -> Result<(), ImpactError> {
+    pub(super) fn solve_all(&mut self, rest: f64, patience: &mut Patience) -> Result<(), ImpactError> {
         let mut set = std::mem::take(&mut self.scratch.set);
         let mut outcome = Ok(());
         while outcome.is_ok() && self.is_any_violated(patience.small()) {
-            self.list_held(&mut set, slow);
+            self.list_held(&mut set, rest);
             self.scratch.rates.clone_from(&self.rates);
             self.scratch.impulses.clone_from(&self.impulses);
             outcome = self.rebound_together(&set);
@@ -136,9 +136,9 @@ impl Impact {
         if set.len() > 2 { self.solve_many(set, begin) } else { self.solve_together(set) }
     }
 
-    /// Lists the rows that close or open no faster than `slow` [m/s], and the bilateral ones.
-    fn list_held(&self, set: &mut Vec<usize>, slow: f64) {
-        let limit = self.rest(slow);
+    /// Lists the rows that close or open no faster than `rest` [m/s], and the bilateral ones.
+    fn list_held(&self, set: &mut Vec<usize>, rest: f64) {
+        let limit = self.rest(rest);
         let is_held =
             |&row: &usize| (self.rows[row].bilateral || self.rates[row] <= limit) && self.can_move(row);
         set.clear();

@@ -6,8 +6,9 @@
 //! problem A f + b >= 0, f >= 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in
 //! the displacement, so this is repeated until they fit, by steps along which they are not curved by much.
 //! `tight` knows the pairs for which that cannot be: they keep their gap, and all others are lifted from
-//! where they were given. What is carried beyond its target `regain` brings back. `touching` finds the places where bodies touch, `joined` the rows of connectors,
-//! `correction` solves for displacements and for velocities.
+//! where they were given. What the least displacement carries beyond its target, `regain` brings back: then it
+//! is the least that puts all that was lifted at its target. `touching` finds the places where bodies touch,
+//! `joined` the rows of connectors, `correction` solves for displacements and for velocities.
 
 mod correction;
 mod joined;
