@@ -3,9 +3,9 @@
 //!
 //! That is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. So
 //! what depends on the structure alone is found once: an order of the rows that keeps the factor narrow (see
-//! `order`), and which pairs of rows share a body. A = L D Lᵀ is stored by rows from their first nonzero on,
-//! which for a chain of joints is a few entries a row: A. George, J. Liu, "Computer Solution of Large Sparse
-//! Positive Definite Systems", 1981, chapter 4.
+//! `order`), and which pairs of rows share a body. A = L D Lᵀ is stored by rows from about their first nonzero
+//! on (see `factor`), which for a chain of joints is a few entries a row: A. George, J. Liu, "Computer Solution
+//! of Large Sparse Positive Definite Systems", 1981, chapter 4.
 //!
 //! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot
 //! and no force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of
@@ -14,12 +14,13 @@
 //! bodies, whose rounding all rows share.
 
 mod dependence;
+mod factor;
 mod refining;
 mod structure;
 
 use crate::order::RowOrder;
 use crate::settings::{DOUBTFUL, Settings};
-use crate::skyline::dot;
+use factor::Factor;
 use refining::Refining;
 use structure::Shared;
 
@@ -60,18 +61,13 @@ pub struct HeldRows {
     // From here on by place in that order.
     /// The movable bodies of each row; a body on both sides is named once.
     bodies: Vec<[u32; 2]>,
-    /// Roots of the inverse masses of each row's coefficients.
-    root: Vec<[f64; 6]>,
-    /// Earlier rows that share a body, and where each row's begin.
+    /// Roots of the inverse masses of each row's coefficients, side by side.
+    root: Vec<[[f64; 3]; 2]>,
+    /// Earlier rows that share a body, and where those of each side of each row begin.
     shared: Vec<Shared>,
     shared_start: Vec<usize>,
-    /// First column of each row of the factor, and where the row begins in `factor`.
-    first: Vec<usize>,
-    begin: Vec<usize>,
-    /// L without its diagonal, row by row.
-    factor: Vec<f64>,
-    /// 1/D; 0 for a row that depends on earlier ones.
-    inverse_pivot: Vec<f64>,
+    /// L and 1/D, where a row that depends on earlier ones has no pivot.
+    factor: Factor,
     /// True for rows that depend on each other.
     shares: Vec<bool>,
     /// What the square of each row is raised by, in parts of itself.
@@ -82,8 +78,8 @@ pub struct HeldRows {
     /// Earlier rows leave little of an independent one.
     is_delicate: bool,
     refining: Refining,
-    /// Ĵ = J M^(-1/2).
-    jacobian: Vec<[f64; 6]>,
+    /// Ĵ = J M^(-1/2), side by side.
+    jacobian: Vec<[[f64; 3]; 2]>,
     work: Vec<f64>,
     /// A motion of the bodies, in units of M^(1/2).
     motion: Vec<[f64; 3]>,
@@ -114,10 +110,7 @@ impl HeldRows {
             root: Vec::new(),
             shared: Vec::new(),
             shared_start: Vec::new(),
-            first: Vec::new(),
-            begin: Vec::new(),
-            factor: Vec::new(),
-            inverse_pivot: Vec::new(),
+            factor: Factor::default(),
             shares: Vec::new(),
             raise: Vec::new(),
             is_soft: false,
@@ -156,11 +149,11 @@ impl HeldRows {
         let mut dependent = 0;
         self.is_delicate = false;
         self.shares.fill(false);
+        self.set_entries(jacobians);
         for place in 0..self.len() {
-            let coefficients = &jacobians[self.order.rows[place] as usize];
-            let diagonal = self.scale_row(place, coefficients);
+            let diagonal = self.square(place);
             let raised = self.raise[place] * diagonal;
-            let mut left = (diagonal + raised) - self.eliminate(place);
+            let mut left = (diagonal + raised) - self.factor.eliminate(place);
             let is_doubtful = raised == 0.0 && left <= DOUBTFUL * diagonal;
             if is_doubtful {
                 left = self.measure_rest(place);
@@ -168,7 +161,7 @@ impl HeldRows {
             self.kept[place] = if diagonal > 0.0 { ((left - raised) / diagonal).max(0.0) } else { 0.0 };
             let independent = left > self.dependence * diagonal
                 || (raised == 0.0 && left > RESOLVED * diagonal && self.moves_by_itself(place));
-            self.inverse_pivot[place] = if independent { 1.0 / left } else { 0.0 };
+            self.factor.set_inverse_pivot(place, if independent { 1.0 / left } else { 0.0 });
             self.is_delicate |= is_doubtful && independent;
             if !independent {
                 dependent += 1;
@@ -178,57 +171,41 @@ impl HeldRows {
         dependent
     }
 
-    /// Sets a row of Ĵ and returns its square.
-    fn scale_row(&mut self, place: usize, coefficients: &[f64; 6]) -> f64 {
-        let root = &self.root[place];
-        let mut row: [f64; 6] = std::array::from_fn(|k| coefficients[k] * root[k]);
-        if self.bodies[place][1] == NONE {
-            row = [row[0] + row[3], row[1] + row[4], row[2] + row[5], 0.0, 0.0, 0.0];
+    /// Sets Ĵ, and the entries of A below its diagonal.
+    fn set_entries(&mut self, jacobians: &[[f64; 6]]) {
+        self.factor.clear();
+        let entries = self.factor.entries_mut();
+        for place in 0..self.root.len() {
+            let (coefficients, [p, q]) = (&jacobians[self.order.rows[place] as usize], &self.root[place]);
+            let [a, b, c, d, e, f] = *coefficients;
+            let mut sides = [[a * p[0], b * p[1], c * p[2]], [d * q[0], e * q[1], f * q[2]]];
+            if self.bodies[place][1] == NONE {
+                let [one, other] = sides;
+                sides = [[one[0] + other[0], one[1] + other[1], one[2] + other[2]], [0.0; 3]];
+            }
+            self.jacobian[place] = sides;
+            let earlier = self.jacobian[..place].as_flattened();
+            for (side, [x, y, turn]) in sides.into_iter().enumerate() {
+                let start = &self.shared_start[2 * place + side..];
+                for shared in &self.shared[start[0]..start[1]] {
+                    let theirs = &earlier[shared.side as usize];
+                    entries[shared.position as usize] += x * theirs[0] + y * theirs[1] + turn * theirs[2];
+                }
+            }
         }
-        self.jacobian[place] = row;
-        (row[0] * row[0] + row[1] * row[1] + row[2] * row[2])
-            + (row[3] * row[3] + row[4] * row[4] + row[5] * row[5])
-    }
-
-    /// Computes a row of L; returns the part of the row's square that earlier rows account for.
-    fn eliminate(&mut self, place: usize) -> f64 {
-        let (first, begin) = (self.first[place], self.begin[place]);
-        let (before, rest) = self.factor.split_at_mut(begin);
-        let row = &mut rest[..place - first];
-        row.fill(0.0);
-        let of_side = |row: &[f64; 6], side: u8| row.as_chunks::<3>().0[usize::from(side & 1)];
-        let (earlier, later) = self.jacobian.split_at(place);
-        let own = &later[0];
-        for shared in &self.shared[self.shared_start[place]..self.shared_start[place + 1]] {
-            let other = shared.place as usize;
-            let (own, theirs) = (of_side(own, shared.own), of_side(&earlier[other], shared.theirs));
-            row[other - first] += own[0] * theirs[0] + own[1] * theirs[1] + own[2] * theirs[2];
-        }
-        // Row i of L D by a forward substitution, u_j = A_ij - sum over k < j of L_jk u_k.
-        for j in first + 1..place {
-            let from = self.first[j].max(first);
-            let theirs = &before[self.begin[j] + from - self.first[j]..self.begin[j] + j - self.first[j]];
-            row[j - first] -= dot(theirs, &row[from - first..j - first]);
-        }
-        let mut square = 0.0;
-        for (entry, inverse) in row.iter_mut().zip(&self.inverse_pivot[first..place]) {
-            let scaled = *entry * inverse;
-            square += *entry * scaled;
-            *entry = scaled;
-        }
-        square
     }
 
     /// The square of a row of Ĵ.
     fn square(&self, place: usize) -> f64 {
-        self.jacobian[place].iter().map(|entry| entry * entry).sum()
+        let [p, q] = &self.jacobian[place];
+        (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) + (q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
     }
 
     /// Adds a multiple of a row of Ĵ to the motion.
     fn push(&mut self, place: usize, share: f64) {
-        let row = &self.jacobian[place];
-        for (side, &body) in self.bodies[place].iter().enumerate().filter(|(_, body)| **body != NONE) {
-            for (out, entry) in self.motion[body as usize].iter_mut().zip(&row[3 * side..]) {
+        let sides = self.bodies[place].iter().zip(&self.jacobian[place]);
+        for (&body, row) in sides.filter(|(body, _)| **body != NONE) {
+            for (out, entry) in self.motion[body as usize].iter_mut().zip(row) {
                 *out += share * entry;
             }
         }
@@ -270,24 +247,12 @@ impl HeldRows {
 
     fn solve_raised(&mut self, offset: &[f64], force: &mut [f64]) {
         let rows = &self.order.rows;
-        let work = &mut self.work;
-        for place in 0..work.len() {
-            let (first, begin) = (self.first[place], self.begin[place]);
-            let row = &self.factor[begin..begin + place - first];
-            work[place] = -offset[rows[place] as usize] - dot(row, &work[first..place]);
-        }
-        for (value, inverse) in work.iter_mut().zip(&self.inverse_pivot) {
-            *value *= inverse;
-        }
-        for place in (0..work.len()).rev() {
-            let (first, begin) = (self.first[place], self.begin[place]);
-            let value = work[place];
-            force[rows[place] as usize] = value;
-            let row = &self.factor[begin..begin + place - first];
-            for (out, entry) in work[first..place].iter_mut().zip(row) {
-                *out -= value * entry;
+        let right = |place: usize| rows.get(place).map_or(0.0, |&row| -offset[row as usize]);
+        self.factor.solve(right, |place, value| {
+            if let Some(&row) = rows.get(place) {
+                force[row as usize] = value;
             }
-        }
+        });
     }
 
     /// Adds to the accelerations (x, y, rotation) of every body what the forces change: M⁻¹ Jᵀ f.
@@ -299,13 +264,13 @@ impl HeldRows {
         assert_eq!(force.len(), self.len(), "one force per row");
         assert_eq!(change.len(), self.body_count, "one acceleration per body");
         let rows = self.bodies.iter().zip(&self.order.rows).zip(self.jacobian.iter().zip(&self.root));
-        for ((sides, &index), (row, root)) in rows {
+        for ((bodies, &index), (row, root)) in rows {
             let push = force[index as usize];
-            for (side, &body) in sides.iter().enumerate() {
+            for ((&body, row), root) in bodies.iter().zip(row).zip(root) {
                 // `NONE` is the number of no body.
                 let Some(out) = change.get_mut(body as usize) else { continue };
                 for k in 0..3 {
-                    out[k] += root[3 * side + k] * row[3 * side + k] * push;
+                    out[k] += root[k] * row[k] * push;
                 }
             }
         }
@@ -439,7 +404,10 @@ mod tests {
         assert_eq!(check(&inertia, &rows, &jacobians, &offset), 0);
         let mut held = HeldRows::default();
         held.set_structure(&inertia, &rows);
-        assert!(held.factor.len() <= 3 * rows.len(), "{} entries", held.factor.len());
+        let entries: usize = (0..rows.len())
+            .map(|place| held.factor.entries(place).filter(|entry| *entry != 0.0).count())
+            .sum();
+        assert!(entries <= 3 * rows.len(), "{entries} entries");
     }
 
     #[test]

@@ -41,7 +41,7 @@ impl HeldRows {
     #[must_use]
     pub fn is_dependent(&self, row: usize) -> bool {
         let place = self.order.rows.iter().position(|&other| other as usize == row);
-        place.is_some_and(|place| self.inverse_pivot[place] == 0.0)
+        place.is_some_and(|place| !self.factor.has_pivot(place))
     }
 
     /// Notes which rows one depends on, whose rest has just been measured: those that make up more than rounding of it.
@@ -69,17 +69,20 @@ impl HeldRows {
     /// Ĵ_k|², and what squares are raised by times x_k². That has the rounding of the difference, squared,
     /// where the difference of squares has that of the squares, times what earlier small pivots make of it.
     pub(super) fn measure_rest(&mut self, place: usize) -> f64 {
-        let first = self.first[place];
+        let first = self.factor.first(place);
         self.work[..first].fill(0.0);
-        self.work[first..place].copy_from_slice(&self.factor[self.begin[place]..][..place - first]);
+        self.work[first..place]
+            .iter_mut()
+            .zip(self.factor.entries(place))
+            .for_each(|(share, entry)| *share = entry);
         self.motion.fill([0.0; 3]);
         self.push(place, 1.0);
         for k in (0..place).rev() {
             let share = self.work[k];
             if share != 0.0 {
                 self.push(k, -share);
-                let row = &self.factor[self.begin[k]..][..k - self.first[k]];
-                for (out, entry) in self.work[self.first[k]..k].iter_mut().zip(row) {
+                for (out, entry) in self.work[self.factor.first(k)..k].iter_mut().zip(self.factor.entries(k))
+                {
                     *out -= share * entry;
                 }
             }
@@ -105,9 +108,9 @@ impl HeldRows {
 
     /// Adds what a multiple of a row of Ĵ does to each body to the sums of squares.
     fn add_gross(&mut self, place: usize, share: f64) {
-        let row = &self.jacobian[place];
-        for (side, &body) in self.bodies[place].iter().enumerate().filter(|(_, body)| **body != NONE) {
-            let part: f64 = row[3 * side..3 * side + 3].iter().map(|entry| entry * entry).sum();
+        let sides = self.bodies[place].iter().zip(&self.jacobian[place]);
+        for (&body, row) in sides.filter(|(body, _)| **body != NONE) {
+            let part: f64 = row.iter().map(|entry| entry * entry).sum();
             self.gross[body as usize] += share * share * part;
         }
     }

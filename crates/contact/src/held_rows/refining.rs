@@ -109,13 +109,13 @@ impl HeldRows {
         for place in 0..self.len() {
             self.push(place, force[self.order.rows[place] as usize]);
         }
-        for (place, sides) in self.bodies.iter().enumerate() {
-            let (row, index) = (&self.jacobian[place], self.order.rows[place] as usize);
-            product[index] = 0.0;
-            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
+        for ((bodies, sides), &index) in self.bodies.iter().zip(&self.jacobian).zip(&self.order.rows) {
+            let of_side = |(&body, row): (&u32, &[f64; 3])| {
                 let motion = &self.motion[body as usize];
-                product[index] += (0..3).map(|k| row[3 * side + k] * motion[k]).sum::<f64>();
-            }
+                (0..3).map(|k| row[k] * motion[k]).sum::<f64>()
+            };
+            let sides = bodies.iter().zip(sides).filter(|(body, _)| **body != NONE);
+            product[index as usize] = sides.map(of_side).sum();
         }
     }
 }

@@ -4,12 +4,13 @@
 use super::{HeldRows, NONE};
 use crate::problem::Inertia;
 
-/// An earlier row on a common body, with the side of that body in both rows.
+/// An earlier row on a common body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shared {
-    pub(super) place: u32,
-    pub(super) own: u8,
-    pub(super) theirs: u8,
+    /// The side of that row that has the body, counted row by row.
+    pub(super) side: u32,
+    /// Where the product of the rows lies in the factor.
+    pub(super) position: u32,
 }
 
 impl HeldRows {
@@ -33,9 +34,7 @@ impl HeldRows {
         self.list_shared();
         self.lay_out();
         self.jacobian.clear();
-        self.jacobian.resize(rows.len(), [0.0; 6]);
-        self.inverse_pivot.clear();
-        self.inverse_pivot.resize(rows.len(), 0.0);
+        self.jacobian.resize(rows.len(), [[0.0; 3]; 2]);
         self.kept.clear();
         self.kept.resize(rows.len(), 1.0);
         self.shares.clear();
@@ -60,7 +59,7 @@ impl HeldRows {
         self.order.prepare_narrow(&self.start, &self.column, inertia.len());
     }
 
-    /// Lists the earlier rows that share a body with each.
+    /// Lists the earlier rows that share a body with each side of each row.
     fn list_shared(&mut self) {
         self.head.clear();
         self.head.resize(self.body_count, NONE);
@@ -68,40 +67,37 @@ impl HeldRows {
         self.shared.clear();
         self.shared_start.clear();
         self.shared_start.push(0);
-        for sides in &self.bodies {
-            for (side, &body) in sides.iter().enumerate().filter(|(_, body)| **body != NONE) {
-                let mut at = self.head[body as usize];
-                while at != NONE {
-                    self.shared.push(Shared { place: at / 2, own: side as u8, theirs: (at % 2) as u8 });
-                    at = self.previous[at as usize];
+        for bodies in &self.bodies {
+            for &body in bodies {
+                let mut side = if body == NONE { NONE } else { self.head[body as usize] };
+                while side != NONE {
+                    self.shared.push(Shared { side, position: 0 });
+                    side = self.previous[side as usize];
                 }
+                self.shared_start.push(self.shared.len());
             }
-            for (side, &body) in sides.iter().enumerate() {
-                let at = self.previous.len() as u32;
-                debug_assert_eq!(at % 2, side as u32);
+            for &body in bodies {
+                let side = self.previous.len() as u32;
                 self.previous.push(if body == NONE { NONE } else { self.head[body as usize] });
                 if body != NONE {
-                    self.head[body as usize] = at;
+                    self.head[body as usize] = side;
                 }
             }
-            self.shared_start.push(self.shared.len());
         }
     }
 
-    /// Finds the envelope of the factor.
+    /// Finds the tiles of the factor, and where in them the products of rows are.
     fn lay_out(&mut self) {
-        self.first.clear();
-        self.begin.clear();
-        let mut end = 0;
-        for place in 0..self.bodies.len() {
-            let shared = &self.shared[self.shared_start[place]..self.shared_start[place + 1]];
-            let first = shared.iter().fold(place, |first, other| first.min(other.place as usize));
-            self.first.push(first);
-            self.begin.push(end);
-            end += place - first;
+        let of_row = |place: usize| self.shared_start[2 * place]..self.shared_start[2 * place + 2];
+        let place_of = |shared: &Shared| shared.side as usize / 2;
+        let rows = 0..self.bodies.len();
+        let first = |place| self.shared[of_row(place)].iter().map(place_of).fold(place, usize::min);
+        self.factor.lay_out(rows.clone().map(first));
+        for place in rows {
+            for shared in &mut self.shared[of_row(place)] {
+                shared.position = self.factor.position(place, place_of(shared)) as u32;
+            }
         }
-        self.factor.clear();
-        self.factor.resize(end, 0.0);
     }
 }
 
@@ -115,12 +111,11 @@ fn movable(inertia: &[Inertia], sides: [Option<u32>; 2]) -> [u32; 2] {
 }
 
 /// Roots of the inverse masses on both sides, 0 on an immovable one.
-fn roots(inertia: &[Inertia], sides: [u32; 2]) -> [f64; 6] {
-    let [a, b] = sides.map(|body| {
+fn roots(inertia: &[Inertia], sides: [u32; 2]) -> [[f64; 3]; 2] {
+    sides.map(|body| {
         let rest = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let Inertia { inverse_mass, inverse_moment } =
             if body == NONE { rest } else { inertia[body as usize] };
         [inverse_mass.sqrt(), inverse_mass.sqrt(), inverse_moment.sqrt()]
-    });
-    [a[0], a[1], a[2], b[0], b[1], b[2]]
+    })
 }
