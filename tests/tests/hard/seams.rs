@@ -2,9 +2,11 @@
 //! contacts whose normals hardly differ hold a body altogether if both are stopped.
 
 use super::within;
-use halfgap::geometry::DVec2;
-use halfgap::{BodySpec, BodyState};
+use halfgap::geometry::{DVec2, EdgeSpec};
+use halfgap::{Anchor, BodyId, BodySpec, BodyState, ConnectorKind, RailPath};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// How far along and how high the corners of a floor of tiles are [m].
 type Corner = (f64, f64);
@@ -164,5 +166,72 @@ fn a_block_that_hops_a_little_goes_on_to_slide_over_two_that_hardly_differ_in_sl
                 1e-6 + 0.5 * f64::abs(angle),
             );
         }
+    }
+}
+
+/// A track of two straights of 3 m and two half circles of 1 m, each in so many edges.
+fn cut_stadium(cuts: u32) -> RailPath {
+    let start = DVec2::new(-1.5, -1.0);
+    let (mut at, mut direction) = (start, DVec2::X);
+    let mut edges = Vec::new();
+    for _ in 0..2 {
+        for _ in 0..cuts {
+            at += 3.0 / f64::from(cuts) * direction;
+            edges.push(EdgeSpec::Line { to: at });
+        }
+        let center = at + direction.perp();
+        for cut in 1..=cuts {
+            let to = center + DVec2::from_angle(PI * f64::from(cut) / f64::from(cuts)).rotate(at - center);
+            edges.push(EdgeSpec::Arc { to, center, clockwise: false });
+        }
+        (at, direction) = (center + direction.perp(), -direction);
+    }
+    RailPath::from_edges(start, &edges).expect("a fine track")
+}
+
+#[test]
+fn a_bead_goes_round_a_track_whose_straights_and_arcs_are_cut() {
+    for tolerance in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
+        let mut worst = 0.0f64;
+        for cuts in [1, 2, 3, 7] {
+            let mut shop = Workshop::weightless(tolerance);
+            let bead = shop.body("bead", disc(0.1), 1.0, sliding(DVec2::new(-1.0, -1.0), 2.0));
+            let a = Anchor { body: bead, point: DVec2::ZERO };
+            shop.connect(ConnectorKind::Rail { a, path: Arc::new(cut_stadium(cuts)) }, 0.0);
+            let mut world = shop.build();
+            // Twice round and a metre further, at 2 m/s.
+            advance(&mut world, 0.5 * (2.0 * (6.0 + 2.0 * PI) + 1.0));
+            worst = worst.max((world.state(bead).position - DVec2::new(0.0, -1.0)).length());
+        }
+        within(
+            &format!("bead round a cut track at {tolerance:e}: place, by the tolerance [m]"),
+            worst / tolerance,
+            1.0,
+        );
+    }
+}
+
+#[test]
+fn a_bead_comes_onto_a_rail_from_before_its_first_edge() {
+    for tolerance in [1e-3, 1e-6, 1e-9] {
+        let edges = [
+            EdgeSpec::Line { to: DVec2::new(1.0, 0.0) },
+            EdgeSpec::Arc { to: DVec2::new(1.0, 2.0), center: DVec2::new(1.0, 1.0), clockwise: false },
+            EdgeSpec::Line { to: DVec2::new(0.0, 2.0) },
+        ];
+        let path = RailPath::from_edges(DVec2::ZERO, &edges).expect("a fine rail");
+        let mut shop = Workshop::weightless(tolerance);
+        let bead = shop.body("bead", disc(0.1), 1.0, sliding(DVec2::new(-1.0, 0.0), 1.0));
+        let a = Anchor { body: bead, point: DVec2::ZERO };
+        shop.connect(ConnectorKind::Rail { a, path: Arc::new(path) }, 0.0);
+        let mut world = shop.build();
+        // And beyond its last one.
+        advance(&mut world, 2.0 + PI + 2.0);
+        let off = (world.state(bead).position - DVec2::new(-1.0, 2.0)).length();
+        within(
+            &format!("bead from before a rail at {tolerance:e}: place, by the tolerance [m]"),
+            off / tolerance,
+            1.0,
+        );
     }
 }

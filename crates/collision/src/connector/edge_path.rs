@@ -13,8 +13,6 @@ const FIT: f64 = 1e-6;
 const FLATTEST_BULGE: f64 = 2.5e-8;
 /// A joint that turns by less than this [rad] is smooth.
 const SMOOTH_TURN: f64 = 1e-6;
-/// Curvatures that differ by less than this part of the larger are the same.
-const SAME_CURVATURE: f64 = 1e-9;
 
 /// A point may lie off the path by this part of its length, and where it is looked for along it is not doubted.
 const ASTRAY: f64 = 1e-9;
@@ -275,7 +273,8 @@ fn build_edge(index: usize, from: DVec2, to: DVec2, spec: &EdgeSpec, size: f64) 
     arc.map(Edge::Arc).map_err(|source| RailError::Arc { edge: index, source })
 }
 
-/// The joints at which direction or curvature jump. Pieces and edges differ by the continuations of an open path.
+/// The joints of pieces, also where nothing jumps: who stays on one must be told of the next. Pieces and edges differ by
+/// the continuations of an open path.
 fn find_knots(pieces: &[EdgePiece], edges: &[Edge], closed: bool) -> Vec<RailKnot> {
     let count = pieces.len();
     let directions = |piece: usize| -> [DVec2; 2] {
@@ -293,18 +292,17 @@ fn find_knots(pieces: &[EdgePiece], edges: &[Edge], closed: bool) -> Vec<RailKno
         let ([_, arriving], [leaving, _]) = (directions(before), directions(after));
         let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
         let turn = if turn.abs() < SMOOTH_TURN { 0.0 } else { turn };
-        let curvatures = [pieces[before].curvature(), pieces[after].curvature()];
-        let largest = curvatures[0].abs().max(curvatures[1].abs());
-        if turn != 0.0 || (curvatures[0] - curvatures[1]).abs() > SAME_CURVATURE * largest {
-            let index = |piece: usize| u32::try_from(piece).unwrap_or(u32::MAX);
-            knots.push(RailKnot {
-                arc_length: pieces[after].start,
-                before: index(before),
-                after: index(after),
-                turn,
-                curvatures,
-            });
+        if before == after && turn == 0.0 {
+            continue;
         }
+        let index = |piece: usize| u32::try_from(piece).unwrap_or(u32::MAX);
+        knots.push(RailKnot {
+            arc_length: pieces[after].start,
+            before: index(before),
+            after: index(after),
+            turn,
+            curvatures: [pieces[before].curvature(), pieces[after].curvature()],
+        });
     }
     knots
 }

@@ -58,7 +58,7 @@ pub struct RailHint {
     pub(super) stays: bool,
 }
 
-/// A joint of a path at which its curvature, or even its direction, jumps.
+/// A joint of two pieces of a path, at which its curvature, or even its direction, may jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RailKnot {
     /// Arc length from the path's first point [m].
@@ -141,7 +141,7 @@ impl RailPath {
         matches!(self.curve, Curve::Spline(_))
     }
 
-    /// The joints at which curvature or direction jump, by arc length; a spline has none.
+    /// The joints of lines and arcs, and of an open path with its continuations, by arc length; a spline has none.
     #[must_use]
     pub fn knots(&self) -> &[RailKnot] {
         match &self.curve {

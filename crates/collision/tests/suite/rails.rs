@@ -389,7 +389,7 @@ fn a_hint_that_stays_does_so_beyond_the_joint() {
 }
 
 #[test]
-fn knots_are_where_the_curvature_jumps() {
+fn knots_are_where_pieces_meet() {
     let path = stadium();
     let expected = [0.0, 2.0, 2.0 + 0.5 * PI, 4.0 + 0.5 * PI];
     assert_eq!(path.knots().len(), 4);
@@ -404,10 +404,10 @@ fn knots_are_where_the_curvature_jumps() {
             assert!(((place.arc_length - ahead.arc_length).abs() + 1e-13).rem_euclid(path.length()) < 2e-13);
         }
     }
-    // Round the loop and back along it.
+    // Round the loop and back along it; before and after, the straight continuations.
     let path = loop_the_loop();
-    assert_eq!(path.knots().len(), 2);
-    for (knot, ahead) in [(path.knots()[0], 0.1), (path.knots()[1], -0.1)] {
+    assert_eq!(path.knots().len(), 4);
+    for (knot, ahead) in [(path.knots()[1], 0.1), (path.knots()[2], -0.1)] {
         let expected = path.place_at(knot.arc_length + ahead);
         let place = path.nearest(expected.point(), Some(&path.hint_past(&knot, ahead > 0.0)));
         assert!((place.arc_length - expected.arc_length).abs() < 1e-13 && place.curvature() == 1.0);
@@ -419,6 +419,10 @@ fn knots_are_where_the_curvature_jumps() {
     let halves =
         [EdgeSpec::Bulge { to: at(-1.0, 0.0), bulge: 1.0 }, EdgeSpec::Bulge { to: at(1.0, 0.0), bulge: 1.0 }];
     let circle = RailPath::from_edges(at(1.0, 0.0), &halves).expect("a fine circle");
+    assert!(circle.knots().len() == 2 && circle.is_closed());
+    // Nobody leaves the one piece of a full circle.
+    let whole = [EdgeSpec::Arc { to: at(1.0, 0.0), center: at(0.0, 0.0), clockwise: false }];
+    let circle = RailPath::from_edges(at(1.0, 0.0), &whole).expect("a fine circle");
     assert!(circle.knots().is_empty() && circle.is_closed());
 }
 
@@ -426,7 +430,7 @@ fn knots_are_where_the_curvature_jumps() {
 fn a_corner_is_a_knot_with_a_turn() {
     let edges = [EdgeSpec::Line { to: at(1.0, 0.0) }, EdgeSpec::Line { to: at(1.0, 1.0) }];
     let path = RailPath::from_edges(DVec2::ZERO, &edges).expect("a fine corner");
-    let [knot] = path.knots() else { panic!("one corner: {:?}", path.knots()) };
+    let [_, knot, _] = path.knots() else { panic!("one corner, and two ends: {:?}", path.knots()) };
     assert!((knot.turn - 0.5 * PI).abs() < 1e-15 && knot.arc_length == 1.0);
     // In the cone of the corner the walk ends on either of its sides.
     let place = path.nearest(at(1.1, -0.2), Some(&path.place_at(0.5).hint()));
