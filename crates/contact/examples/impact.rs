@@ -23,6 +23,7 @@ fn corner(side: f64, elasticity: f64) -> CollisionRow {
         elasticity,
         velocity_tol: 1e-9,
         bilateral: false,
+        held: false,
         rate: -SPEED,
     }
 }

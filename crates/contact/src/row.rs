@@ -18,6 +18,8 @@ pub struct CollisionRow {
     pub velocity_tol: f64,
     /// True if the rate must be zero, false if it must not be negative.
     pub bilateral: bool,
+    /// True for what was held until now: if it opens slower than `velocity_tol`, that is what its holding errs by.
+    pub held: bool,
     /// Rate [m/s], negative when closing.
     pub rate: f64,
 }
@@ -34,6 +36,7 @@ impl CollisionRow {
             elasticity: collision.response.elasticity,
             velocity_tol: collision.tolerances.velocity_tol,
             bilateral: collision.parties.bilateral,
+            held: false,
             rate: collision.motion.normal_velocity,
         }
     }
@@ -51,7 +54,7 @@ impl CollisionRow {
         bilateral: bool,
     ) -> Self {
         let response = response(&jacobian, inertia);
-        Self { bodies, jacobian, response, elasticity, velocity_tol, bilateral, rate }
+        Self { bodies, jacobian, response, elasticity, velocity_tol, bilateral, held: false, rate }
     }
 
     /// True if its elasticity acts when it closes at a speed [m/s], now or at the start of the impact.

@@ -5,6 +5,7 @@ use super::law::ImpactError;
 use super::many_rows::Beginning;
 use super::pair_problem::{solve_one, solve_two};
 use super::patience::Patience;
+use crate::row::CollisionRow;
 
 /// Impulses that gain more than this part of all that they turn over are none: a rebound gains nothing but rounding.
 const GAIN: f64 = 1e-3;
@@ -136,11 +137,16 @@ impl Impact {
         if set.len() > 2 { self.solve_many(set, begin) } else { self.solve_together(set) }
     }
 
-    /// Lists the rows that close or open no faster than `rest` [m/s], and the bilateral ones.
+    /// Lists the rows that close or open no faster than `rest` [m/s], the bilateral ones, and those that were
+    /// held and have not opened in earnest.
     fn list_held(&self, set: &mut Vec<usize>, rest: f64) {
         let limit = self.rest(rest);
-        let is_held =
-            |&row: &usize| (self.rows[row].bilateral || self.rates[row] <= limit) && self.can_move(row);
+        let is_slow =
+            |row: &CollisionRow, rate| rate <= if row.held { limit.max(row.velocity_tol) } else { limit };
+        let is_held = |&index: &usize| {
+            let row = &self.rows[index];
+            (row.bilateral || is_slow(row, self.rates[index])) && self.can_move(index)
+        };
         set.clear();
         set.extend((0..self.rows.len()).filter(is_held));
     }
@@ -211,9 +217,9 @@ impl Impact {
 
 #[cfg(test)]
 mod tests {
+    use super::super::law::{ImpactLaw, ImpactOrder};
     use super::*;
     use crate::problem::Inertia;
-    use crate::row::CollisionRow;
     use halfgap_collision::BodyId;
 
     #[test]
@@ -232,6 +238,31 @@ mod tests {
             assert_eq!((impact.solves(), impact.active_rows()), (1, 8));
             assert!(impact.rates().iter().all(|rate| rate.abs() <= impact.bound()), "{:?}", impact.rates());
         }
+        Ok(())
+    }
+
+    #[test]
+    fn what_was_held_is_struck_with_the_rest_though_it_opens_by_rounding() -> Result<(), ImpactError> {
+        // A disc strikes another, which a third lies against.
+        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
+        let row = |place: u32, rate| {
+            CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 1.0, 1e-6, false)
+        };
+        let strike = |rate: f64, held: bool| {
+            let mut impact = Impact::new();
+            impact.set_rows([row(0, -1.0), CollisionRow { held, ..row(1, rate) }]);
+            ImpactLaw::Simultaneous.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
+            Ok([impact.rates()[0], impact.rates()[1]])
+        };
+        let at_rest = strike(0.0, true)?;
+        let opening = strike(1e-7, true)?;
+        assert!(
+            at_rest.iter().zip(opening).all(|(rest, opening)| (rest - opening).abs() < 1e-6),
+            "{opening:?}"
+        );
+        // What opens in earnest, or was not held, is driven together later, and parts.
+        assert!(strike(1e-5, true)?[1] > 0.5 && strike(1e-7, false)?[1] > 0.5);
         Ok(())
     }
 }

@@ -45,6 +45,7 @@ impl Touch {
             elasticity: self.elasticity,
             velocity_tol: 1e-9,
             bilateral: false,
+            held: false,
             rate: (0..6).map(|k| jacobian[k] * side(k).velocity[k % 3]).sum(),
         }
     }

@@ -107,7 +107,8 @@ impl RigidSystem {
         let rows = region.records.iter().map(|record| {
             let row = self.row_of(record);
             let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
-            CollisionRow { elasticity, ..row }
+            let held = row.rate > self.rest_speed() && self.is_likely(record).is_some();
+            CollisionRow { elasticity, held, ..row }
         });
         impact.set_rows(rows);
     }

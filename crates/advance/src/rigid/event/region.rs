@@ -196,8 +196,7 @@ impl RigidSystem {
         let takes_over = region.cause.run_off().is_some_and(|run_off| run_off.bodies == bodies);
         fresh.retain(|record| {
             self.counts_as_touching(record, bodies, region.cause == Cause::Start, takes_over)
-                && !self.is_passed_over(record)
-                && !self.is_grazing(record)
+                && (!(self.is_passed_over(record) || self.is_grazing(record)) || self.is_carried(record))
         });
         // What has fired takes part, and what is put back at a tick, though it may have been moved out of its
         // zone, or may have turned by a little since: where a block lies flat, to put back one of its corners
@@ -228,7 +227,8 @@ impl RigidSystem {
 
     /// True if a record takes part in an event: what is at its target or nearer, what closes within the
     /// target zone, and what was held already, or from the start, or takes over from a contact that has run
-    /// off its features. Other rows have room, and fire in their own time if they come to close.
+    /// off its features. What carries a force does, though dense output may have it closing or opening
+    /// faster than what rests. Other rows have room, and fire in their own time if they come to close.
     fn counts_as_touching(
         &self,
         record: &Collision,
@@ -244,6 +244,7 @@ impl RigidSystem {
             || (record.zone() >= Zone::Target && rate < -rest)
             || at_start
             || (rate.abs() <= rest && (takes_over || self.is_held_contact(record, bodies)))
+            || self.is_carried(record)
     }
 
     /// True if a contact is held now: the search leaves it alone.
@@ -253,6 +254,13 @@ impl RigidSystem {
             return false;
         };
         self.pairs.rules(pair).contains(&touch.skipped())
+    }
+
+    /// True if a contact is a row of the group of its bodies.
+    fn is_carried(&self, record: &Collision) -> bool {
+        let Some(touch) = Touch::of(record) else { return false };
+        let mut groups = touch.bodies.into_iter().filter_map(|body| self.group_of(body));
+        groups.any(|group| group.rows.iter().any(|row| row.touch() == Some(touch)))
     }
 
     /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does
