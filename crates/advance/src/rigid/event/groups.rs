@@ -4,7 +4,6 @@ use super::connectors::{is_rope, is_stop};
 use super::region::{Region, Touch};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::limits::repeats::is_same_time;
 use crate::rigid::search::pairs::Prediction;
 use crate::rigid::sources::Source;
 use crate::rigid::step::brief::Past;
@@ -389,7 +388,7 @@ impl RigidSystem {
     fn start_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
         (group.start, group.made) = (self.now, self.now);
-        group.is_patient = self.last_pull.is_some_and(|last| is_same_time(last, self.now));
+        group.is_patient = self.has_pulled(self.now);
         let count = group.bodies.len();
         let dimension = group.dimension();
         let mut inertias = std::mem::take(&mut self.groups.inertias);

@@ -98,6 +98,9 @@ impl RigidSystem {
         while self.drop_idle(region, settling, stage) {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
+        if self.has_pulled(time) {
+            self.spare_redundant(region, settling);
+        }
         self.choose_rows(region, settling, time);
         Ok(())
     }

@@ -4,6 +4,7 @@
 //! Which rows are candidates, and which of them are held, is decided in `settle`.
 
 use super::levers::Levers;
+use super::redundant::Redundant;
 use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::report::RowForce;
 use crate::rigid::step::rows::HeldRow;
@@ -32,6 +33,7 @@ pub(crate) struct Settling {
     /// Contacts left out of it because they hold by next to no lever: they may come as near as what grazes.
     pub(super) passing: Vec<Touch>,
     pub(super) levers: Levers,
+    pub(super) redundant: Redundant,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
     /// Records that opened in spite of all that presses on them when their low hops were stilled: they leave.
@@ -75,6 +77,7 @@ impl Default for Settling {
             dropped: Vec::new(),
             passing: Vec::new(),
             levers: Levers::default(),
+            redundant: Redundant::default(),
             likely: Vec::new(),
             leaving: Vec::new(),
             forces: Vec::new(),

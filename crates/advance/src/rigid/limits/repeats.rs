@@ -14,6 +14,11 @@ const MOST_REPEATS: u32 = 100;
 const SAME_TIME: f64 = 4.0;
 
 impl RigidSystem {
+    /// True if a contact has pulled as it was held at a time.
+    pub(crate) fn has_pulled(&self, time: Time) -> bool {
+        self.last_pull.is_some_and(|last| is_same_time(last, time))
+    }
+
     /// How often more than is calm a pair has fired at the present time.
     pub(crate) fn repeats_beyond_calm(&self, pair: PairId) -> u32 {
         let past = self.pairs.past(pair);

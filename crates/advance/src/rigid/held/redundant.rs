@@ -1,0 +1,53 @@
+//! Contacts of which one can be spared: where rows depend on each other, their forces leave open which of them
+//! carries how much. The forces of what is held are found by elimination, which leaves out one of them; if
+//! that is the wrong one, others pull.
+
+use super::settling::Settling;
+use crate::rigid::event::region::Region;
+use crate::rigid::system::RigidSystem;
+use halfgap_contact::{HeldRows, Inertia};
+
+/// Buffers: the rows of the candidates, and their forces [N].
+#[derive(Debug, Default)]
+pub(super) struct Redundant {
+    held: HeldRows,
+    inertia: Vec<Inertia>,
+    sides: Vec<[Option<u32>; 2]>,
+    jacobians: Vec<[f64; 6]>,
+    forces: Vec<f64>,
+}
+
+impl RigidSystem {
+    /// Spares candidates until none depends on the others, such that the forces of those that are left do
+    /// not pull, if those that were found did not.
+    pub(super) fn spare_redundant(&self, region: &mut Region, settling: &mut Settling) {
+        let Settling { candidates, redundant, .. } = settling;
+        let Redundant { held, inertia, sides, jacobians, forces } = redundant;
+        inertia.clear();
+        inertia.extend(region.bodies.iter().map(|&body| self.inertia(body)));
+        let records = || candidates.iter().map(|&index| &region.records[index]);
+        sides.clear();
+        let place = |body| region.place(body).and_then(|place| u32::try_from(place).ok());
+        sides.extend(records().map(|record| record.bodies().map(place)));
+        jacobians.clear();
+        jacobians.extend(records().map(|record| record.motion.kinematics.jacobian));
+        forces.clear();
+        forces.extend(records().map(|record| record.response.force.unwrap_or_default()));
+        loop {
+            held.set_structure(inertia, sides);
+            if held.factorize(jacobians) == 0 {
+                break;
+            }
+            let may_pull = |row: usize| region.records[candidates[row]].parties.bilateral;
+            let Some(row) = held.spare(forces, may_pull) else { break };
+            region.records[candidates[row]].response.force = Some(0.0);
+            candidates.remove(row);
+            sides.remove(row);
+            jacobians.remove(row);
+            forces.remove(row);
+        }
+        for (&index, &force) in candidates.iter().zip(&*forces) {
+            region.records[index].response.force = Some(force);
+        }
+    }
+}
