@@ -186,3 +186,30 @@ fn stops_back_to_back_on_a_ring_are_refused() {
     );
     scene("at = 0.1, upper = false;at = 6.1, upper = true").expect("there is room between them");
 }
+
+#[test]
+fn a_stop_lets_go_what_has_left_its_spline_by_the_other_end() {
+    // Most of a circle, from which the bead sets out backwards. It comes nearer to the other end than to its own.
+    let angles = (0..9).map(|place| 0.3 + 0.7 * f64::from(place));
+    let points: Vec<String> = angles.map(|angle| format!("[{}, {}]", angle.cos(), angle.sin())).collect();
+    let rail = format!(
+        "a = {{ body = \"bead\", point = [0.0, 0.0] }}, path = {{ points = [{}] }}",
+        points.join(", ")
+    );
+    let scene = |stop: &str| {
+        let (sin, cos) = 1.0f64.sin_cos();
+        world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 5.0 }}\n\
+             [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+             position = [{cos}, {sin}]\nvelocity = [{sin}, {}]\n[[connector]]\nrail = {{ {rail} }}\n{stop}",
+            -cos
+        ))
+    };
+    let end = |mut world: World| {
+        world.advance_to(5.0, &mut |_| {}).expect("it goes on");
+        world.state(world.find("bead").expect("the bead")).position
+    };
+    let stopped = scene(&format!("[[connector]]\nrail_stop = {{ {rail}, at = 4.0, upper = true }}\n"));
+    let (free, stopped) = (end(scene("")), end(stopped));
+    assert!((free - stopped).length() < 1e-9, "{stopped}, not {free}");
+}

@@ -17,7 +17,7 @@ const SMOOTH_TURN: f64 = 1e-6;
 /// A point may lie off the path by this part of its length, and where it is looked for along it is not doubted.
 const ASTRAY: f64 = 1e-9;
 /// A place elsewhere on the path is the right one if the point is nearer to it by this factor.
-const NEARER: f64 = 0.5;
+pub(super) const NEARER: f64 = 0.5;
 
 /// The path. An open one has its two continuations as first and last piece.
 #[derive(Clone, Debug, PartialEq)]

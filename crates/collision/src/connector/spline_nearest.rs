@@ -7,6 +7,7 @@
 //! method in a bracket; what allows neither is split. From the best of these it goes on as from a hint.
 
 use super::cubic::Cubic;
+use super::edge_path::NEARER;
 use super::path::{Foot, RailHint};
 use super::spline::Spline;
 use glam::DVec2;
@@ -44,8 +45,27 @@ struct Part {
 impl Spline {
     #[inline]
     pub(super) fn foot(&self, point: DVec2, hint: Option<&RailHint>) -> Foot {
-        let near = hint.and_then(|hint| self.foot_from(point, (hint.piece as usize, hint.parameter)));
-        near.unwrap_or_else(|| self.foot_of_all(point))
+        let Some(hint) = hint else { return self.foot_of_all(point) };
+        self.foot_from(point, (hint.piece as usize, hint.parameter))
+            .unwrap_or_else(|| self.foot_of_seen(point))
+    }
+
+    /// The foot of a point that was seen elsewhere on the curve, and may have left it by an open end: on a
+    /// straight continuation, if that is nearer by far.
+    fn foot_of_seen(&self, point: DVec2) -> Foot {
+        let last = self.pieces.len() - 1;
+        let on_curve = self.foot_of_all(point);
+        let ends = [(0, 0.0, -1.0), (last, self.pieces[last].width, 1.0)];
+        let beyond = ends.into_iter().filter(|_| !self.closed).filter_map(|(piece, end, outward)| {
+            let jet = self.jet(piece, end);
+            let ahead = (point - jet.point).dot(jet.slope) / jet.slope.length_squared();
+            (outward * ahead > 0.0).then(|| jet.straight_on(ahead).foot(piece, end + ahead, point))
+        });
+        let off = |foot: &Foot| (point - foot.point).length();
+        beyond
+            .filter(|foot| off(foot) < NEARER * off(&on_curve))
+            .min_by(|p, q| off(p).total_cmp(&off(q)))
+            .unwrap_or(on_curve)
     }
 
     /// The foot found from another place; `None` if the distance is not convex there, or if it is far away.
