@@ -262,7 +262,8 @@ impl World {
         let least = SELDOM * scales.usual;
         let is_told = |energy: &f64| {
             let is_much = exceeds(*energy, books, turned_over.max(least), share);
-            is_much && (scales.usual > 0.0 || energy.is_nan() || *energy > scales.lost)
+            let least = if scales.usual > 0.0 { scales.left } else { scales.lost };
+            is_much && (energy.is_nan() || *energy > least)
         };
         let open = Some(books.error().abs()).filter(is_told);
         findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
@@ -293,6 +294,7 @@ impl World {
             let turned = turned_over.max(SELDOM * scales.usual);
             (share * turned + books_rounding(books, turned)).max(ROUGH * scales.rough)
         };
+        let allowed = allowed + scales.left;
         let error = books.error().abs();
         if error.is_nan() || error > allowed {
             return Some(Finding::OpenBooks { error, turned_over });

@@ -55,6 +55,8 @@ pub(crate) struct EnergyScales {
     pub(crate) rough: f64,
     /// The work of its forces within the tolerance of its bodies' sizes, and the energy of a speed that is rounding.
     pub(crate) lost: f64,
+    /// Rounding of what the start was corrected by: velocities that were taken away are not left as zeros.
+    pub(crate) left: f64,
 }
 
 /// Room for looks, used again and again.

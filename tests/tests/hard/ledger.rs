@@ -288,3 +288,22 @@ fn books_are_weighed_by_what_goes_on_between_looks() {
         );
     }
 }
+
+#[test]
+fn what_stands_still_once_its_start_was_corrected_is_at_rest() {
+    // A disc that a pin and a rod hold altogether is given a velocity: what is left of it is rounding, of which
+    // projections may take as much as there is.
+    for tolerance in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
+        let report = run_to_the_end(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"held\"\nrun = {{ duration = 1.0, tolerance = {tolerance:e} }}\n\
+             [[body]]\nname = \"disc\"\nshape = {{ disc = {{ radius = 0.3 }} }}\nmass = 0.7\n\
+             position = [0.1, 0.3]\nvelocity = [1.3, 0.7]\nangular_velocity = 0.3\n\
+             [[connector]]\npin = {{ a = {{ body = \"disc\", point = [0.1, 0.2] }}, \
+             b = {{ body = \"world\", point = [0.2, 0.5] }} }}\n\
+             [[connector]]\nrod = {{ a = {{ body = \"disc\", point = [0.2, -0.1] }}, \
+             b = {{ body = \"world\", point = [1.0, 1.0] }}, length = 1.0630145812734648 }}\n"
+        ));
+        let is_quiet = report.error.is_none() && report.findings.is_empty();
+        assert!(is_quiet, "{tolerance:e}: {:?} {:?}", report.error, report.findings);
+    }
+}

@@ -3,7 +3,7 @@
 
 use super::within;
 use halfgap::geometry::{DVec2, EdgeSpec};
-use halfgap::{Anchor, BodyId, BodySpec, BodyState, ConnectorKind, RailPath};
+use halfgap::{Anchor, BodySpec, BodyState, ConnectorKind, RailPath};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
 use std::f64::consts::PI;
 use std::sync::Arc;

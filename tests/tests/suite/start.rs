@@ -2,8 +2,10 @@
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{BodyId, BodyState, Event, ToleranceOverrides, World, WorldBuilder, WorldSettings};
-use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
+use halfgap::{
+    Anchor, BodyId, BodyState, ConnectorKind, Event, ToleranceOverrides, World, WorldBuilder, WorldSettings,
+};
+use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, connector_error, disc, thrown};
 use halfgap_tests::{on_floor, world_of};
 
 /// A builder of worlds in which what closes at less than 0.5 m/s is caught.
@@ -188,5 +190,24 @@ fn a_ball_bounces_before_time_zero_as_it_does_after() {
         advance(&mut world, start + 40.0);
         assert!(world.statistics().impacts > 50, "{:?}", world.statistics());
         assert!((world.energy().total() - energy).abs() < 1e-9, "{:?}", world.ledger());
+    }
+}
+
+#[test]
+fn pins_that_contradict_each_other_by_less_than_the_tolerance_start_as_they_are() {
+    // Two discs on two pins, of which the second lies a little farther off on one of them.
+    for off in [1e-13, 1e-12, 1e-11, 1e-10] {
+        let mut shop = Workshop::new(1e-6);
+        let first = shop.body("first", disc(0.5), 3.0, thrown(0.0, 0.0, DVec2::new(1.0, 0.3)));
+        let second = shop.body("second", disc(0.5), 0.2, thrown(2.0, 0.5, DVec2::new(1.0, 0.3)));
+        for (place, off) in [(DVec2::new(0.7, -0.4), 0.0), (DVec2::new(-0.2, 0.9), off)] {
+            let a = shop.anchor(second, place);
+            let b = Anchor { point: place + DVec2::new(off, 0.0), ..shop.anchor(first, place) };
+            shop.connect(ConnectorKind::Pin { a, b }, 0.0);
+        }
+        let mut world = shop.builder.build().unwrap_or_else(|error| panic!("{off:e} m off: {error}"));
+        advance(&mut world, 1.0);
+        let error = connector_error(&world);
+        assert!(error < 2.0 * off, "{off:e} m off: {error:e} m");
     }
 }

@@ -212,6 +212,7 @@ impl WorldBuilder {
             usual: usual_energy(&bodies, forces) + torques,
             rough: tolerances.target_gap * forces,
             lost: lost_energy(&bodies, forces, &self.settings),
+            left: f64::EPSILON * start.energy_change.abs(),
         };
         let sentry = Sentry::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales, tolerances);

@@ -113,12 +113,17 @@ pub(crate) fn correct_start(
             break;
         }
         let goes_on = !is_done && rounds.are_left();
+        let may_stay = too_near.is_none() && error <= rules.contradiction;
         let failure = cannot_correct(too_near, overlap, off, named, connectors);
         if goes_on {
             known.complete(&mut records, bodies, rules);
             if let Some(share) = correct_positions(bodies, &records, connectors) {
                 rounds.note(share, error);
                 continue;
+            }
+            // Connectors that contradict each other by so little are as near together as they come.
+            if may_stay && deep_overlap(bodies, pairs, rules.rounding, &ways).is_none() {
+                break;
             }
         }
         // Where it has led is of no use: what can be lifted is lifted anew, without what cannot.
@@ -130,7 +135,7 @@ pub(crate) fn correct_start(
         known.clear();
     }
     regain_touches(bodies, (&lifted, &given), connectors, (rules, &mut near));
-    let apart = correct_velocities(bodies, named, connectors)?;
+    let apart = correct_velocities(bodies, named, connectors, rules.tolerances.velocity_tol)?;
     let moves =
         bodies.iter().zip(&given).map(|((_, _, state), given)| state.position.distance(given.position));
     Ok(Corrected { displacement: moves.fold(0.0, f64::max), apart })
