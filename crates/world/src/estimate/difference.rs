@@ -15,8 +15,8 @@ pub struct Difference {
     pub angle: f64,
     /// Of its velocity [m/s].
     ///
-    /// A body that collides just then has two velocities, and both runs may differ about which comes first:
-    /// it is left out.
+    /// A body that collides just then has two velocities, and while it has collided in one of the two runs
+    /// only, those differ by the blow: it is left out.
     pub velocity: f64,
     /// Of its angular velocity [rad/s], likewise.
     pub angular_velocity: f64,
@@ -68,8 +68,8 @@ impl Comparison {
         common(run, tighter).map(shift).collect()
     }
 
-    /// At each common time: the differences of all bodies; `window` [s] is how near an impact velocities are
-    /// not compared.
+    /// At each common time: the differences of all bodies; `window` [s] is how near an impact velocities may
+    /// not be compared.
     pub(super) fn curve(
         &self,
         run: &Recording,
@@ -78,8 +78,7 @@ impl Comparison {
         window: f64,
     ) -> Vec<TimedDifference> {
         let of_body = |time: f64, body: BodyId, [a, b]: [&halfgap_collision::BodyState; 2]| {
-            let collides = times.iter().any(|times| times.has_impact(body, time, window));
-            let moving = if collides { 0.0 } else { 1.0 };
+            let moving = if EventTimes::is_between(times, body, time, window) { 0.0 } else { 1.0 };
             Difference {
                 position: a.position.distance(b.position),
                 angle: (a.angle - b.angle).abs(),

@@ -2,45 +2,54 @@
 //!
 //! Two runs need not have the same impacts: a body that bounces to rest bounces longer at a tighter
 //! tolerance, and what is one impact of two corners may be two. So impacts are not counted off against each
-//! other: each is compared with the nearest of the same pair.
+//! other: those of a body belong together of which each is the nearest to the other in its run. Pairs would
+//! not do: which of those that touch get an impulse may be decided by rounding.
 
 use crate::recording::Recording;
 use halfgap_collision::BodyId;
 use std::collections::BTreeMap;
 
-/// Times of the impacts of a run [s], ascending, by pair of bodies and by body.
+/// Times of the impacts of a run [s], ascending, by body.
 pub(super) struct EventTimes {
-    of_pair: BTreeMap<[BodyId; 2], Vec<f64>>,
     of_body: BTreeMap<BodyId, Vec<f64>>,
 }
 
 impl EventTimes {
     /// Those up to the given time [s].
     pub(super) fn new(recording: &Recording, until: f64) -> Self {
-        let mut times = Self { of_pair: BTreeMap::new(), of_body: BTreeMap::new() };
+        let mut of_body = BTreeMap::new();
         for impact in recording.impacts.iter().filter(|impact| impact.time <= until) {
-            for row in &impact.rows {
-                let pair = [row.primary.min(row.normal_body), row.primary.max(row.normal_body)];
-                note(times.of_pair.entry(pair).or_default(), impact.time);
-            }
             for (body, _) in &impact.states {
-                note(times.of_body.entry(*body).or_default(), impact.time);
+                note(of_body.entry(*body).or_default(), impact.time);
             }
         }
-        times
+        Self { of_body }
     }
 
-    /// The largest difference [s] of an impact of this run to the nearest one of the same pair in the other.
+    /// The largest difference [s] of two impacts that belong together; `None` if none do.
     ///
-    /// A pair that never collides in the other run has no time there: states tell of that.
+    /// An impact that the other run does not have has no time there: states tell of that.
     pub(super) fn largest_difference(&self, other: &Self) -> Option<f64> {
-        let both = self.of_pair.iter().filter_map(|(pair, times)| Some((times, other.of_pair.get(pair)?)));
-        both.flat_map(|(times, others)| times.iter().map(|&time| distance_to(others, time))).reduce(f64::max)
+        let both = self.of_body.iter().filter_map(|(body, times)| Some((times, other.of_body.get(body)?)));
+        let differences = both.flat_map(|(times, others)| {
+            times.iter().filter_map(|&time| {
+                let there = nearest(others, time)?;
+                (nearest(times, there) == Some(time)).then_some((there - time).abs())
+            })
+        });
+        differences.reduce(f64::max)
     }
 
-    /// True if the body has an impact within the window [s] of a time [s].
-    pub(super) fn has_impact(&self, body: BodyId, time: f64, window: f64) -> bool {
-        self.of_body.get(&body).is_some_and(|times| distance_to(times, time) <= window)
+    /// True if a body has an impact within the window [s] of a time [s] that is over in one run only, as far
+    /// as can be told.
+    pub(super) fn is_between(runs: &[Self; 2], body: BodyId, time: f64, window: f64) -> bool {
+        let times = runs.each_ref().map(|run| run.of_body.get(&body).map_or(&[][..], Vec::as_slice));
+        let is_near = |times: &[f64]| nearest(times, time).is_some_and(|near| (near - time).abs() <= window);
+        let [of_run, of_tighter] = times.map(|times| {
+            [times.partition_point(|&other| other < time), times.partition_point(|&other| other <= time)]
+        });
+        let is_told = of_run == of_tighter && of_run[0] == of_run[1];
+        !is_told && times.into_iter().any(is_near)
     }
 }
 
@@ -51,22 +60,46 @@ fn note(times: &mut Vec<f64>, time: f64) {
     }
 }
 
-/// Distance [s] of a time to the nearest of some, which ascend; infinite if there are none.
-fn distance_to(times: &[f64], time: f64) -> f64 {
+/// The nearest to a time [s] of some, which ascend; `None` if there are none.
+fn nearest(times: &[f64], time: f64) -> Option<f64> {
     let after = times.partition_point(|&other| other < time);
-    let near = times[after.saturating_sub(1)..].iter().take(2);
-    near.map(|other| (other - time).abs()).fold(f64::INFINITY, f64::min)
+    let near = times[after.saturating_sub(1)..].iter().take(2).copied();
+    near.min_by(|one, other| (one - time).abs().total_cmp(&(other - time).abs()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const BODY: BodyId = BodyId(1);
+
+    fn run(times: &[f64]) -> EventTimes {
+        EventTimes { of_body: BTreeMap::from([(BODY, times.to_vec())]) }
+    }
+
     #[test]
     fn the_nearest_time_counts() {
         let times = [1.0, 2.0, 4.0];
-        let distances = [0.25, 1.0, 1.75, 3.5, 9.0].map(|time| distance_to(&times, time));
-        assert_eq!(distances, [0.75, 0.0, 0.25, 0.5, 5.0]);
-        assert_eq!(distance_to(&[], 1.0), f64::INFINITY);
+        let found = [0.25, 1.0, 1.75, 3.5, 9.0].map(|time| nearest(&times, time));
+        assert_eq!(found, [1.0, 1.0, 2.0, 4.0, 4.0].map(Some));
+        assert_eq!(nearest(&[], 1.0), None);
+    }
+
+    #[test]
+    fn an_impact_that_one_run_has_to_itself_is_nobodys_time() {
+        let (run, tighter) = (run(&[1.0, 2.0]), run(&[1.01, 1.5, 2.0]));
+        for difference in [run.largest_difference(&tighter), tighter.largest_difference(&run)] {
+            assert!(difference.is_some_and(|difference| (difference - 0.01).abs() < 1e-15), "{difference:?}");
+        }
+    }
+
+    #[test]
+    fn velocities_are_left_out_between_two_impacts_that_belong_together() {
+        let runs = [run(&[1.0, 2.0]), run(&[1.01, 2.0])];
+        let is_between = |time: f64| EventTimes::is_between(&runs, BODY, time, 0.01);
+        assert_eq!([0.995, 1.005, 1.015, 1.5].map(is_between), [false, true, false, false]);
+        // Just then states may be those before or those after.
+        assert!(is_between(2.0));
+        assert!(!EventTimes::is_between(&runs, BodyId(2), 1.005, 0.01));
     }
 }
