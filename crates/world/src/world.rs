@@ -345,6 +345,8 @@ impl World {
     /// Advances to a time [s], telling of each event in order; nothing happens if that is in the past.
     ///
     /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
+    /// An impact that comes just before it, by no more than its time is known to, may be left to the next advance, which
+    /// tells it with its own time; of one at that very time the next may tell, too.
     ///
     /// # Errors
     /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever

@@ -17,7 +17,8 @@ pub enum ImpactLaw {
     /// after another otherwise.
     #[default]
     Hybrid,
-    /// One row at a time, connectors too. The only law in which a connector's elasticity acts.
+    /// One row at a time, connectors too. The only law in which a connector's elasticity acts. A pin is two
+    /// rows along the axes of the world, and what comes out may depend on these.
     SerialSeparate,
     /// One row at a time, with all connectors that it reaches through movable bodies.
     SerialGrouped,
