@@ -4,6 +4,7 @@
 
 use super::settling::Settling;
 use crate::rigid::event::region::Region;
+use crate::rigid::step::dynamics::Stage;
 use crate::rigid::system::RigidSystem;
 use halfgap_contact::{HeldRows, Inertia};
 
@@ -19,8 +20,8 @@ pub(super) struct Redundant {
 
 impl RigidSystem {
     /// Spares candidates until none depends on the others, such that the forces of those that are left do
-    /// not pull, if those that were found did not.
-    pub(super) fn spare_redundant(&self, region: &mut Region, settling: &mut Settling) {
+    /// not pull, if those that were found did not. What jams contradicts itself: of that none is spared.
+    pub(super) fn spare_redundant(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
         let Settling { candidates, redundant, .. } = settling;
         let Redundant { held, inertia, sides, jacobians, forces } = redundant;
         inertia.clear();
@@ -33,6 +34,10 @@ impl RigidSystem {
         jacobians.extend(records().map(|record| record.motion.kinematics.jacobian));
         forces.clear();
         forces.extend(records().map(|record| record.response.force.unwrap_or_default()));
+        let of_contacts = records().zip(&*forces).filter(|(record, _)| !record.parties.bilateral);
+        if self.is_jam(region, stage, of_contacts.fold(0.0, |most, (_, force)| most.max(force.abs()))) {
+            return;
+        }
         loop {
             held.set_structure(inertia, sides);
             if held.factorize(jacobians) == 0 {

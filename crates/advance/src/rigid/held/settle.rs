@@ -99,7 +99,7 @@ impl RigidSystem {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
         if self.has_pulled(time) {
-            self.spare_redundant(region, settling);
+            self.spare_redundant(region, settling, stage);
         }
         self.choose_rows(region, settling, time);
         Ok(())
@@ -202,7 +202,11 @@ impl RigidSystem {
     fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
         let forces = settling.candidates.iter().zip(&settling.solution.force);
         let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
-        let largest = of_contacts.fold(0.0f64, |most, (_, force)| most.max(force.abs()));
+        self.is_jam(region, stage, of_contacts.fold(0.0, |most, (_, force)| most.max(force.abs())))
+    }
+
+    /// Whether so large a force [N] of a contact is one of a jam.
+    pub(super) fn is_jam(&self, region: &Region, stage: &Stage, largest: f64) -> bool {
         let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.flyer(body).load(a));
         largest > JAM * loads.sum::<f64>()
     }
