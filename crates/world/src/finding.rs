@@ -262,8 +262,8 @@ impl World {
         let least = SELDOM * scales.usual;
         let is_told = |energy: &f64| {
             let is_much = exceeds(*energy, books, turned_over.max(least), share);
-            let least = if scales.usual > 0.0 { scales.left } else { scales.lost };
-            is_much && (energy.is_nan() || *energy > least)
+            let rounding = if scales.usual > 0.0 { scales.left } else { scales.lost };
+            is_much && (energy.is_nan() || *energy > rounding)
         };
         let open = Some(books.error().abs()).filter(is_told);
         findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));

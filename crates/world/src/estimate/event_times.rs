@@ -48,8 +48,8 @@ impl EventTimes {
         let [of_run, of_tighter] = times.map(|times| {
             [times.partition_point(|&other| other < time), times.partition_point(|&other| other <= time)]
         });
-        let is_told = of_run == of_tighter && of_run[0] == of_run[1];
-        !is_told && times.into_iter().any(is_near)
+        let as_many_are_over = of_run == of_tighter && of_run[0] == of_run[1];
+        !as_many_are_over && times.into_iter().any(is_near)
     }
 }
 

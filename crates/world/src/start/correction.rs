@@ -93,7 +93,8 @@ fn join<'a>(
     })
 }
 
-/// Changes the velocities so that no bilateral connector comes apart; which did most, and how fast [m/s].
+/// Changes the velocities so that no bilateral connector comes apart; which did most, and how fast [m/s]. Those that
+/// contradict each other stay as they are if none comes apart faster than what counts as slow [m/s].
 pub(super) fn correct_velocities(
     bodies: &mut [StartParts],
     named: &[Named],
@@ -114,7 +115,6 @@ pub(super) fn correct_velocities(
     }
     let Some((index, rate)) = worst else { return Ok(None) };
     let Some(changes) = least_changes(bodies, &corrections) else {
-        // Connectors that contradict each other by little leave such rates.
         let connector = name_of(index, named, connectors);
         return if rate <= slow {
             Ok(None)
