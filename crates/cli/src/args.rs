@@ -8,7 +8,8 @@ use std::path::PathBuf;
 
 /// Exact, fast 2D rigid-body mechanics.
 ///
-/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early.
+/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early (by Ctrl-C, too): what was
+/// recorded is written.
 #[derive(Debug, Parser)]
 #[command(name = "halfgap", version)]
 pub(crate) struct Args {
@@ -50,7 +51,7 @@ pub(crate) struct RunOptions {
     /// Run the scene again at a tighter tolerance, and print by how much the answers differ.
     #[arg(long)]
     pub(crate) estimate_error: bool,
-    /// No progress bar and no table.
+    /// No progress bar and no table; an error estimate is printed all the same.
     #[arg(long)]
     pub(crate) quiet: bool,
 }

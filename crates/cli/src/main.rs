@@ -2,12 +2,13 @@
 //!
 //! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `sweep` with
 //! `vary`, `solve`) that returns how it ended, `failure` turns what went wrong into messages and exit codes,
-//! `output` writes to standard output.
+//! `output` writes to standard output, `interrupt` hears who wants it to stop.
 
 mod args;
 mod check;
 mod failure;
 mod files;
+mod interrupt;
 mod output;
 mod progress;
 mod run;

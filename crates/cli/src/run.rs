@@ -2,10 +2,11 @@
 
 use crate::args::RunOptions;
 use crate::failure::{End, Failure};
+use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{files, output, table};
 use halfgap::scene::SceneSource;
-use halfgap::{Record, RunPlan, RunResult, World, estimate_error, run as run_world};
+use halfgap::{Outcome, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
 
 pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     let source = SceneSource::read(&options.scene)?;
@@ -20,6 +21,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     for warning in world.warnings() {
         eprintln!("warning: {}: {warning}", options.scene.display());
     }
+    let interrupt = Interrupt::listen();
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }
@@ -27,20 +29,24 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     let record = if everything { Record::Everything } else { Record::Ends };
     let plan = RunPlan::of_scene(&scene, record);
     let progress = Progress::new(!options.quiet && !options.json, &scene.title);
-    let report = run_world(&mut world, &plan, &mut |part| progress.set(part));
-    progress.finish();
+    let mut follow = |part| {
+        progress.set(part);
+        interrupt.flow()
+    };
+    let report = run_world(&mut world, &plan, &mut follow);
     let mut result = RunResult::new(&world, &report);
-    if options.estimate_error {
-        result.error_estimate =
-            Some(estimate_error(&scene, &plan, &world, &report).map_err(|error| source.locate(error))?);
+    if options.estimate_error && result.status != Outcome::Interrupted {
+        let estimate = estimate_error(&scene, &plan, &world, &report, &mut follow);
+        result.error_estimate = Some(estimate.map_err(|error| source.locate(error))?);
     }
+    progress.finish();
     if let Some(folder) = &options.out {
         files::write_all(folder, &world, &report.recording, &result, options.pictures)?;
     }
     let printed = match (options.json, options.quiet) {
         (true, _) => output::print(&format!("{}\n", result.to_json())),
         (false, false) => output::print(&table::of_result(&result)),
-        (false, true) => Ok(()),
+        (false, true) => output::print(&table::of_estimate(&result)),
     };
     for finding in &report.findings {
         eprintln!("warning: {}: {finding}", options.scene.display());

@@ -4,6 +4,7 @@
 
 use crate::args::SweepOptions;
 use crate::failure::{End, Failure};
+use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{output, table};
 use halfgap::scene::{Scene, SceneError, SceneSource, VariedScene};
@@ -71,8 +72,9 @@ fn run_all(
     let threads = options.threads.map_or(0, usize::from);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::Threads)?;
     let done = AtomicUsize::new(0);
+    let interrupt = Interrupt::listen();
     let run_one = |(value, scene): &(f64, Scene)| {
-        let run = run_scene(*value, scene).map_err(|error| source.locate(error))?;
+        let run = run_scene(*value, scene, &interrupt).map_err(|error| source.locate(error))?;
         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
         progress.set(count as f64 / scenes.len() as f64);
         Ok(run)
@@ -81,9 +83,9 @@ fn run_all(
     Ok(runs?)
 }
 
-fn run_scene(value: f64, scene: &Scene) -> Result<SweepRun, SceneError> {
+fn run_scene(value: f64, scene: &Scene, interrupt: &Interrupt) -> Result<SweepRun, SceneError> {
     let mut world = World::from_scene(scene)?;
-    let report = run(&mut world, &RunPlan::of_scene(scene, Record::Ends), &mut |_| {});
+    let report = run(&mut world, &RunPlan::of_scene(scene, Record::Ends), &mut |_| interrupt.flow());
     let result = RunResult::new(&world, &report);
     let error = report.error.map(|error| error.to_string());
     Ok(SweepRun { value, result, error, warnings: world.warnings().to_vec() })

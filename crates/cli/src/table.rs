@@ -17,6 +17,15 @@ pub(crate) fn of_result(result: &RunResult) -> String {
     push_states(&mut text, result);
     push_summary(&mut text, result);
     push_ledger(&mut text, &result.ledger);
+    if result.error_estimate.is_some() {
+        text.push('\n');
+    }
+    text + &of_estimate(result)
+}
+
+/// By how much a tighter run differs; nothing if that was not asked for.
+pub(crate) fn of_estimate(result: &RunResult) -> String {
+    let mut text = String::new();
     if let Some(estimate) = &result.error_estimate {
         push_estimate(&mut text, estimate);
     }
@@ -91,10 +100,9 @@ fn push_ledger(text: &mut String, ledger: &Ledger) {
     }
 }
 
-/// By how much a tighter run differs.
 fn push_estimate(text: &mut String, estimate: &ErrorEstimate) {
     let (tolerance, tighter) = (estimate.tolerance, estimate.tighter_tolerance);
-    let _ = writeln!(text, "\nerror estimate: tolerance {tolerance:.1e} against {tighter:.1e}");
+    let _ = writeln!(text, "error estimate: tolerance {tolerance:.1e} against {tighter:.1e}");
     push_difference(text, "  largest", &estimate.largest);
     push_difference(text, &format!("  at {:.4} s", estimate.compared_until), &estimate.end);
     let times = estimate.event_time.map_or("none to compare".to_owned(), |time| format!("{time:.3e} s"));

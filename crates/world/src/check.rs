@@ -2,7 +2,7 @@
 
 use crate::finding::Finding;
 use crate::recording::{Frame, Recording};
-use crate::run::{Record, RunPlan, run};
+use crate::run::{Record, RunPlan, run, unwatched};
 use crate::scene::{ExpectedData, ExpectedState, Scene};
 use crate::world::World;
 use glam::DVec2;
@@ -37,7 +37,7 @@ pub fn check(world: &mut World, scene: &Scene) -> CheckReport {
     // Rounding may have put a time a little beyond the end.
     plan.stops = order.iter().map(|expected| expected.time.min(plan.end_time)).collect();
     plan.end_time = plan.stops.last().copied().unwrap_or(plan.start_time);
-    let report = run(world, &plan, &mut |_| {});
+    let report = run(world, &plan, &mut unwatched);
     let start_energy = report.start_energy.total();
     let mut comparison = Comparison::new(world, &report.recording);
     for (expected, frame) in order.iter().zip(&report.stops) {

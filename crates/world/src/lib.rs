@@ -85,7 +85,7 @@ pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording
 #[cfg(feature = "scene")]
 pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
-pub use run::{Record, RunPlan, RunReport, run};
+pub use run::{Progress, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{RunError, Status};
 pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};

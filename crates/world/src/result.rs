@@ -21,6 +21,8 @@ pub enum Outcome {
     Stuck,
     /// No forces satisfy the constraints.
     Infeasible,
+    /// Somebody stopped it on the way.
+    Interrupted,
 }
 
 impl Outcome {
@@ -31,6 +33,7 @@ impl Outcome {
             Self::Done => "done",
             Self::Stuck => "stuck",
             Self::Infeasible => "infeasible",
+            Self::Interrupted => "interrupted",
         }
     }
 }
@@ -40,6 +43,7 @@ impl From<Status> for Outcome {
         match status {
             Status::Stuck => Self::Stuck,
             Status::Infeasible => Self::Infeasible,
+            Status::Interrupted => Self::Interrupted,
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::run_error::RunError;
 use crate::scene::Scene;
 use crate::sentry::LOOKS;
 use crate::world::{Energy, World};
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// An output this part of a step before the end is the end.
@@ -110,30 +111,44 @@ pub struct RunReport {
     pub wall_seconds: f64,
 }
 
-/// Runs a world as planned; `progress` is called now and then with the part that is done, 0 to 1.
+/// Is told at the start, at each event and at each output which part of a run is done, 0 to 1, and says whether
+/// it goes on.
+pub type Progress<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
+/// The [`Progress`] of whom it does not concern.
+pub fn unwatched(_part: f64) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Runs a world as planned; [`RunError::Interrupted`] if `progress` breaks it off.
 ///
 /// A run that stops early keeps what was recorded, and its last frame is the world where it stopped. A plan
 /// with an output step that is not positive, or stops out of order, is reported as an error before anything
 /// moves.
-pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> RunReport {
+pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunReport {
     let mut recording = Recording::new(plan.title.clone(), world);
     recording.frames.push(recording.frame_of(world));
     let start_energy = world.energy();
     let mut stepper = Stepper::new(plan.record);
     let mut stops = Vec::new();
     let mut error = plan.check().err();
+    let mut goes_on = |time: f64| match progress(done(time, plan)) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(RunError::Interrupted { time }),
+    };
     let mut output = 1;
     // Not the world's own time, which is free to differ from the target by rounding.
     let mut now = plan.start_time;
     let mut turnover = Turnover::new(start_energy);
     let mut findings = Findings::default();
     let mut looks = 1.0;
+    error = error.or_else(|| goes_on(now).err());
     while error.is_none() && now < plan.end_time {
         let output_time = plan.output_time(output);
         let stop_time = plan.stops.get(stops.len()).copied().unwrap_or(f64::INFINITY);
         let target = output_time.min(stop_time);
         if target > now {
-            error = stepper.advance(world, target).err();
+            error = stepper.advance(world, target, &mut goes_on).err();
             now = target;
         }
         if error.is_none() && target == stop_time {
@@ -141,7 +156,8 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: &mut dyn FnMut(f64)) -> 
         }
         if error.is_none() && target == output_time {
             output += 1;
-            progress(done(now, plan));
+            // Who has arrived needs not be stopped.
+            error = goes_on(now).err().filter(|_| now < plan.end_time);
         }
         turnover.note(&Books::from(&world.ledger()));
         let wanted = target == output_time && plan.record == Record::Everything;
@@ -190,16 +206,26 @@ impl Stepper {
         Self { impacts: Vec::new(), contacts: Vec::new(), wall: Duration::ZERO, record }
     }
 
-    fn advance(&mut self, world: &mut World, time: f64) -> Result<(), RunError> {
+    fn advance(
+        &mut self,
+        world: &mut World,
+        time: f64,
+        goes_on: &mut dyn FnMut(f64) -> Result<(), RunError>,
+    ) -> Result<(), RunError> {
         let keep = self.record == Record::Everything;
         let started = Instant::now();
-        let result = world.advance_to(time, &mut |event| {
+        let mut interrupted = Ok(());
+        let outcome = world.advance_while(time, &mut |event| {
             if keep {
                 self.keep(event);
             }
+            if interrupted.is_ok() {
+                interrupted = goes_on(event.time());
+            }
+            if interrupted.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         self.wall += started.elapsed();
-        result
+        outcome.and(interrupted)
     }
 
     fn keep(&mut self, event: &Event) {

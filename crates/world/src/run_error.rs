@@ -17,6 +17,8 @@ pub enum Status {
     Stuck,
     /// The contact problem has no solution.
     Infeasible,
+    /// Somebody stopped it on the way.
+    Interrupted,
 }
 
 /// Why a run stopped early.
@@ -145,6 +147,12 @@ pub enum RunError {
         /// What does not hold.
         finding: Finding,
     },
+    /// Who follows the run wanted it to stop.
+    #[error("interrupted at {time} s")]
+    Interrupted {
+        /// When [s].
+        time: f64,
+    },
     /// The time to advance to is infinite, or not a number.
     #[error("cannot advance to a time that is not a finite number")]
     NotATime,
@@ -192,6 +200,7 @@ impl RunError {
                 Status::Infeasible
             }
             Self::Impact { source: ImpactError::Infeasible { .. }, .. } => Status::Infeasible,
+            Self::Interrupted { .. } => Status::Interrupted,
             _ => Status::Stuck,
         }
     }
@@ -208,6 +217,7 @@ impl RunError {
             | Self::Astray { time, .. }
             | Self::Pressed { time, .. }
             | Self::InCorner { time, .. }
+            | Self::Interrupted { time }
             | Self::Stuck { time, .. } => Some(*time),
             Self::NotATime
             | Self::NoSuchBody { .. }

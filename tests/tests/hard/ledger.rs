@@ -263,7 +263,11 @@ b = { body = "world", point = [-1.5625249252775768, -5.905388794892994] }
 fn run_to_the_end(scene: &str) -> halfgap::RunReport {
     let scene = Scene::parse(scene, halfgap::scene::SceneFormat::Toml).expect("a fine scene");
     let mut world = World::from_scene(&scene).expect("a world that can be built");
-    halfgap::run(&mut world, &halfgap::RunPlan::of_scene(&scene, halfgap::Record::Ends), &mut |_| ())
+    halfgap::run(
+        &mut world,
+        &halfgap::RunPlan::of_scene(&scene, halfgap::Record::Ends),
+        &mut halfgap::unwatched,
+    )
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! its bodies in another order.
 
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{BodyState, Record, RunPlan, RunReport, World, run};
+use halfgap::{BodyState, Record, RunPlan, RunReport, World, run, unwatched};
 use halfgap_tests::data;
 use halfgap_tests::generate::scene_of_seed;
 use serde_json::Value;
@@ -41,7 +41,7 @@ fn parse(json: &str) -> Scene {
 
 fn run_of(scene: &Scene, record: Record) -> (World, RunReport) {
     let mut world = World::from_scene(scene).expect("a world that can be built");
-    let report = run(&mut world, &RunPlan::of_scene(scene, record), &mut |_| {});
+    let report = run(&mut world, &RunPlan::of_scene(scene, record), &mut unwatched);
     (world, report)
 }
 

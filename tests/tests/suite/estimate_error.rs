@@ -1,7 +1,7 @@
 //! The error estimate against errors that are known: at most ten times too large, at least a third of the truth.
 
 use halfgap::scene::Scene;
-use halfgap::{ErrorEstimate, Record, RunPlan, TimedDifference, World, estimate_error, run};
+use halfgap::{ErrorEstimate, Record, RunPlan, TimedDifference, World, estimate_error, run, unwatched};
 use halfgap_tests::{check_at, reference_scene};
 
 /// Errors below this part of the scene's size are rounding.
@@ -13,9 +13,9 @@ const MOST: f64 = 10.0;
 fn estimate_of(scene: &Scene) -> ErrorEstimate {
     let mut world = World::from_scene(scene).expect("a world that can be built");
     let plan = RunPlan::of_scene(scene, Record::Everything);
-    let report = run(&mut world, &plan, &mut |_| {});
+    let report = run(&mut world, &plan, &mut unwatched);
     assert_eq!(report.error, None);
-    estimate_error(scene, &plan, &world, &report).expect("the tighter world can be built")
+    estimate_error(scene, &plan, &world, &report, &mut unwatched).expect("the tighter world can be built")
 }
 
 /// The largest differences that the estimate gives at the times of the scene's expected states: of positions

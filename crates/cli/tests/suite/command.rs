@@ -1,7 +1,7 @@
 //! The command as a user meets it: exit codes, messages, JSON and files.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// A scene of one disc that meets nothing.
 const FLIGHT: &str = r#"format = "halfgap-scene-1"
@@ -110,6 +110,13 @@ fn quiet_is_quiet() {
     let folder = Folder::new("quiet");
     let output = halfgap(&["run", &folder.write("flight.toml", FLIGHT), "--quiet"]);
     assert_eq!((output.stdout.len(), output.stderr.len()), (0, 0));
+}
+
+#[test]
+fn quiet_tells_the_error_that_was_asked_for() {
+    let folder = Folder::new("quiet-estimate");
+    let output = halfgap(&["run", &folder.write("flight.toml", FLIGHT), "--quiet", "--estimate-error"]);
+    assert!(folder.plain(&output.stdout).starts_with("error estimate: tolerance "));
 }
 
 #[test]
@@ -297,6 +304,45 @@ fn a_run_that_stops_early_keeps_its_recording_and_exits_with_3() {
     ] {
         assert!(Path::new(&folder.path("out")).join(name).exists(), "{name} is missing");
     }
+}
+
+/// Asks a command to terminate once a file is there.
+#[cfg(unix)]
+fn terminated_once(arguments: &[&str], file: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_halfgap"))
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command starts");
+    while !Path::new(file).exists() && command.try_wait().expect("a state").is_none() {
+        std::thread::yield_now();
+    }
+    let killed = Command::new("kill").args(["-TERM", &command.id().to_string()]).status();
+    assert!(killed.expect("there is a kill").success());
+    command.wait_with_output().expect("the command ends")
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_interrupted_writes_what_it_has_recorded() {
+    let folder = Folder::new("interrupted");
+    let endless = FLIGHT.replace("duration = 2.0", "duration = 1e4\noutput_step = 1e-3");
+    let (scene, out) = (folder.write("endless.toml", &endless), folder.path("out"));
+    let output = terminated_once(&["run", &scene, "--out", &out, "--json"], &out);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(folder.plain(&output.stderr).contains("interrupted at "));
+    let result = json(&output);
+    assert_eq!(result["status"], "interrupted");
+    let time = result["time"].as_f64().expect("a time");
+    assert!(time < 1e4);
+    let states = std::fs::read_to_string(format!("{out}/states.csv")).expect("states");
+    let last: f64 = states
+        .lines()
+        .last()
+        .and_then(|line| line.split(',').next())
+        .map_or(f64::NAN, |time| time.parse().expect("a time"));
+    assert_eq!(last, time);
 }
 
 #[test]

@@ -18,7 +18,7 @@ mod tighter;
 pub use difference::{Difference, TimedDifference};
 
 use crate::recording::Recording;
-use crate::run::{Record, RunPlan, RunReport, run};
+use crate::run::{Progress, Record, RunPlan, RunReport, run};
 use crate::scene::{FieldPath, Scene, SceneError};
 use crate::world::World;
 use difference::Comparison;
@@ -60,7 +60,8 @@ pub struct ErrorEstimate {
 /// Estimates the error of a run of a scene; the run must have recorded everything.
 ///
 /// The scene is run once more, with the same output times and a tolerance of a hundredth (where the step is
-/// fixed: a tenth, and a tenth of the step); thresholds that the scene gives itself shrink alike.
+/// fixed: a tenth, and a tenth of the step); thresholds that the scene gives itself shrink alike. Where `progress` breaks
+/// that run off, both are compared up to there.
 ///
 /// # Errors
 /// The scene cannot be built at the tighter tolerance, as when its bodies overlap by more than that allows;
@@ -70,6 +71,7 @@ pub fn estimate_error(
     plan: &RunPlan,
     world: &World,
     report: &RunReport,
+    progress: Progress<'_>,
 ) -> Result<ErrorEstimate, SceneError> {
     if plan.record != Record::Everything {
         let message = "the error can be estimated of a run that recorded everything only";
@@ -78,7 +80,7 @@ pub fn estimate_error(
     let tighter = tighter::tightened(scene, world)?;
     let mut other = World::from_scene(&tighter)?;
     let other_plan = RunPlan { stops: Vec::new(), ..plan.clone() };
-    let other_report = run(&mut other, &other_plan, &mut |_| {});
+    let other_report = run(&mut other, &other_plan, progress);
     let mut estimate = compare(world, &report.recording, &other_report.recording, scene.run.tolerance);
     estimate.tighter_tolerance = tighter.run.tolerance;
     estimate.target_gaps[1] = other.tolerances().target_gap;

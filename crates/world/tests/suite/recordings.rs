@@ -4,8 +4,9 @@ use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{
     BodyId, BodyState, ConnectorId, ContactChange, ContactEvent, ContactForce, ContactRecord, Energy, Frame,
-    Impact, ImpactRow, Record, Recording, RunPlan, World, run,
+    Impact, ImpactRow, Record, Recording, RunError, RunPlan, World, run, unwatched,
 };
+use std::ops::ControlFlow;
 
 fn scene(duration: f64, run: &str, position: &str) -> Scene {
     let text = format!(
@@ -30,18 +31,21 @@ fn output_times_are_counted_from_the_start_and_include_the_end() {
     let scene = scene(1.0, "start_time = 5.0\noutput_step = 0.4", "[0, 0]");
     let plan = RunPlan::of_scene(&scene, Record::Everything);
     let mut parts = Vec::new();
-    let report = run(&mut world(&scene), &plan, &mut |part| parts.push(part));
+    let report = run(&mut world(&scene), &plan, &mut |part| {
+        parts.push(part);
+        ControlFlow::Continue(())
+    });
     assert_eq!(times(&report.recording), [5.0, 5.4, 5.8, 6.0]);
     assert_eq!(parts.last(), Some(&1.0));
     let ends = RunPlan::of_scene(&scene, Record::Ends);
-    assert_eq!(times(&run(&mut world(&scene), &ends, &mut |_| {}).recording), [5.0, 6.0]);
+    assert_eq!(times(&run(&mut world(&scene), &ends, &mut unwatched).recording), [5.0, 6.0]);
 }
 
 #[test]
 fn a_step_that_divides_the_duration_leaves_no_sliver_at_the_end() {
     let scene = scene(0.3, "output_step = 0.1", "[0, 0]");
     let plan = RunPlan::of_scene(&scene, Record::Everything);
-    let recording = run(&mut world(&scene), &plan, &mut |_| {}).recording;
+    let recording = run(&mut world(&scene), &plan, &mut unwatched).recording;
     assert_eq!(recording.frames.len(), 4);
     assert_eq!(recording.frames[3].time, 0.3);
 }
@@ -51,17 +55,42 @@ fn stops_are_hit_exactly_at_both_ends_and_between() {
     let scene = scene(1.0, "output_step = 0.4", "[0, 0]");
     let mut plan = RunPlan::of_scene(&scene, Record::Everything);
     plan.stops = vec![0.0, 0.3, 0.3, 0.4, 1.0];
-    let report = run(&mut world(&scene), &plan, &mut |_| {});
+    let report = run(&mut world(&scene), &plan, &mut unwatched);
     let stops: Vec<f64> = report.stops.iter().map(|frame| frame.time).collect();
     assert_eq!(stops, plan.stops);
     assert_eq!(times(&report.recording), [0.0, 0.4, 0.8, 1.0]);
 }
 
 #[test]
+fn a_run_can_be_broken_off_at_its_start_at_an_event_and_at_an_output() {
+    let scene = scene(1.0, "output_step = 0.25", "[1.9, 0]");
+    let plan = RunPlan::of_scene(&scene, Record::Everything);
+    let whole = run(&mut world(&scene), &plan, &mut unwatched).recording;
+    let bounce = whole.impacts[0].time;
+    for (calls, time) in [(1, 0.0), (2, 0.25), (3, bounce), (4, 0.5)] {
+        let mut left = calls;
+        let report = run(&mut world(&scene), &plan, &mut |_| {
+            left -= 1;
+            if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!(report.error, Some(RunError::Interrupted { time }));
+        let recording = report.recording;
+        assert_eq!(recording.frames.last().map(|frame| frame.time), Some(time));
+        assert_eq!(recording.impacts.len(), usize::from(time >= bounce));
+    }
+    let mut last = 0.0;
+    let report = run(&mut world(&scene), &plan, &mut |part| {
+        last = part;
+        if part < 1.0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    assert_eq!((report.error, last), (None, 1.0), "a run that has arrived is complete");
+}
+
+#[test]
 fn a_plan_that_ends_before_it_starts_is_refused() {
     let scene = scene(1.0, "", "[0, 0]");
     let plan = RunPlan { end_time: -1.0, ..RunPlan::of_scene(&scene, Record::Ends) };
-    let report = run(&mut world(&scene), &plan, &mut |_| {});
+    let report = run(&mut world(&scene), &plan, &mut unwatched);
     let message = report.error.map(|error| error.to_string());
     assert_eq!(message.as_deref(), Some("the plan's end_time must be no earlier than start_time, got -1 s"));
 }
@@ -269,7 +298,7 @@ fn the_ledger_books_impacts() {
     scene.bodies[1].elasticity = 0.5;
     let mut world = world(&scene);
     let plan = RunPlan::of_scene(&scene, Record::Everything);
-    let report = run(&mut world, &plan, &mut |_| {});
+    let report = run(&mut world, &plan, &mut unwatched);
     let ledger = &report.recording.ledger;
     assert_eq!(report.recording.impacts.len(), 2);
     let booked: f64 = report.recording.impacts.iter().map(|impact| impact.energy_change).sum();
