@@ -56,6 +56,11 @@ impl ConnectorState {
 }
 
 impl RigidSystem {
+    /// True if a connector is unilateral, and held.
+    pub(super) fn is_rope_or_stop_held(&self, id: ConnectorId) -> bool {
+        self.connector_states[id.index()].held
+    }
+
     pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
         &self.connectors[id.index()]
     }
@@ -75,12 +80,13 @@ impl RigidSystem {
             let tolerances = &self.settings.tolerances;
             for row in 0..connector.row_count() {
                 let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
-                let is_held = connector.is_bilateral() || self.connector_states[id.index()].held;
+                let is_held = connector.is_bilateral() || self.is_rope_or_stop_held(id);
                 if !is_held && sample.gap > tolerances.accuracy {
                     continue;
                 }
-                // What neither closes nor opens is held, or may be.
-                let closes = sample.kinematics.rate < -self.rest_speed();
+                // What neither closes nor opens is held, or may be; what is held does not graze, though dense output
+                // may have it closing.
+                let closes = !is_held && sample.kinematics.rate < -self.rest_speed();
                 if is_rope(connector) && closes && self.rope_grazes(id) {
                     continue;
                 }

@@ -101,14 +101,21 @@ impl RigidSystem {
         CollisionRow::of_collision(record, record.bodies().map(|body| self.inertia(body)))
     }
 
+    /// True if what a unilateral record is of was held until now.
+    fn was_held(&self, record: &Collision) -> bool {
+        match record.parties.detector {
+            Detector::Connector { id, .. } => self.is_rope_or_stop_held(id),
+            _ => self.is_likely(record).is_some(),
+        }
+    }
+
     /// Gives an impact the rows of a region.
     pub(crate) fn set_rows(&self, region: &Region, impact: &mut Impact) {
         let dull = self.settings.impulse_step.is_none() && self.bounces_low(region);
         let rows = region.records.iter().map(|record| {
             let row = self.row_of(record);
             let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
-            let held = row.rate > self.rest_speed() && self.is_likely(record).is_some();
-            CollisionRow { elasticity, held, ..row }
+            CollisionRow { elasticity, held: self.was_held(record), ..row }
         });
         impact.set_rows(rows);
     }
