@@ -9,7 +9,7 @@ use crate::detect::pair_tolerances;
 use crate::march::{MarchEnd, Pair, Window, contact_is_within, reach_circle};
 use crate::motion::{BodyState, Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
-use halfgap_geometry::{Feature, FeatureId, PairKind, Shape, pair_kind};
+use halfgap_geometry::{Feature, FeatureId, PairKind, Pose, Shape, pair_kind};
 
 /// Part of the accuracy by which a corner may lean off a line and still fires.
 const LEAN_SHARE: f64 = 1.0 / 16.0;
@@ -256,8 +256,13 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
     fn directly(&self, from: f64, span: f64) -> Option<Search> {
         let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
-        if features_a.len() * features_b.len() > self.settings.direct_pairs || !self.is_parabolic(from) {
+        let count = features_a.len() * features_b.len();
+        if count > self.settings.direct_pairs || !self.is_parabolic(from) {
             return None;
+        }
+        // Most bodies that are neighbours do not meet.
+        if count > 1 && self.skip_far(from, span) >= span {
+            return Some(Search::NoneBefore(span));
         }
         let mut progress = Progress::none_before(span);
         for (index_a, a) in features_a.iter().enumerate() {
@@ -434,6 +439,10 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             &mut |a, b| {
                 let (feature_a, feature_b) = (self.a.shape.feature(a), self.b.shape.feature(b));
                 let Some(kind) = pair_kind(feature_a, feature_b) else { return };
+                let sides = [(feature_a, &at_a.pose), (feature_b, &at_b.pose)];
+                if is_off_circle(sides[0], sides[1], reach) || is_off_circle(sides[1], sides[0], reach) {
+                    return;
+                }
                 if let Some(pair) = self.pair(kind, [a, b], feature_a, feature_b) {
                     tried += 1;
                     self.try_pair(window, &pair, [a, b], start, &mut progress);
@@ -468,6 +477,18 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             MarchEnd::NoneBefore(time) => progress.pause_at(time),
         }
     }
+}
+
+/// True if the first feature is round, and the second surely farther than `reach` [m] from its circle: for the
+/// tree, all that an arc goes around is near it.
+fn is_off_circle((feature, pose): (&Feature, &Pose), (other, at): (&Feature, &Pose), reach: f64) -> bool {
+    let Feature::Round(round) = feature else { return false };
+    let (center, size) = match other {
+        Feature::Round(other) => (other.center, other.radius.abs()),
+        Feature::Line(line) => (line.point_at(0.5 * (line.start + line.end)), 0.5 * (line.end - line.start)),
+    };
+    let distance = (pose.point_to_world(round.center) - at.point_to_world(center)).length();
+    (distance - round.radius.abs()).abs() > size + reach
 }
 
 /// Angle [rad/m] by which a corner may lean off a line, for each metre of the accuracy; nothing for all else.

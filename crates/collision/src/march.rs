@@ -235,11 +235,6 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             resolution: quotient(rounding(size), u_max),
             outside_for: None,
         };
-        if !inner && look.is_clear_for(ahead) {
-            return look;
-        }
-        let rates = (turning_rate(&gap, u, inner), u.length(), u_max, a_max);
-        look.outside_for = self.outside_ranges(pair, &gap, (round_a, a), (round_b, b), rates);
         if inner || look.is_behind(pair.depth) {
             // In terms of H = +-(|d|^2 - reach^2), whose acceleration +-2 (|u|^2 + d.d'') is bounded at the centre too.
             let distance = gap.center_distance;
@@ -251,6 +246,11 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             look.curvature = 2.0 * (u_max * u_max + d_max.max(reach) * a_max);
             look.value_rounding *= distance + reach;
             look.rate_rounding *= 2.0 * distance.max(reach);
+        }
+        // The angles cost more than all else.
+        if !look.is_clear_for(ahead) {
+            let rates = (turning_rate(&gap, u, inner), u.length(), u_max, a_max);
+            look.outside_for = self.outside_ranges(pair, &gap, (round_a, a), (round_b, b), rates);
         }
         look
     }

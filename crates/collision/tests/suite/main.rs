@@ -3,6 +3,7 @@
 mod connector_kinematics;
 mod connectors;
 mod differences;
+mod effort;
 mod first_contact;
 mod invariance;
 mod kinematics;
