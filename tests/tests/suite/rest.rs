@@ -118,3 +118,51 @@ fn what_is_carried_along_takes_few_steps_and_meets_what_is_in_its_way() {
         }
     }
 }
+
+/// Steps that a body on a floor takes in 10 s, drawn to and fro by a spring that lets it swing by 2 m; and by how much
+/// it is off in the end [m].
+fn swing_on_floor(shape: &str, tolerance: f64) -> (u64, f64) {
+    let mut world = world_of(&format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"test\"\n[run]\nduration = 10.0\ntolerance = {tolerance:e}\n\
+         [[force]]\ngravity = {{ acceleration = [0.0, -9.81] }}\n\
+         [[force]]\nspring = {{ a = {{ body = \"world\", point = [0.0, 0.1] }}, b = {{ body = \"body\", point = [0.0, 0.0] }}, \
+         rest_length = 0.0, stiffness = 10.0 }}\n\
+         [[body]]\nname = \"floor\"\nfixed = true\nshape = {{ block = {{ width = 20.0, height = 1.0 }} }}\n\
+         position = [0.0, -0.5]\n\
+         [[body]]\nname = \"body\"\nmass = 1.0\nelasticity = 0.0\nshape = {{ {shape} }}\nposition = [2.0, 0.1]\n"
+    ));
+    let body = world.find("body").expect("it is there");
+    advance(&mut world, 10.0);
+    let expected = 2.0 * (10.0 * 10f64.sqrt()).cos();
+    (world.statistics().steps, (world.state(body).position.x - expected).abs())
+}
+
+#[test]
+fn a_block_slides_to_and_fro_in_about_as_many_steps_as_a_disc() {
+    for tolerance in [1e-3, 1e-6, 1e-8] {
+        let (of_disc, off_disc) = swing_on_floor("disc = { radius = 0.1 }", tolerance);
+        let (of_block, off_block) = swing_on_floor("block = { width = 0.2, height = 0.2 }", tolerance);
+        println!("{tolerance:e}: {of_disc} steps and {off_disc:e} m, {of_block} steps and {off_block:e} m");
+        assert!(off_disc < tolerance && off_block < tolerance, "{off_disc} m, {off_block} m");
+        assert!(of_block < 2 * of_disc, "{of_block} steps, {of_disc} of the disc");
+    }
+}
+
+#[test]
+fn a_pair_in_contact_takes_no_more_steps_for_falling_together() {
+    let steps = |gravity: f64, velocity: &str| {
+        let at = "position = [0.0, 0.0]\nelasticity = 0.0";
+        let mut world = world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"test\"\n[run]\nduration = 8.0\ntolerance = 1e-6\n\
+             [[force]]\ngravity = {{ acceleration = [0.0, {gravity}] }}\n\
+             [[body]]\nname = \"ring\"\nmass = 1.0\nshape = {{ ring = {{ outer = 1.1, inner = 1.0 }} }}\n{at}\n\
+             velocity = {velocity}\n\
+             [[body]]\nname = \"disc\"\nmass = 0.5\nshape = {{ disc = {{ radius = 0.2 }} }}\n\
+             position = [0.0, -0.8]\nelasticity = 0.0\nvelocity = [2.0, 0.0]\n"
+        ));
+        advance(&mut world, 8.0);
+        world.statistics().steps
+    };
+    let (at_rest, falling) = (steps(0.0, "[-1.0, 0.0]"), steps(-9.81, "[-1.0, 0.0]"));
+    assert!(falling < 2 * at_rest, "{falling} steps, {at_rest} without falling");
+}

@@ -4,8 +4,8 @@
 //!
 //! * equations of motion: `dynamics`; `tree` where bodies hang together by pins, in angles; `on_rows` where
 //!   stages lie if rows depend on each other; `singular` where loops could go on in two ways;
-//! * one step: `segment`; by which method, `brief` and `stiff`; where splines have `kinks`; its end moved
-//!   onto the rows, `projection`; what it may not lose, `energy`;
+//! * one step: `segment`; by which method, `brief` and `stiff`; how long it may be where contacts are `watched`
+//!   or splines have `kinks`; its end moved onto the rows, `projection`; what it may not lose, `energy`;
 //! * in time: `extending` adds a step to a group, `deferred` puts that off until somebody looks, `placing`
 //!   says where the bodies are along it.
 
@@ -24,3 +24,4 @@ pub(super) mod segment;
 pub(super) mod singular;
 pub(super) mod stiff;
 pub(super) mod tree;
+pub(super) mod watched;

@@ -33,7 +33,7 @@ const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
 const RETREAT: f64 = 0.1;
 /// Smooth motions want steps of even length: after one that grew at once by much, errors follow the tolerance
 /// less well.
-const STEADY_GROWTH: f64 = 2.0;
+pub(crate) const STEADY_GROWTH: f64 = 2.0;
 /// Part of the accuracy by which rounding may move a body along a step.
 pub(crate) const ROUNDING_SHARE: f64 = 1.0 / 8.0;
 
@@ -48,9 +48,6 @@ const EARLY_SHARE: f64 = 16.0;
 
 /// How often a step is made otherwise so that no stage of it comes near a point where its rows depend on each other.
 const MOST_PLACEMENTS: usize = 4;
-
-/// Part of its reach by which a body with contacts may move in one step.
-const WATCHED_SHARE: f64 = 0.5;
 
 /// Contact forces that vary along a step by no more than such a part of what they are are steady: the next
 /// may be longer by so much, wherever it takes the bodies.
@@ -280,36 +277,6 @@ impl Dynamics<'_> {
         let allowed = ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / f64::EPSILON;
         let of_places = allowed / self.top_speed(&self.group.state);
         (2.0 * allowed / self.group.free_acceleration).sqrt().min(of_places)
-    }
-
-    /// The longest step [s] along which contacts are surely sampled well: their forces, which no error
-    /// estimate sees where nothing accelerates, and the gaps of those without force vary as bodies move by a
-    /// part of their size. Where forces have not varied along the last step, as of what slides or is carried
-    /// along, they need not be expected to.
-    fn longest_watched_step(&self) -> f64 {
-        let group = &self.group;
-        let any_idle = !group.idle.is_empty();
-        if !any_idle && group.rows.iter().all(|row| row.bilateral) {
-            return f64::INFINITY;
-        }
-        let count = group.bodies.len();
-        let waits = group.bodies.iter().enumerate().map(|(place, &body)| {
-            let flyer = &self.physics.mechanism.flyers[body.index()];
-            let (reach, is_disc) = (flyer.reach(), flyer.disc().is_some());
-            let of_points = |values: &[f64]| {
-                let at = 3 * (count + place);
-                flyer.fastest_point([values[at], values[at + 1], values[at + 2]])
-            };
-            let (speed, acceleration) = (of_points(&group.state), of_points(&group.rates));
-            // What is held of a disc does not vary as it turns.
-            if (is_disc && !any_idle) || (speed == 0.0 && acceleration == 0.0) {
-                return f64::INFINITY;
-            }
-            let way = WATCHED_SHARE * reach;
-            2.0 * way / (speed + (speed * speed + 2.0 * acceleration * way).sqrt())
-        });
-        let watched = waits.fold(f64::INFINITY, f64::min);
-        group.steady_step.map_or(watched, |step| watched.max(STEADY_GROWTH * step))
     }
 
     pub(crate) fn reach(&self, body: BodyId) -> f64 {

@@ -1,0 +1,103 @@
+//! How long a step of bodies in contact may be, so that what their contacts do along it is sampled well: their
+//! forces, which no error estimate sees where nothing accelerates, and the gaps of those without force.
+
+use super::dynamics::{Dynamics, body_state};
+use super::rows::{HeldRow, RowSource, moving_of};
+use super::segment::STEADY_GROWTH;
+use glam::DVec2;
+use halfgap_collision::{GapKinematics, Moving};
+use halfgap_geometry::GapKind;
+
+/// Part of its reach by which a body with contacts may move in one step, as its contacts see it; the same as an
+/// angle [rad].
+const WATCHED_SHARE: f64 = 0.5;
+
+impl Dynamics<'_> {
+    /// The longest step [s] along which contacts are surely sampled well. Where forces have not varied along the
+    /// last step, as of what slides or is carried along, they need not be expected to.
+    pub(crate) fn longest_watched_step(&self) -> f64 {
+        let group = &*self.group;
+        let any_idle = !group.idle.is_empty();
+        if !any_idle && group.rows.iter().all(|row| row.bilateral) {
+            return f64::INFINITY;
+        }
+        let steady = group.steady_step.map_or(0.0, |step| STEADY_GROWTH * step);
+        let by_way = steady.max(self.longest_step_by_way(!any_idle));
+        // To look at each contact takes longer: only where that is too short.
+        let is_enough = any_idle || group.next_step.is_some_and(|step| step <= by_way);
+        if is_enough { by_way } else { by_way.max(self.longest_step_by_rows()) }
+    }
+
+    /// The step along which no body moves by a part of its size, but for discs if these need not be looked at: what is
+    /// held of a disc does not vary as it turns.
+    fn longest_step_by_way(&self, spares_discs: bool) -> f64 {
+        let group = &*self.group;
+        let count = group.bodies.len();
+        let waits = group.bodies.iter().enumerate().map(|(place, &body)| {
+            let flyer = &self.physics.mechanism.flyers[body.index()];
+            if spares_discs && flyer.disc().is_some() {
+                return f64::INFINITY;
+            }
+            let of_points = |values: &[f64]| {
+                let at = 3 * (count + place);
+                flyer.fastest_point([values[at], values[at + 1], values[at + 2]])
+            };
+            wait(WATCHED_SHARE * flyer.reach(), of_points(&group.state), of_points(&group.rates))
+        });
+        waits.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The step along which no contact sees its bodies move by a part of their size: normals and bodies turn, and a
+    /// contact runs along the side of a body that moves. What moves straight along a floor does none of that,
+    /// however far, nor do bodies that go the same way together. Of contacts without force that would not do: of
+    /// them the gap is wanted, not how it turns.
+    fn longest_step_by_rows(&self) -> f64 {
+        let contacts = self.group.rows.iter().filter(|row| !row.bilateral);
+        contacts.map(|row| self.wait_for_row(row)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn wait_for_row(&self, row: &HeldRow) -> f64 {
+        let RowSource::Contact(features) = row.source else { return f64::INFINITY };
+        let group = &*self.group;
+        let places = row.bodies.map(|body| group.bodies.binary_search(&body).ok());
+        let of = |place: usize, values: &[f64]| body_state(values, group.bodies.len(), place);
+        let movings = [0, 1].map(|side: usize| match places[side] {
+            Some(place) => Moving::from(&of(place, &group.state)),
+            None => *moving_of(&self.stage.movings, row.bodies[side]),
+        });
+        let sample = self.physics.mechanism.sample(row.bodies, features, [&movings[0], &movings[1]]);
+        let kinematics = GapKinematics::of(&sample, &movings[0], &movings[1]);
+        // By what bodies that move turn, and how far their contact may be from their centres.
+        let (mut turn, mut turn_rate, mut reach) = (kinematics.normal_rate.length(), 0.0, 0.0f64);
+        let mut pull = DVec2::ZERO;
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            let Some(place) = places[side] else { continue };
+            let rates = of(place, &group.rates);
+            let flyer = &self.physics.mechanism.flyers[row.bodies[side].index()];
+            reach = reach.max(flyer.reach());
+            pull += rates.velocity * sign;
+            // A disc that turns shows it to nobody.
+            if flyer.disc().is_none() {
+                turn += movings[side].angular_velocity.abs();
+                turn_rate += rates.angular_velocity.abs();
+            }
+        }
+        let along_side = match sample.kind {
+            // The contact runs along a side; of a body that stands still that does not matter.
+            GapKind::CenterLine if places[1].is_none() => return wait(WATCHED_SHARE, turn, turn_rate),
+            GapKind::CenterLine => sample.normal.perp().dot(kinematics.center_velocity).abs() / reach,
+            GapKind::CenterCenter => 0.0,
+        };
+        let arm = match sample.kind {
+            GapKind::CenterLine => reach,
+            GapKind::CenterCenter => (sample.center_primary - sample.center_normal).length(),
+        };
+        wait(WATCHED_SHARE, turn + along_side, turn_rate + pull.length() / arm)
+    }
+}
+
+/// When a way, or an angle, is done at a speed and an acceleration; infinite if there is neither.
+fn wait(way: f64, speed: f64, acceleration: f64) -> f64 {
+    let sum = speed + (speed * speed + 2.0 * acceleration * way).sqrt();
+    if sum > 0.0 { 2.0 * way / sum } else { f64::INFINITY }
+}
