@@ -115,3 +115,34 @@ fn no_contact_pulls_where_six_discs_fit_from_wall_to_wall() {
         assert!(least > -1e-6, "seed {seed}: {least} N");
     }
 }
+
+/// Rows of blocks of 1 m and 1 kg on a floor, each on the two below, with 0.1 m between neighbours.
+fn pyramid(rows: u32, tolerance: f64) -> World {
+    let mut shop = Workshop::new(tolerance);
+    shop.fixed("floor", block(60.0, 1.0), DVec2::new(0.0, -0.5));
+    for row in 0..rows {
+        for column in 0..rows - row {
+            let x = (f64::from(column) - 0.5 * f64::from(rows - row - 1)) * 1.1;
+            let state = at_rest(x, 0.5 + f64::from(row));
+            shop.dull(&format!("block {row} {column}"), block(1.0, 1.0), 1.0, state);
+        }
+    }
+    shop.build()
+}
+
+#[test]
+fn no_contact_of_a_pyramid_pulls_at_the_start() {
+    // More of its contacts carry a force than can be told apart.
+    for rows in [9, 10, 13] {
+        for tolerance in [1e-3, 1e-6] {
+            let mut world = pyramid(rows, tolerance);
+            let forces = world.contact_forces();
+            let least = forces.iter().fold(f64::INFINITY, |least, contact| least.min(contact.force));
+            assert!(least > 0.0, "{rows} rows at {tolerance:e}: {least} N");
+            let floor = forces.iter().filter(|contact| contact.point.y < 0.5).map(|contact| contact.force);
+            let weight = GRAVITY * f64::from(rows * (rows + 1) / 2);
+            assert!((floor.sum::<f64>() / weight - 1.0).abs() < 1e-9);
+            world.advance_to(0.1, &mut |event| panic!("{rows} rows: {event:?}")).expect("it rests");
+        }
+    }
+}

@@ -3,6 +3,7 @@
 //! that is the wrong one, others pull.
 
 use super::settling::Settling;
+use crate::rigid::event::cause::Cause;
 use crate::rigid::event::region::Region;
 use crate::rigid::step::dynamics::Stage;
 use crate::rigid::system::RigidSystem;
@@ -16,14 +17,20 @@ pub(super) struct Redundant {
     sides: Vec<[Option<u32>; 2]>,
     jacobians: Vec<[f64; 6]>,
     forces: Vec<f64>,
+    /// Forces [N] as they are found of what is held.
+    as_held: Vec<f64>,
 }
+
+/// Part of the largest force of a contact that another may pull by rounding.
+const ROUNDING: f64 = 1e-9;
 
 impl RigidSystem {
     /// Spares candidates until none depends on the others, such that the forces of those that are left do
-    /// not pull, if those that were found did not. What jams contradicts itself: of that none is spared.
+    /// not pull, if those that were found did not. What jams contradicts itself: of that none is spared. At the
+    /// start, where nobody has seen them pull, none is spared unless one would.
     pub(super) fn spare_redundant(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
-        let Settling { candidates, redundant, .. } = settling;
-        let Redundant { held, inertia, sides, jacobians, forces } = redundant;
+        let Settling { candidates, redundant, problem, .. } = settling;
+        let Redundant { held, inertia, sides, jacobians, forces, as_held } = redundant;
         inertia.clear();
         inertia.extend(region.bodies.iter().map(|&body| self.inertia(body)));
         let records = || candidates.iter().map(|&index| &region.records[index]);
@@ -35,13 +42,27 @@ impl RigidSystem {
         forces.clear();
         forces.extend(records().map(|record| record.response.force.unwrap_or_default()));
         let of_contacts = records().zip(&*forces).filter(|(record, _)| !record.parties.bilateral);
-        if self.is_jam(region, stage, of_contacts.fold(0.0, |most, (_, force)| most.max(force.abs()))) {
+        let largest = of_contacts.fold(0.0, |most, (_, force)| f64::max(most, force.abs()));
+        if self.is_jam(region, stage, largest) {
             return;
         }
+        let mut is_seen = region.cause != Cause::Start;
         loop {
             held.set_structure(inertia, sides);
             if held.factorize(jacobians) == 0 {
                 break;
+            }
+            if !is_seen {
+                as_held.clear();
+                as_held.resize(candidates.len(), 0.0);
+                held.solve(problem.offset(), as_held);
+                let mut pulls = candidates.iter().zip(&*as_held);
+                is_seen = pulls.any(|(&index, &force)| {
+                    !region.records[index].parties.bilateral && force < -ROUNDING * largest
+                });
+                if !is_seen {
+                    return;
+                }
             }
             let may_pull = |row: usize| region.records[candidates[row]].parties.bilateral;
             let Some(row) = held.spare(forces, may_pull) else { break };

@@ -98,7 +98,8 @@ impl RigidSystem {
         while self.drop_idle(region, settling, stage) {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
-        if self.has_pulled(time) {
+        if self.has_pulled(time) || region.cause == Cause::Start {
+            self.pose_problem(region, settling, stage);
             self.spare_redundant(region, settling, stage);
         }
         self.choose_rows(region, settling, time);
