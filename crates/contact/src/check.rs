@@ -217,7 +217,9 @@ impl Checker {
         self.term.resize(force.len(), 0.0);
         self.used.reserve(force.len());
         for (j, _) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
-            bodies.rows.row(j).0.iter().for_each(|&k| self.start[k + 2] += 1);
+            // What does not move couples nothing, and a floor may have as many rows as there are.
+            let movable = bodies.rows.row(j).0.iter().filter(|k| bodies.inverse_mass[**k] > 0.0);
+            movable.for_each(|&k| self.start[k + 2] += 1);
         }
         for k in 2..self.start.len() {
             self.start[k] += self.start[k - 1];
@@ -226,7 +228,8 @@ impl Checker {
         self.entry.resize(self.start[columns + 1], (0, 0.0));
         for (j, &f) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
             let (row_columns, values) = bodies.rows.row(j);
-            for (&k, &v) in row_columns.iter().zip(values) {
+            let entries = row_columns.iter().zip(values);
+            for (&k, &v) in entries.filter(|(k, _)| bodies.inverse_mass[**k] > 0.0) {
                 self.entry[self.start[k + 1]] = (j, v * bodies.inverse_mass[k] * f);
                 self.start[k + 1] += 1;
             }

@@ -1,6 +1,7 @@
 //! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
 
 use super::connectors::{is_rope, is_stop};
+use super::members::Members;
 use super::region::{Region, Touch};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::held::settling::Settling;
@@ -40,6 +41,8 @@ pub(crate) struct Groups {
     pub(crate) waiting: Option<BodyId>,
     /// Leaders of the groups that were made last.
     pub(crate) made: Vec<BodyId>,
+    /// What belongs to the groups that are being made.
+    members: Members,
     /// Inertias of the bodies of a group that starts.
     inertias: Vec<Inertia>,
 }
@@ -146,10 +149,11 @@ impl RigidSystem {
     pub(crate) fn regroup(&mut self, region: &Region, settling: &Settling) -> Result<(), AdvanceError> {
         self.couple(region, settling);
         self.groups.made.clear();
+        let mut members = std::mem::take(&mut self.groups.members);
+        members.list(region, settling, |place| self.groups.root(place));
         for place in 0..region.bodies.len() {
-            let root = self.groups.root(place);
-            if self.groups.integrated[root] && root == place {
-                let group = self.make_group(region, settling, root);
+            if self.groups.integrated[place] && self.groups.root(place) == place {
+                let group = self.make_group((region, settling), &members, place);
                 let leader = group.leader();
                 for &body in &group.bodies {
                     self.groups.leader_of[body.index()] = Some(leader);
@@ -158,6 +162,7 @@ impl RigidSystem {
                 self.groups.put(group);
             }
         }
+        self.groups.members = members;
         let mut outcome = Ok(());
         for index in 0..self.groups.made.len() {
             let leader = self.groups.made[index];
@@ -247,21 +252,17 @@ impl RigidSystem {
         }
     }
 
-    fn make_group(&mut self, region: &Region, settling: &Settling, root: usize) -> Box<Group> {
+    fn make_group(&mut self, of: (&Region, &Settling), members: &Members, root: usize) -> Box<Group> {
+        let (region, settling) = of;
         let mut group = self.groups.pool.pop().unwrap_or_default();
         group.clear();
-        for place in 0..region.bodies.len() {
-            if self.groups.root(place) == root {
-                group.bodies.push(region.bodies[place]);
-            }
-        }
+        group.bodies.extend(members.places(root).map(|place| region.bodies[place]));
         group.bodies.sort_unstable();
-        let in_group = |row: &HeldRow| row.bodies.iter().any(|body| group.bodies.binary_search(body).is_ok());
         // Bilateral rows first: a contact that depends on them gives way.
-        let rows = settling.held.iter().map(|&(_, row)| row).filter(in_group);
+        let rows = members.held(settling, root);
         group.rows.extend(rows.clone().filter(|row| row.bilateral));
         group.rows.extend(rows.filter(|row| !row.bilateral));
-        self.list_idle(&mut group, region, settling);
+        self.list_idle(&mut group, of, members.touches(root));
         self.list_stops(&mut group);
         self.list_laws(&group.bodies, &mut group.laws);
         self.list_works(&mut group);
@@ -271,18 +272,21 @@ impl RigidSystem {
     }
 
     /// Lists the contacts of a group that are touched without force and neither close nor open.
-    fn list_idle(&self, group: &mut Group, region: &Region, settling: &Settling) {
+    fn list_idle(
+        &self,
+        group: &mut Group,
+        (region, settling): (&Region, &Settling),
+        touches: impl Iterator<Item = usize>,
+    ) {
         if self.settings.impulse_step.is_some() {
             // Without contact forces the search is told of what sinks, once a step.
             return;
         }
-        for (&touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+        for index in touches {
+            let (touch, (gap, rate)) = (region.touches[index], region.motions[index]);
             let is_inside = |body: BodyId| group.bodies.binary_search(&body).is_ok();
             let belongs = |body: BodyId| is_inside(body) || !self.is_movable(body);
-            if !touch.bodies.iter().any(|&body| is_inside(body))
-                || !touch.bodies.iter().all(|&body| belongs(body))
-                || settling.holds_touch(touch)
-            {
+            if !touch.bodies.iter().all(|&body| belongs(body)) || settling.holds_touch(touch) {
                 continue;
             }
             if rate.abs() <= self.rest_speed() {

@@ -1,0 +1,69 @@
+//! What of a region belongs to which of its groups: bodies, held rows, and places where they touch. Listed once
+//! for all groups, as there may be as many of them as bodies.
+
+use super::region::Region;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::step::rows::HeldRow;
+use halfgap_collision::BodyId;
+
+/// Pairs of the root of a group, by its place in the region, and an index, both ascending.
+type ByRoot = Vec<(usize, usize)>;
+
+/// The members of all groups that are made of a region.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Members {
+    places: ByRoot,
+    held: ByRoot,
+    touches: ByRoot,
+}
+
+impl Members {
+    /// Lists all members, given the root of each place.
+    pub(super) fn list(
+        &mut self,
+        region: &Region,
+        settling: &Settling,
+        mut root: impl FnMut(usize) -> usize,
+    ) {
+        self.places.clear();
+        self.places.extend((0..region.bodies.len()).map(|place| (root(place), place)));
+        let places = &self.places;
+        // A row, and a contact, is that of the first of its bodies that moves.
+        let root_of = |bodies: [BodyId; 2]| {
+            bodies.into_iter().find_map(|body| region.place(body)).map(|place| places[place].0)
+        };
+        self.held.clear();
+        let held = settling.held.iter().enumerate();
+        self.held.extend(held.filter_map(|(index, (_, row))| Some((root_of(row.bodies)?, index))));
+        self.touches.clear();
+        let touches = region.touches.iter().enumerate();
+        self.touches.extend(touches.filter_map(|(index, touch)| Some((root_of(touch.bodies)?, index))));
+        for list in [&mut self.places, &mut self.held, &mut self.touches] {
+            list.sort_unstable();
+        }
+    }
+
+    /// Places in the region of the bodies of a group.
+    pub(super) fn places(&self, root: usize) -> impl Iterator<Item = usize> {
+        of_root(&self.places, root)
+    }
+
+    /// The held rows of a group.
+    pub(super) fn held<'a>(
+        &self,
+        settling: &'a Settling,
+        root: usize,
+    ) -> impl Iterator<Item = HeldRow> + Clone {
+        of_root(&self.held, root).map(|index| settling.held[index].1)
+    }
+
+    /// Indices of the places where bodies of a group touch something.
+    pub(super) fn touches(&self, root: usize) -> impl Iterator<Item = usize> {
+        of_root(&self.touches, root)
+    }
+}
+
+fn of_root(list: &[(usize, usize)], root: usize) -> impl Iterator<Item = usize> + Clone {
+    let from = list.partition_point(|&(of, _)| of < root);
+    list[from..].iter().take_while(move |&&(of, _)| of == root).map(|&(_, index)| index)
+}
