@@ -95,11 +95,11 @@ impl DualActiveSet {
     }
 
     /// Closes the marked rows, as far as they are independent; all of them anew, in the order that keeps the
-    /// factor narrow, if they are many or it is wide.
+    /// factor narrow, if they are more than those that are closed, or it is wide.
     fn close_pushing(&mut self) {
         let closed = &self.closed;
         let fresh = (0..self.start.len()).filter(|&row| self.start[row] && !closed.is_closed(row)).count();
-        if fresh > closed.len() / MANY || self.is_factor_wide() {
+        if fresh > closed.len() || self.is_factor_wide() {
             self.closed.open_all();
             self.closed.close_independent(&self.start, WELL);
             return;
