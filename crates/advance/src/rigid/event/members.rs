@@ -49,11 +49,7 @@ impl Members {
     }
 
     /// The held rows of a group.
-    pub(super) fn held<'a>(
-        &self,
-        settling: &'a Settling,
-        root: usize,
-    ) -> impl Iterator<Item = HeldRow> + Clone {
+    pub(super) fn held(&self, settling: &Settling, root: usize) -> impl Iterator<Item = HeldRow> + Clone {
         of_root(&self.held, root).map(|index| settling.held[index].1)
     }
 
