@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 /// Exact, fast 2D rigid-body mechanics.
 ///
-/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early (by Ctrl-C, too): what was
-/// recorded is written.
+/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early: what was recorded is
+/// written.
 #[derive(Debug, Parser)]
 #[command(name = "halfgap", version)]
 pub(crate) struct Args {
@@ -33,7 +33,8 @@ pub(crate) enum Command {
 pub(crate) struct RunOptions {
     /// The scene, a .toml or .json file.
     pub(crate) scene: PathBuf,
-    /// Write the recording (CSV and JSON) and pictures (SVG) to this folder.
+    /// Write the recording (CSV and JSON) and pictures (SVG) to this folder; if Ctrl-C stops the run early, what it has by
+    /// then.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Also write so many pictures of times in between to that folder.

@@ -21,7 +21,8 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     for warning in world.warnings() {
         eprintln!("warning: {}: {warning}", options.scene.display());
     }
-    let interrupt = Interrupt::listen();
+    // Without a folder nothing is recorded that could be lost: a signal ends the command at once, as it always does.
+    let interrupt = if options.out.is_some() { Interrupt::listen() } else { Interrupt::default() };
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }

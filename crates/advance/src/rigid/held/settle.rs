@@ -99,6 +99,7 @@ impl RigidSystem {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
         if self.has_pulled(time) || region.cause == Cause::Start {
+            // The last problem was that of more candidates, if the last to be dropped carried nothing.
             self.pose_problem(region, settling, stage);
             self.spare_redundant(region, settling, stage);
         }

@@ -56,6 +56,7 @@ impl Dynamics<'_> {
         contacts.map(|row| self.wait_for_row(row)).fold(f64::INFINITY, f64::min)
     }
 
+    /// The same for one row; that of a connector does not matter.
     fn wait_for_row(&self, row: &HeldRow) -> f64 {
         let RowSource::Contact(features) = row.source else { return f64::INFINITY };
         let group = &*self.group;
