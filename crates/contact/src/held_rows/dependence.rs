@@ -106,39 +106,6 @@ impl HeldRows {
         bodies.any(|(motion, gross)| square(motion) > self.dependence * gross)
     }
 
-    /// Which row can be spared, of those that the last [`factorize`](Self::factorize) has found to depend on
-    /// others: forces, given by row, that are not negative where `may_pull` is false, are moved along what
-    /// they leave open until the first of these has none, which is told. What they do to the bodies stays as
-    /// it is. `None` if no row depends on others of that kind.
-    ///
-    /// Without that row, and others as long as there are any, the forces are those that [`solve`](Self::solve)
-    /// finds: with it, it leaves out one whose loss may have others pull.
-    ///
-    /// # Panics
-    ///
-    /// If there is not one force per row.
-    pub fn spare(&mut self, force: &mut [f64], may_pull: impl Fn(usize) -> bool) -> Option<usize> {
-        assert_eq!(force.len(), self.len(), "one force per row");
-        let row_at = |held: &Self, place: usize| held.order.rows[place] as usize;
-        let depends = |place: &usize| !self.factor.has_pivot(*place) && !may_pull(row_at(self, *place));
-        let place = (0..self.len()).find(depends)?;
-        self.measure_rest(place);
-        // Row i is the sum of x_k times row k: less of its force is made good by x_k as much of theirs.
-        let (mut spared, mut least) = (place, force[row_at(self, place)]);
-        for k in 0..place {
-            let (row, share) = (row_at(self, k), self.work[k]);
-            if share < 0.0 && !may_pull(row) && force[row] < -share * least {
-                (spared, least) = (k, force[row] / -share);
-            }
-        }
-        force[row_at(self, place)] -= least;
-        for k in 0..place {
-            force[row_at(self, k)] += least * self.work[k];
-        }
-        force[row_at(self, spared)] = 0.0;
-        Some(row_at(self, spared))
-    }
-
     /// Adds what a multiple of a row of Ĵ does to each body to the sums of squares.
     fn add_gross(&mut self, place: usize, share: f64) {
         let sides = self.bodies[place].iter().zip(&self.jacobian[place]);
@@ -172,34 +139,6 @@ mod tests {
             assert!(held.kept_beyond(0) < 1e-12);
             assert_eq!([held.kept_beyond(2), held.kept_beyond(3)], [1.0; 2]);
         }
-    }
-
-    #[test]
-    fn a_row_is_spared_without_which_none_pulls() {
-        // Four contacts under a plank that carry its weight, of which two may be spared.
-        let arms = [-0.5, 0.1, 0.2, 0.5];
-        let corner = |arm: f64| [0.0, 1.0, arm, 0.0, 0.0, 0.0];
-        let mut force = vec![1.0, 2.0, 3.0, 4.0];
-        let sums = |force: &[f64], arms: &[f64]| {
-            let moment: f64 = force.iter().zip(arms).map(|(force, arm)| force * arm).sum();
-            [force.iter().sum::<f64>(), moment]
-        };
-        let (before, mut left) = (sums(&force, &arms), arms.to_vec());
-        for _ in 0..2 {
-            let mut held = HeldRows::default();
-            let inertia = [Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }];
-            held.set_structure(&inertia, &vec![[Some(0), None]; left.len()]);
-            held.factorize(&left.iter().map(|&arm| corner(arm)).collect::<Vec<_>>());
-            assert!(held.clone().spare(&mut force.clone(), |_| true).is_none());
-            let row = held.spare(&mut force, |_| false).expect("one can be spared");
-            assert_eq!(force[row], 0.0);
-            assert!(force.iter().all(|force| *force >= 0.0), "{force:?}");
-            let after = sums(&force, &left);
-            assert!((0..2).all(|k| (after[k] - before[k]).abs() < 1e-14), "{after:?}");
-            force.remove(row);
-            left.remove(row);
-        }
-        assert_eq!(left.len(), 2);
     }
 
     #[test]

@@ -19,6 +19,8 @@ pub(super) struct Redundant {
     forces: Vec<f64>,
     /// Forces [N] as they are found of what is held.
     as_held: Vec<f64>,
+    /// Rows to be left out.
+    spared: Vec<usize>,
 }
 
 /// Part of the largest force of a contact that another may pull by rounding.
@@ -30,7 +32,7 @@ impl RigidSystem {
     /// start, where nobody has seen them pull, none is spared unless one would.
     pub(super) fn spare_redundant(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
         let Settling { candidates, redundant, problem, .. } = settling;
-        let Redundant { held, inertia, sides, jacobians, forces, as_held } = redundant;
+        let Redundant { held, inertia, sides, jacobians, forces, as_held, spared } = redundant;
         inertia.clear();
         inertia.extend(region.bodies.iter().map(|&body| self.inertia(body)));
         let records = || candidates.iter().map(|&index| &region.records[index]);
@@ -65,15 +67,33 @@ impl RigidSystem {
                 }
             }
             let may_pull = |row: usize| region.records[candidates[row]].parties.bilateral;
-            let Some(row) = held.spare(forces, may_pull) else { break };
-            region.records[candidates[row]].response.force = Some(0.0);
-            candidates.remove(row);
-            sides.remove(row);
-            jacobians.remove(row);
-            forces.remove(row);
+            held.spare(forces, may_pull, spared);
+            if spared.is_empty() {
+                break;
+            }
+            spared.sort_unstable();
+            for &row in &*spared {
+                region.records[candidates[row]].response.force = Some(0.0);
+            }
+            drop_rows(candidates, spared);
+            drop_rows(sides, spared);
+            drop_rows(jacobians, spared);
+            drop_rows(forces, spared);
         }
         for (&index, &force) in candidates.iter().zip(&*forces) {
             region.records[index].response.force = Some(force);
         }
     }
+}
+
+/// Leaves out what belongs to the given rows, which are sorted.
+fn drop_rows<T>(list: &mut Vec<T>, rows: &[usize]) {
+    let mut next = 0;
+    let mut place = 0;
+    list.retain(|_| {
+        let is_dropped = rows.get(next) == Some(&place);
+        next += usize::from(is_dropped);
+        place += 1;
+        !is_dropped
+    });
 }
