@@ -175,11 +175,20 @@ impl Methods {
                     (HandOver::Redundant, None) => self.proximal.solve(problem, solution),
                 };
                 found
+                    .and_then(|()| self.cross_over(problem, solution))
                     .or_else(|_| self.dual.run(problem, start, solution))
                     .or_else(|error| self.try_others(problem, solution, error))
             }
             Err(error) => self.try_others(problem, solution, error),
         }
+    }
+
+    /// Moves forces that are shared to independent rows, if they are to be those of a vertex.
+    fn cross_over(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        if self.settings.selection != ForceSelection::Vertex {
+            return Ok(());
+        }
+        self.dual.cross_over(problem, solution)
     }
 
     /// Another method, where the first one came to nothing; its error stands if none helps.
@@ -246,11 +255,16 @@ mod tests {
         assert!(10 * found.iterations < pivoted.iterations, "{}, {}", found.iterations, pivoted.iterations);
         let errors = found.acceleration.iter().zip(&pivoted.acceleration).map(|(a, b)| (a - b).abs());
         assert!(errors.fold(0.0, f64::max) < 1e-9);
-        // Forces that are to be those of independent rows are left to pivots.
+        // Forces that are to be those of independent rows are moved to such.
         let settings = Settings { selection: ForceSelection::Vertex, ..Settings::default() };
         let mut auto = Auto::new(settings).expect("fine settings");
         auto.solve(&problem, &mut found).expect("forces of a pyramid");
         assert_eq!(found.method, Method::DualActiveSet);
+        assert!(10 * found.iterations < pivoted.iterations, "{}, {}", found.iterations, pivoted.iterations);
+        let carrying = found.force.iter().filter(|force| **force > 0.0).count();
+        assert_eq!(carrying, pivoted.active.len());
+        let errors = found.acceleration.iter().zip(&pivoted.acceleration).map(|(a, b)| (a - b).abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-9);
     }
 
     #[test]

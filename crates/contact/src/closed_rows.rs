@@ -129,6 +129,11 @@ impl ClosedRows {
         self.position[row] != OPEN
     }
 
+    /// Position of a row, if it is closed.
+    pub(crate) fn position_of(&self, row: usize) -> Option<usize> {
+        self.is_closed(row).then(|| self.position[row] as usize)
+    }
+
     /// Finds how an open row relates to the closed ones, for [`close`](Self::close) or, if it depends on
     /// them, for the null direction by which [`Shift`](crate::dependent::Shift) reconciles them.
     pub(crate) fn consider(&mut self, row: usize) -> Relation {

@@ -138,27 +138,6 @@ impl DualActiveSet {
             }
         }
     }
-
-    /// Moves the forces of open rows, which depend on closed ones, to these; a closed row that runs out makes room.
-    fn move_to_basis(&mut self, force: &mut [f64]) {
-        let closed = &mut self.closed;
-        for row in 0..force.len() {
-            while force[row] > 0.0 && !closed.is_closed(row) {
-                let relation = closed.consider(row);
-                if !relation.dependent {
-                    closed.close(row, relation);
-                    break;
-                }
-                closed.find_response();
-                let (length, first) = closed.go_along_step(force, force[row]);
-                force[row] -= length;
-                match first {
-                    Some(at) => closed.open_at(at),
-                    None => force[row] = 0.0,
-                }
-            }
-        }
-    }
 }
 
 impl ClosedRows {

@@ -16,6 +16,7 @@ use crate::check::Checker;
 use crate::closed_rows::ClosedRows;
 use crate::dependent::{Reconciled, Shift};
 use crate::error::{Infeasibility, SettingsError, SolveError};
+use crate::exchanges::Exchanges;
 use crate::problem::Problem;
 use crate::settings::{Contradiction, ForceSelection, Settings};
 use crate::solution::Solution;
@@ -60,6 +61,10 @@ pub struct DualActiveSet {
     /// Forces that do not pull, from which the answer is looked for, and whether they are those of an earlier one.
     pub(crate) admissible: Vec<f64>,
     pub(crate) knows_forces: bool,
+    /// While forces are moved to rows that are independent: which took the places of others, and the shares of
+    /// all rows in one that depends on them.
+    pub(crate) exchanges: Exchanges,
+    pub(crate) shares: Vec<f64>,
     pub(crate) shift: Shift,
     /// Whether contacts contradicted each other in the last attempt, connectors not counted.
     pub(crate) contacts_contradict: bool,
@@ -101,9 +106,9 @@ pub(crate) struct Attempt {
 
 /// The ways to treat rows that are dependent or nearly so.
 #[derive(Clone, Copy, Debug)]
-struct Attempts {
+pub(crate) struct Attempts {
     /// As the settings say contradictions are to be treated.
-    first: Attempt,
+    pub(crate) first: Attempt,
     /// Nearly dependent rows as independent ones, with forces as large as that takes.
     strict: Attempt,
     /// In the least-squares sense, whatever is left of bilateral rows.
@@ -202,7 +207,7 @@ impl DualActiveSet {
     ) -> Result<Option<HandOver>, SolveError> {
         let Settings { hand_over_rows, pivoting_rows, selection, .. } = self.settings;
         self.may_hand_over = problem.len() >= hand_over_rows;
-        let is_open = selection == ForceSelection::Quickest && problem.len() >= pivoting_rows;
+        let is_open = selection != ForceSelection::Pivoted && problem.len() >= pivoting_rows;
         self.patience = is_open.then_some(PATIENCE);
         let result = self.run(problem, start, solution);
         (self.may_hand_over, self.patience) = (false, None);
@@ -232,7 +237,7 @@ impl DualActiveSet {
     }
 
     /// The ways to treat rows that are dependent or nearly so.
-    fn attempts(&self) -> Attempts {
+    pub(crate) fn attempts(&self) -> Attempts {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
         let usual = Attempt { dependence, doubts: false, contradiction: as_given, is_last: false };

@@ -19,11 +19,11 @@ mod refining;
 mod sparing;
 mod structure;
 
+use crate::exchanges::Exchanges;
 use crate::order::RowOrder;
 use crate::settings::{DOUBTFUL, Settings};
 use factor::Factor;
 use refining::Refining;
-use sparing::Sparing;
 use structure::Shared;
 
 /// Part of a row's square below which what earlier rows leave of it is not told from rounding of their forces.
@@ -80,7 +80,7 @@ pub struct HeldRows {
     /// Earlier rows leave little of an independent one.
     is_delicate: bool,
     refining: Refining,
-    sparing: Sparing,
+    exchanges: Exchanges,
     /// Ĵ = J M^(-1/2), side by side.
     jacobian: Vec<[[f64; 3]; 2]>,
     work: Vec<f64>,
@@ -120,7 +120,7 @@ impl HeldRows {
             kept: Vec::new(),
             is_delicate: false,
             refining: Refining::default(),
-            sparing: Sparing::default(),
+            exchanges: Exchanges::default(),
             jacobian: Vec::new(),
             work: Vec::new(),
             motion: Vec::new(),

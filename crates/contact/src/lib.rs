@@ -15,7 +15,7 @@
 //! | `solution`, `check` | the answer and its residuals |
 //! | `settings`, `error`, `solver` | the numbers that methods decide by, what can go wrong, what a method is |
 //! | `system`, `entries` | the problem scaled to a unit diagonal, which the symmetric methods work on |
-//! | `dual_active_set`, `start`, `descent`, `spread`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
+//! | `dual_active_set`, `start`, `descent`, `spread`, `crossover`, `exchanges`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
 //! | `proximal_newton`, `interior_point`, `body_factor`, `line_search` | [`ProximalNewton`] |
 //! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
@@ -33,12 +33,14 @@ mod auto;
 mod body_factor;
 mod check;
 mod closed_rows;
+mod crossover;
 mod dependent;
 mod descent;
 mod dictionary;
 mod dual_active_set;
 mod entries;
 mod error;
+mod exchanges;
 mod held_rows;
 mod impact;
 mod interior_point;

@@ -96,8 +96,12 @@ pub enum ForceSelection {
     /// Whatever is found soonest: where many rows are redundant, all of them may carry force.
     #[default]
     Quickest,
-    /// Whatever the pivoting ends at: few rows carry force, and those do not depend on each other. For those
-    /// who go on with the rows that carry force, as an integrator does.
+    /// Whatever the pivoting ends at, however long that takes: few rows carry force. Only where so many rows
+    /// are redundant that the choice among them is arbitrary, all of them may. For those who go on with the
+    /// rows that carry force, as an integrator does: of rows that share, none that holds something is idle.
+    Pivoted,
+    /// Those of rows that do not depend on each other, as the pivoting ends at, or as others are moved to. Some of
+    /// these rows may have no force, by chance, as the second corner of a block that is balanced on the first.
     Vertex,
     /// The least sum of squares of the scaled forces `s_i f_i` among those that hold the same rows at rest:
     /// symmetric scenes show symmetric forces. Where masses are thousands of times apart, which rows are at

@@ -61,7 +61,7 @@ impl DualActiveSet {
     }
 
     /// Closes the bilateral rows; those that depend on others must agree with them.
-    fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
+    pub(crate) fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
         let independent = self.closed.close_bilateral();
         self.closed.kept = self.closed.len();
         if independent {

@@ -67,6 +67,7 @@ impl RigidSystem {
         settling.touches.clear();
         settling.passing.clear();
         settling.candidates.clear();
+        settling.is_start = region.cause == Cause::Start;
         let rest = match region {
             Region { cause: Cause::Start, .. } => self.start_rest(),
             Region { in_storm: true, .. } => self.storm_rest(),

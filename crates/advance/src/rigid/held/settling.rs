@@ -24,6 +24,9 @@ pub(crate) struct Settling {
     pub(super) problem: Problem,
     pub(super) solution: Solution,
     solver: Auto,
+    /// For the first forces of what is at rest at the start: there may be thousands of rows of which nothing is known.
+    sharing: Auto,
+    pub(super) is_start: bool,
     /// For contacts that contradict each other by more than rounding, but by little.
     lenient: Auto,
     /// Records that enter the problem.
@@ -62,16 +65,19 @@ impl Default for Settling {
             // Nearly redundant contacts that contradict each other get modest forces.
             contradiction: halfgap_contact::Contradiction::LeastSquares,
             // The rows that carry force are held, and had better not depend on each other.
-            selection: halfgap_contact::ForceSelection::Vertex,
+            selection: halfgap_contact::ForceSelection::Pivoted,
             ..Settings::default()
         };
         let solver = |settings| Auto::new(settings).expect("the settings are valid");
+        let sharing = Settings { selection: halfgap_contact::ForceSelection::Quickest, ..settings };
         let lenient =
             Settings { inconsistency: SMALL_CONTRADICTION, natural_residual: LENIENT_RESIDUAL, ..settings };
         Self {
             problem: Problem::new(),
             solution: Solution::new(),
             solver: solver(settings),
+            sharing: solver(sharing),
+            is_start: false,
             lenient: solver(lenient),
             candidates: Vec::new(),
             dropped: Vec::new(),
@@ -107,9 +113,10 @@ impl Settling {
         } else {
             self.guess.guess_forces(self.candidates.iter().map(|&index| self.forces[index]));
         }
-        self.solver
+        let solver = if self.is_start { &mut self.sharing } else { &mut self.solver };
+        solver
             .solve_from(&self.problem, &self.guess, &mut self.solution)
-            .or_else(|_| self.solver.solve(&self.problem, &mut self.solution))?;
+            .or_else(|_| solver.solve(&self.problem, &mut self.solution))?;
         self.forces.resize(self.likely.len(), None);
         for (place, &index) in self.candidates.iter().enumerate() {
             self.forces[index] = Some(self.solution.force[place]);
