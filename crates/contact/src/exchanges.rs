@@ -13,7 +13,7 @@ const LEAST_SHARE: f64 = 1e-9;
 /// Part of the size of a row below which the share of the one whose place it takes makes much of rounding.
 const SMALL_SHARE: f64 = 1e-3;
 /// So many rows may take places of others before all is to be eliminated anew, for rounding adds up.
-const MOST: usize = 64;
+const MOST: usize = 400;
 
 /// A row that took the place of another.
 #[derive(Clone, Copy, Debug)]
