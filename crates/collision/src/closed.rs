@@ -49,6 +49,14 @@ impl Quadratic {
         }
     }
 
+    /// Until when a pair that closes at a time goes on to do so, and is no deeper than `depth` [m].
+    pub(crate) fn closes_until(&self, time: f64, depth: f64) -> f64 {
+        let (c, v) = (self.c + (self.v + 0.5 * self.a * time) * time, self.v + self.a * time);
+        let turns = if self.a > 0.0 { (-v / self.a).max(0.0) } else { f64::INFINITY };
+        let is_deep = first_closing_time(c + depth * self.scale, v, self.a).unwrap_or(f64::INFINITY);
+        time + turns.min(is_deep)
+    }
+
     /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative; infinite if
     /// there is none.
     ///

@@ -270,9 +270,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
                 let Some(kind) = pair_kind(a, b) else { continue };
                 let ids = [FeatureId::from_index(index_a), FeatureId::from_index(index_b)];
                 let Some(pair) = self.pair(kind, ids, a, b) else { continue };
-                if let Some(contact) =
-                    self.closed_form(&pair, ids, from)?.filter(|found| found.time < progress.clear)
-                {
+                if let Some(contact) = self.closed_form(&pair, ids, from, progress.clear)? {
                     progress.offer(contact);
                 }
             }
@@ -280,18 +278,37 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         Some(progress.into_search())
     }
 
-    /// The contact of one pair after `from` by closed form: outer `None` if it has none, inner if it does not touch.
-    fn closed_form(&self, pair: &Pair<'_>, ids: [FeatureId; 2], from: f64) -> Option<Option<FirstContact>> {
+    /// The contact of one pair after `from` and before `limit` by closed form: outer `None` if it has none, inner if it
+    /// does not touch.
+    fn closed_form(
+        &self,
+        pair: &Pair<'_>,
+        ids: [FeatureId; 2],
+        from: f64,
+        limit: f64,
+    ) -> Option<Option<FirstContact>> {
         let offsets = [self.a.offset + from, self.b.offset + from];
         let (a, b) = ((pair.feature_a, self.a.motion), (pair.feature_b, self.b.motion));
         let curve = quadratic(pair.kind, a, b, offsets, pair.target)?;
         let Some(wait) = curve.first_closing(pair.depth) else { return Some(None) };
         let time = from + wait;
-        Some(self.touches_at(pair, time).then_some(FirstContact {
-            time,
-            feature_a: ids[0],
-            feature_b: ids[1],
-        }))
+        if time >= limit {
+            return Some(None);
+        }
+        let contact = |time: f64| FirstContact { time, feature_a: ids[0], feature_b: ids[1] };
+        if self.touches_at(pair, time) {
+            return Some(Some(contact(time)));
+        }
+        // Beside its features it may sink: it touches if it comes upon them before it is too deep for that.
+        let end = limit.min(from + curve.closes_until(wait, pair.depth));
+        if end <= time {
+            return Some(None);
+        }
+        let sinking = Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], time, end);
+        match sinking.march(pair, time, end, self.march_steps()) {
+            MarchEnd::Closes(time) => Some(Some(contact(time))),
+            MarchEnd::NoneBefore(time) => (time >= end).then_some(None),
+        }
     }
 
     /// True if the contact point lies within both features at that time.
@@ -462,9 +479,9 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     ) {
         let limit = progress.clear;
         if self.is_parabolic(start)
-            && let Some(found) = self.closed_form(pair, ids, start)
+            && let Some(found) = self.closed_form(pair, ids, start, limit)
         {
-            if let Some(contact) = found.filter(|contact| contact.time < limit) {
+            if let Some(contact) = found {
                 progress.offer(contact);
             }
             return;

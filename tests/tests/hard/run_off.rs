@@ -153,3 +153,96 @@ fn an_escapement_ticks_alike_at_all_tolerances() {
         within("Graham's escapement, 20 s: pendulum's angle [rad]", angle(tolerance) - fine, 0.1 * tolerance);
     }
 }
+
+/// A disc of 0.2 m slides up a side without losing its corner: it goes about it at nearly the speed at which it would fly
+/// off, and comes over the next side deeper than where it first touches it.
+struct OverCorner {
+    tolerance: f64,
+    /// Sides that meet at the origin, as ends of edges [m]; with an arc between them from there, which ends and has its
+    /// centre at these places.
+    before: [f64; 2],
+    arc: Option<[[f64; 2]; 2]>,
+    after: [f64; 2],
+    position: [f64; 2],
+    velocity: [f64; 2],
+}
+
+impl OverCorner {
+    fn world(&self) -> World {
+        let Self { tolerance, before, arc, after, position, velocity } = self;
+        let arc = arc.map_or(String::new(), |[to, center]| {
+            format!("{{ arc = {{ to = {to:?}, center = {center:?} }} }},")
+        });
+        let (foot, other) = ([after[0] - 0.5, -4.0], [before[0] + 0.5, -4.0]);
+        world_of(&format!(
+            r#"
+format = "halfgap-scene-1"
+title = "Over a corner"
+run = {{ duration = 0.1, tolerance = {tolerance:e} }}
+force = [{{ gravity = {{ acceleration = [0.0, -9.81] }} }}]
+
+[[body]]
+name = "ground"
+fixed = true
+center_of_mass = [0.0, 0.0]
+[[body.shape.outline.paths]]
+start = {before:?}
+edges = [
+    {{ line = [0.0, 0.0] }}, {arc}
+    {{ line = {after:?} }}, {{ line = {foot:?} }}, {{ line = {other:?} }}, {{ line = {before:?} }},
+]
+
+[[body]]
+name = "disc"
+shape = {{ disc = {{ radius = 0.2 }} }}
+mass = 1.0
+position = {position:?}
+velocity = {velocity:?}
+elasticity = 0.0
+"#
+        ))
+    }
+}
+
+#[test]
+fn a_disc_that_all_but_flies_off_a_corner_comes_down_on_the_next_side() {
+    let cases = [
+        OverCorner {
+            tolerance: 1e-8,
+            before: [0.571_151_420_502_878_9, -0.820_844_720_308_015_1],
+            arc: None,
+            after: [-0.571_246_259_463_246_5, 0.820_778_722_341_929],
+            position: [0.164_999_703_099_459_77, 0.113_036_337_736_229_33],
+            velocity: [-0.610_930_865_066_382_1, 0.878_014_755_914_312_6],
+        },
+        OverCorner {
+            tolerance: 4.891_535_813_115_034e-4,
+            before: [0.942_116_990_504_652_7, -0.335_284_321_438_471_14],
+            arc: None,
+            after: [-0.946_344_205_061_447, 0.323_160_402_194_665_4],
+            position: [0.070_896_001_233_811_87, 0.187_057_555_500_007_83],
+            velocity: [-1.291_343_049_276_416_2, 0.459_568_272_714_206_14],
+        },
+        OverCorner {
+            tolerance: 7.617_697_012_865_256e-3,
+            before: [0.962_053_863_083_273, -0.272_859_605_890_192],
+            arc: Some([
+                [-5.391_127_370_936_162e-4, 1.416_967_979_533_424_7e-4],
+                [-3.931_645_429_417_193e-3, -1.386_227_419_520_166_5e-2],
+            ]),
+            after: [-0.972_426_856_606_300_7, 0.235_586_410_726_345_87],
+            position: [0.062_748_811_121_965_48, 0.190_107_463_354_551_6],
+            velocity: [-1.388_523_547_107_360_7, 0.393_815_775_157_041_97],
+        },
+    ];
+    for case in cases {
+        let mut world = case.world();
+        impacts(&mut world, 0.1);
+        let [ground, disc] = ["ground", "disc"].map(|name| world.find(name).expect("it is there"));
+        let shapes = [ground, disc].map(|body| world.shape(body).clone());
+        let poses = [ground, disc].map(|body| world.state(body).pose());
+        let gap = shapes[0].distance(&poses[0], &shapes[1], &poses[1]).distance;
+        // No deeper than rounding, no farther off than it flies by then.
+        within("disc over a corner: gap, by the tolerance [m]", gap.min(0.0) / case.tolerance, 1e-3);
+    }
+}

@@ -7,7 +7,7 @@ use halfgap_collision::{
     BodyState, FeatureRule, Flight, Motion, MovingShape, PairSearch, Search, SearchSettings, Tolerances,
     disc_contact, first_contact, search_step,
 };
-use halfgap_geometry::{EdgeSpec, Feature, FeatureId, PathSpec, Shape};
+use halfgap_geometry::{EdgeSpec, Feature, FeatureId, PathSpec, Pose, Shape};
 
 /// Pairs of bodies that are tried.
 const PAIRS: u64 = 10_000;
@@ -337,6 +337,45 @@ fn a_rule_with_a_wider_gap_than_all_others_fires() {
     let search =
         PairSearch { a: &side_a, b: &side_b, tolerances: &narrow, settings: &settings, rules: &rules };
     assert_eq!(search.step(0.0, 1e-3), Search::Contact(found));
+}
+
+/// A disc leaves a corner of the ground so slowly that it has sunk below the target gap of the next side by the time
+/// that it comes over it, while the corner, which it touched before, fires later.
+#[test]
+fn what_sinks_beside_a_side_touches_it_when_it_comes_upon_it() {
+    let corners = [
+        (22.56, -3.0),
+        (22.56, 0.195_099_590_626_241_71),
+        (22.52, 0.236_430_246_319_327_52),
+        (22.48, 0.275_837_297_113_934_7),
+        (22.44, 0.313_114_654_074_220_34),
+        (22.44, -3.0),
+    ];
+    let ground = Shape::polygon(&corners.map(|(x, y)| DVec2::new(x, y))).expect("a fine ground");
+    let disc = Shape::disc(0.2).expect("a fine radius");
+    let is_tip =
+        |feature: &Feature| matches!(feature, Feature::Round(round) if (round.center.x - 22.52).abs() < 1e-9);
+    let tip = FeatureId::from_index(ground.features().iter().position(is_tip).expect("a corner"));
+    let start = BodyState {
+        position: DVec2::new(22.663_721_543_736_695, 0.375_524_882_916_058_2),
+        velocity: DVec2::new(-0.820_236_665_705_321_2, 0.847_522_980_427_801_7),
+        ..BodyState::default()
+    };
+    let (flight, rest) =
+        (Flight::new(start, DVec2::new(0.0, -9.81), 0.0, 0.0), Flight::fixed(DVec2::ZERO, 0.0));
+    let a = MovingShape { shape: &disc, motion: &flight, offset: 0.0 };
+    let b = MovingShape { shape: &ground, motion: &rest, offset: 0.0 };
+    let target = 8e-6;
+    let tolerances = Tolerances { target_gap: target, accuracy: 1.2e-5, velocity_tol: 1e-2 };
+    let settings = SearchSettings { depth: target + 2e-5, ..SearchSettings::default() };
+    for lowered in [8e-6, 7.5e-6, 7e-6, 6.5e-6] {
+        let rules = [FeatureRule { features: [FeatureId(0), tip], target: Some(lowered) }];
+        let search = PairSearch { a: &a, b: &b, tolerances: &tolerances, settings: &settings, rules: &rules };
+        let Search::Contact(contact) = search.step(0.0, 0.05) else { panic!("{lowered}: none") };
+        let place = flight.state_at(contact.time).position;
+        let gap = disc.distance(&Pose::new(place, 0.0), &ground, &Pose::IDENTITY).distance;
+        assert!(gap > 0.0 && gap <= target + 1e-12, "{gap:e} at {contact:?}");
+    }
 }
 
 #[test]
