@@ -4,7 +4,7 @@ use super::{bounced, within};
 use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
 use halfgap::{BodyId, BodyState, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, pendulum_period, thrown};
-use halfgap_tests::reference_scene;
+use halfgap_tests::{reference_scene, world_of};
 
 #[test]
 fn a_small_disc_meets_one_ten_thousand_times_as_large_and_a_billion_times_as_heavy() {
@@ -248,5 +248,58 @@ fn what_is_fast_elsewhere_does_not_make_a_bounce_slow() {
             let off = bounce_beside(tolerance, spin, width, bullet);
             within(&format!("bounce beside {what} at {tolerance:e}: height [m]"), off, tolerance);
         }
+    }
+}
+
+/// A slider of 1 kg goes through the anchor of its spring, 1 m long when it is slack, at 5 m/s: its force turns about in
+/// no time. Where it is half a second later, by a clock that begins at the given time [s].
+fn through_anchor(start: f64) -> f64 {
+    let mut world = world_of(&format!(
+        r#"
+format = "halfgap-scene-1"
+title = "Through the anchor of a spring"
+run = {{ start_time = {start:?}, duration = 1.0 }}
+
+[[body]]
+name = "slider"
+shape = {{ block = {{ width = 0.3, height = 0.3 }} }}
+mass = 1.0
+position = [0.5, 0.0]
+velocity = [-5.0, 0.0]
+
+[[force]]
+[force.spring]
+a = {{ body = "world", point = [0.0, 0.0] }}
+b = {{ body = "slider", point = [0.0, 0.0] }}
+rest_length = 1.0
+stiffness = 10.0
+"#
+    ));
+    world.advance_to(start + 0.5, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));
+    world.state(world.find("slider").expect("it is there")).position.x
+}
+
+#[test]
+fn a_late_clock_takes_steps_as_short_as_an_early_one() {
+    let expected = {
+        // Harmonic on either side: x = 1 + a cos wt + b sin wt up to the anchor, then the mirror image of it.
+        let rate = 10.0_f64.sqrt();
+        let (mut low, mut high) = (0.0, 0.5);
+        let before = |t: f64| 1.0 - 0.5 * (rate * t).cos() - 5.0 / rate * (rate * t).sin();
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            (low, high) = if before(middle) > 0.0 { (middle, high) } else { (low, middle) };
+        }
+        let speed = (0.5 * rate * (rate * low).sin() - 5.0 * (rate * low).cos()).abs();
+        let since = rate * (0.5 - low);
+        -1.0 + since.cos() - speed / rate * since.sin()
+    };
+    for start in [0.0, 1e3, 1e6, 1e9] {
+        within(
+            &format!("through the anchor of a spring at {start:e} s: place [m]"),
+            through_anchor(start) - expected,
+            // A clock of two numbers is read as one.
+            1e-8 + 5.0 * f64::EPSILON * start,
+        );
     }
 }

@@ -373,7 +373,8 @@ impl Dynamics<'_> {
     }
 
     /// When a contact that is touched without force sinks on its features, beyond which it was seen to: what
-    /// is turned away may be turned back, and then sinks at once.
+    /// is turned away may be turned back, and then sinks at once. What has gone round its body by then, and
+    /// lies behind its features, does not.
     fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
         let span = self.group.span;
         let mut read = |offset: f64| {
@@ -381,7 +382,11 @@ impl Dynamics<'_> {
             self.height(row).max(-self.idle_way(row))
         };
         let values = std::array::from_fn(|index| read(node(index, span)));
-        first_fall_before(&values, span, None, read)
+        let fall = first_fall_before(&values, span, None, read)?;
+        self.put_idle_at(row, fall);
+        let mechanism = &self.physics.mechanism;
+        let gap = mechanism.gap(&self.group.idle[row], &self.stage.movings);
+        (gap > -mechanism.tolerances.distance_tol()).then_some(fall)
     }
 
     /// How far a row is from running off its features, without end for one that cannot.

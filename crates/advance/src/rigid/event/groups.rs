@@ -308,8 +308,8 @@ impl RigidSystem {
         idle.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
-    /// Hands the contacts of a group that have opened beyond the target zone, or run as far off their
-    /// features, and the ropes that have slackened as much, back to the search.
+    /// Hands the contacts of a group that have opened beyond the target zone, run as far off their
+    /// features, or gone round their bodies and lie behind them, and the ropes that have slackened as much, back to the search.
     pub(crate) fn let_go(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
@@ -320,7 +320,8 @@ impl RigidSystem {
             let touch = Touch { bodies: row.bodies, features };
             let [a, b] = row.bodies.map(|body| self.moving_at(body, self.now));
             let has_run_off = self.mechanism().overrun(row.bodies, features, [&a, &b]) > opened;
-            let stays = self.gap_at(touch, self.now).0 < opened && !has_run_off;
+            let gap = self.gap_at(touch, self.now).0;
+            let stays = gap < opened && gap > -self.settings.tolerances.distance_tol() && !has_run_off;
             if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
                 self.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
                 // It has left the target zone: when it comes back it is no low bounce.

@@ -25,7 +25,8 @@ pub struct StepControl {
 
 /// No step is longer [s]: nobody looks so far, and what is read there means nothing.
 pub(crate) const LONGEST_STEP: f64 = 1e12;
-/// Steps shorter than this many machine epsilons of the clock mean that the step size has collapsed.
+/// Steps shorter than this many machine epsilons of the clock, or of the time in which what is as fast as the scene
+/// crosses it if that is less, mean that the step size has collapsed. The clock itself resolves far less.
 const COLLAPSED: f64 = 64.0;
 /// Exponent of the error in the first step: one over the order of the default method.
 const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
@@ -103,7 +104,8 @@ impl Dynamics<'_> {
         // Without an error estimate a step is as long as it is said to be.
         let said = control.largest_step.filter(|_| !method.is_adaptive());
         let mut step = said.or(self.group.next_step).unwrap_or_else(|| self.first_step(control)).min(limit);
-        let shortest = COLLAPSED * f64::EPSILON * self.start.seconds().abs();
+        let shortest =
+            COLLAPSED * f64::EPSILON * self.start.seconds().abs().min(control.length / control.speed);
         let work_scale = self.work_scale(control);
         let (mut rejected, mut placements, mut is_led, proposed) = (false, 0, false, step);
         loop {
