@@ -28,7 +28,7 @@ const SPLIT_ROWS: usize = 48;
 const LAST_RESORT_ROWS: usize = 400;
 
 /// Chooses a method, and another if that fails.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Auto {
     settings: Settings,
     islands: Islands,
@@ -42,7 +42,7 @@ pub struct Auto {
     checker: Checker,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Methods {
     settings: Settings,
     dual: DualActiveSet,

@@ -43,6 +43,29 @@ impl fmt::Debug for Analysis {
     }
 }
 
+impl Clone for BodyFactor {
+    /// The analysis, which cannot be copied, is made anew: of the same pattern it is the same.
+    fn clone(&self) -> Self {
+        let mut copy = Self {
+            start: self.start.clone(),
+            column: self.column.clone(),
+            column_start: self.column_start.clone(),
+            row: self.row.clone(),
+            value: self.value.clone(),
+            place: self.place.clone(),
+            place_start: self.place_start.clone(),
+            analysis: None,
+        };
+        if let Some(known) = &self.analysis {
+            copy.analyse(self.column_start.len() - 1);
+            if let Some(analysis) = &mut copy.analysis {
+                analysis.factor.copy_from_slice(&known.factor);
+            }
+        }
+        copy
+    }
+}
+
 impl BodyFactor {
     /// Prepares for the rows of `system`; the analysis is kept if the pattern is the same. Returns whether it could.
     pub(crate) fn prepare(&mut self, system: &System, columns: usize) -> bool {

@@ -38,7 +38,7 @@ const CENTRING: i32 = 3;
 const BILATERAL_TERM: f64 = 1e-9;
 
 /// The method with its buffers; of each row f and a, their changes, and what the equations are short of.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct InteriorPoint {
     pub(crate) force: Vec<f64>,
     pub(crate) acceleration: Vec<f64>,

@@ -62,7 +62,7 @@ enum Begin {
 }
 
 /// The proximal method with its buffers.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ProximalNewton {
     settings: Settings,
     system: System,

@@ -2,10 +2,11 @@
 //! its bodies in another order.
 
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{BodyState, Record, RunPlan, RunReport, World, run, unwatched};
+use halfgap::{BodyState, Event, Record, RunPlan, RunReport, World, run, unwatched};
 use halfgap_tests::data;
 use halfgap_tests::generate::scene_of_seed;
 use serde_json::Value;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
 
@@ -106,6 +107,36 @@ fn generated_scenes_give_the_same_bits_again() {
     for seed in [2, 4, 6, 8, 9, 11, 13, 16, 17, 21] {
         let scene = parse(&scene_of_seed(seed).to_string());
         assert_eq!(hash_of(&scene), hash_of(&scene), "seed {seed}");
+    }
+}
+
+/// All that happens in a scene, as text, and where its bodies are at the end: by one world, or by a new copy of it after each
+/// event.
+fn told(scene: &Scene, is_copied: bool) -> (Vec<String>, Vec<BodyState>) {
+    let mut world = World::from_scene(scene).expect("a world that can be built");
+    let mut events = Vec::new();
+    loop {
+        let mut stop = |event: &Event| {
+            events.push(format!("{event:?}"));
+            ControlFlow::Break(())
+        };
+        match world.advance_while(scene.run.start_time + scene.run.duration, &mut stop) {
+            Ok(ControlFlow::Break(())) if is_copied => world = world.clone(),
+            Ok(ControlFlow::Break(())) => {}
+            Ok(ControlFlow::Continue(())) => return (events, states(&world)),
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+#[test]
+fn a_copy_goes_on_as_its_original() {
+    let names = ["straight_straight__six_blocks_1", "exact__newtons_cradle", "apps__chain"];
+    let heaps = [2, 4, 6, 8, 9, 11].map(|seed| parse(&scene_of_seed(seed).to_string()));
+    for scene in names.into_iter().map(scene).chain(heaps) {
+        let ((events, ends), (of_copies, ends_of_copies)) = (told(&scene, false), told(&scene, true));
+        assert!(events == of_copies, "{}: events differ", scene.title);
+        assert_eq!(ends, ends_of_copies, "{}", scene.title);
     }
 }
 

@@ -10,7 +10,7 @@ use crate::rigid::system::RigidSystem;
 use halfgap_contact::{HeldRows, Inertia};
 
 /// Buffers: the rows of the candidates, and their forces [N].
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Redundant {
     held: HeldRows,
     inertia: Vec<Inertia>,

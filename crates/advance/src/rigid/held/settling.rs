@@ -19,7 +19,7 @@ pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
 const LENIENT_RESIDUAL: f64 = 1e-6;
 
 /// Solves for contact forces, with its buffers.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Settling {
     pub(super) problem: Problem,
     pub(super) solution: Solution,
@@ -95,13 +95,6 @@ impl Default for Settling {
             gross: Vec::new(),
             pushed: Vec::new(),
         }
-    }
-}
-
-impl Clone for Settling {
-    /// Buffers hold nothing worth copying.
-    fn clone(&self) -> Self {
-        Self::default()
     }
 }
 
