@@ -21,7 +21,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub struct Ray {
     /// Where it starts [m].
     pub origin: DVec2,
-    /// Unit vector in which it goes.
+    /// In which direction it goes: of any length but none.
     pub direction: DVec2,
 }
 
@@ -42,7 +42,7 @@ pub struct RayHit {
 impl Shape {
     /// Finds the first point within `max_distance` [m] at which a ray meets the outline, from outside or inside.
     ///
-    /// Whether a ray that starts on the outline meets it at once, and whether one that only touches an arc meets it, is
+    /// None is met in a direction that is zero or no number. Whether a ray that starts on the outline meets it at once, and whether one that only touches an arc meets it, is
     /// for rounding to say.
     ///
     /// # Examples
@@ -58,12 +58,13 @@ impl Shape {
     /// ```
     #[must_use]
     pub fn cast_ray(&self, ray: &Ray, max_distance: f64) -> Option<RayHit> {
+        let ray = ray.of_unit_direction()?;
         let inverse = ray.direction.recip();
         let bound = |node: &Node| ray.entry_into_box(&node.bounds, inverse);
         let limit = max_distance.next_up();
         let found = self.tree().find_least(limit, &bound, &mut |feature| {
             let id = self.whole_edge(feature)?;
-            Some((ray.distance_to(self.edge(id))?, id))
+            Some((ray.along_to(self.edge(id))?, id))
         });
         let (distance, edge) = found?;
         let point = ray.origin + ray.direction * distance;
@@ -75,6 +76,16 @@ impl Ray {
     /// Distance [m] along the ray at which it first meets an edge, if it does.
     #[must_use]
     pub fn distance_to(&self, edge: &Edge) -> Option<f64> {
+        self.of_unit_direction()?.along_to(edge)
+    }
+
+    /// The ray with a unit vector as its direction, if it has one.
+    fn of_unit_direction(&self) -> Option<Self> {
+        Some(Self { direction: self.direction.try_normalize()?, ..*self })
+    }
+
+    /// The same for a direction that is a unit vector.
+    fn along_to(&self, edge: &Edge) -> Option<f64> {
         match edge {
             Edge::Line(line) => self.distance_to_line(line),
             Edge::Arc(arc) => self.distance_to_arc(arc),

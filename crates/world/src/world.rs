@@ -160,10 +160,10 @@ impl World {
         name_among(&self.bodies, body)
     }
 
-    /// True for a body that nothing moves.
+    /// True for a body that nothing moves, and for the background.
     #[must_use]
     pub fn is_fixed(&self, body: BodyId) -> bool {
-        self.bodies[body.index()].inertia.is_none()
+        body.is_world() || self.bodies[body.index()].inertia.is_none()
     }
 
     /// A body's shape in body coordinates, whose origin is the centre of mass.
@@ -178,16 +178,16 @@ impl World {
         self.bodies[body.index()].center_of_mass
     }
 
-    /// A body's mass and moment of inertia; `None` for a fixed body.
+    /// A body's mass and moment of inertia; `None` for a fixed body and for the background.
     #[must_use]
     pub fn inertia(&self, body: BodyId) -> Option<Inertia> {
-        self.bodies[body.index()].inertia
+        if body.is_world() { None } else { self.bodies[body.index()].inertia }
     }
 
-    /// A body's state at the present time.
+    /// A body's state at the present time; the background is at rest at the origin.
     #[must_use]
     pub fn state(&self, body: BodyId) -> BodyState {
-        self.system.flyer(body).state_at(self.now)
+        if body.is_world() { BodyState::default() } else { self.system.flyer(body).state_at(self.now) }
     }
 
     /// Energy at the present time.

@@ -248,6 +248,16 @@ proptest! {
     }
 
     #[test]
+    fn how_long_the_direction_of_a_ray_is_does_not_matter(shape in any_shape(), origin in any_vector(3.0), angle in any_angle(), power in -40i32..40) {
+        let direction = DVec2::from_angle(angle);
+        let of_length = |length: f64| shape.cast_ray(&Ray { origin, direction: direction * length }, f64::INFINITY);
+        // A power of two rounds nothing.
+        prop_assert_eq!(of_length(2.0_f64.powi(power)), of_length(1.0));
+        prop_assert_eq!(of_length(0.0), None);
+        prop_assert_eq!(of_length(f64::NAN), None);
+    }
+
+    #[test]
     fn a_ray_at_a_vertex_does_not_slip_through(shape in any_shape(), origin in any_vector(3.0), which in 0usize..40) {
         let edges: Vec<&Edge> = shape.edges().collect();
         let target = edges[which % edges.len()].from();

@@ -1,7 +1,7 @@
 //! Impacts with known answers, through the facade.
 
 use halfgap::geometry::{DVec2, Shape};
-use halfgap::{BodySpec, BodyState, World, WorldBuilder, WorldSettings};
+use halfgap::{BodyId, BodySpec, BodyState, World, WorldBuilder, WorldSettings};
 
 fn builder(tolerance: f64) -> WorldBuilder {
     WorldBuilder::new(WorldSettings { tolerance, ..WorldSettings::default() })
@@ -148,4 +148,15 @@ fn tumbling_shapes_converge_with_the_tolerance_and_keep_their_energy() {
         println!("shape {index}: {errors:?}");
         assert!(errors[0] < 1e-4 && errors[2] < 1e-8, "shape {index}: {errors:?}");
     }
+}
+
+#[test]
+fn the_background_is_told_of_as_bodies_are() {
+    let mut builder = builder(1e-8);
+    builder.add(BodySpec::movable("ball", disc(0.5), 1.0, BodyState::default()));
+    let world = builder.build().expect("a fine world");
+    assert_eq!(world.name(BodyId::WORLD), "world");
+    assert_eq!(world.state(BodyId::WORLD), BodyState::default());
+    assert!(world.is_fixed(BodyId::WORLD));
+    assert_eq!(world.inertia(BodyId::WORLD), None);
 }

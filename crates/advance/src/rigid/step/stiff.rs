@@ -25,7 +25,7 @@ const TELLING_STEPS: u32 = 8;
 /// Cap on such doublings.
 const MOST_DOUBLINGS: u32 = 6;
 /// Groups with more numbers in their state are not tried: the equations would be larger than they are worth.
-const MOST_NUMBERS: usize = 300;
+const MOST_NUMBERS: usize = 600;
 /// Explicit steps of the default method ask for so many rates, with their dense output.
 const EXPLICIT_COST: f64 = 15.0;
 /// An implicit step asks for so many rates beside one for each number of the state.

@@ -18,6 +18,8 @@ const INNER_ERROR: f64 = 3.86e-8;
 /// loop, which may fold, and only in angles it is led over that. Of fewer pins no more than half as many, or steps
 /// along the rows are cheaper.
 const LOOP: usize = 6;
+/// No more rows than this beside those of the tree: their matrix is full, where rows without a tree make a narrow one.
+const MOST_BESIDE: usize = 64;
 
 /// A pin between two bodies, or a body and the world.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +85,7 @@ impl Dynamics<'_> {
         rest.rows.extend((0..rows.len()).filter(|row| hung.binary_search(row).is_err()));
         let is_sound = |link: &Link| link.mass.is_finite() && link.moment.is_finite();
         let most = if hung.len() < LOOP { hung.len() / 2 } else { hung.len() };
-        if rest.rows.len() > most || hung.is_empty() || !links.iter().all(is_sound) {
+        if rest.rows.len() > most.min(MOST_BESIDE) || hung.is_empty() || !links.iter().all(is_sound) {
             tree.clear();
             return;
         }
