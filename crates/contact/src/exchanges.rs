@@ -99,10 +99,10 @@ impl Exchanges {
     }
 }
 
-/// Which row is to have no force, and how much the dependent row, whose force is not negative, gives to those that
-/// it is the sum of until that has none; less than nothing if it takes from them. Those of the others that may pull
-/// are not among them. Of the two that are the first to have none, one either way, it is the one with the larger part: the
-/// others are then known best from each other, and a block on four corners ends on two that are far apart.
+/// Which row is to have no force, and how much the dependent row, whose force is not negative, gives until then to the others,
+/// of which it is the sum; less than nothing if it takes from them. Rows that may pull are left out. Of the two that are
+/// the first to have no force, one either way, it is the one with the larger part in the dependent row: what is left is farther from dependent
+/// then, and a block on four corners ends on two that are far apart.
 pub(crate) fn first_to_vanish(dependent: Party, others: impl Iterator<Item = Party> + Clone) -> (Party, f64) {
     let least_part = LEAST_SHARE * LEAST_SHARE * dependent.square;
     let until = |party: &Party| party.force / party.share.abs();

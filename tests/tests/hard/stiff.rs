@@ -141,3 +141,37 @@ fn a_dot_whose_spin_has_decayed_does_not_spin_between_steps() {
     within("dot in syrup, 20 ms: spin [rad/s]", most, 1e-9);
     few_steps("dot in syrup, 20 ms: steps", &world);
 }
+
+#[test]
+fn a_chain_of_dots_in_syrup_creeps_however_many_they_are() {
+    // On dashpots and stiff springs, damped by c: all fall at m g/c but for what is left of their start, while the chain
+    // hangs on nothing and is as long as it was.
+    let (mass, damping, spacing) = (1.0, 1e3, 1.0);
+    for count in [10, 60] {
+        let mut shop = Workshop::new(1e-6);
+        let place = |index: u32| DVec2::new(spacing * f64::from(index), 0.0);
+        let dots: Vec<BodyId> = (0..count)
+            .map(|index| shop.body(&format!("dot {index}"), disc(0.1), mass, at_rest(place(index).x, 0.0)))
+            .collect();
+        for (index, pair) in dots.windows(2).enumerate() {
+            let ends = [pair[0], pair[1]].map(|body| Anchor { body, point: DVec2::ZERO });
+            let spring = Spring::new(&format!("spring {index}"), ends, spacing, 1e4);
+            shop.builder.add_force(Arc::new(spring));
+            shop.builder.add_force(Arc::new(Dashpot::new(&format!("dashpot {index}"), ends, 1e3)));
+        }
+        dots.iter().for_each(|&dot| shop.builder.add_damping(dot, damping, damping));
+        let mut world = shop.build();
+        advance(&mut world, 1.0);
+        let rate = damping / mass;
+        let fallen = GRAVITY / rate * (1.0 - (1.0 - (-rate).exp()) / rate);
+        let last = *dots.last().expect("there are dots");
+        within(
+            &format!("{count} dots in syrup, 1 s: fallen [m]"),
+            world.state(last).position.y + fallen,
+            1e-6,
+        );
+        let length = world.state(last).position.x - world.state(dots[0]).position.x;
+        within(&format!("{count} dots in syrup, 1 s: length [m]"), length - place(count - 1).x, 1e-6);
+        few_steps(&format!("{count} dots in syrup, 1 s: steps"), &world);
+    }
+}

@@ -26,6 +26,7 @@ pub(crate) struct Settling {
     solver: Auto,
     /// For the first forces of what is at rest at the start: there may be thousands of rows of which nothing is known.
     sharing: Auto,
+    /// Nothing has happened yet: that solver is asked.
     pub(super) is_start: bool,
     /// For contacts that contradict each other by more than rounding, but by little.
     lenient: Auto,

@@ -19,7 +19,7 @@ const INNER_ERROR: f64 = 3.86e-8;
 /// along the rows are cheaper.
 const LOOP: usize = 6;
 /// No more rows than this beside those of the tree: their matrix is full, where rows without a tree make a narrow one.
-const MOST_BESIDE: usize = 64;
+pub(super) const MOST_BESIDE: usize = 64;
 
 /// A pin between two bodies, or a body and the world.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! Trees say the same as the rows of their pins.
 
+use super::build::MOST_BESIDE;
 use crate::rigid::motion::flyer::{FlightLaw, Flyer};
 use crate::rigid::step::dynamics::{Dynamics, Physics, Stage, set_body_state};
 use crate::rigid::step::group::Group;
@@ -221,6 +222,28 @@ fn a_pin_given_twice_is_told_to_be_singular() {
         assert!(dynamics.leave_singular_tree());
         assert!(!dynamics.group.tree.is_used());
     });
+}
+
+#[test]
+fn more_loops_than_a_full_matrix_is_worth_are_left_to_the_rows() {
+    let link = Hung {
+        on: On::Earlier(0.99),
+        arms: [DVec2::new(-0.5, 0.0), DVec2::new(0.5, 0.1)],
+        state: BodyState::default(),
+        mass: 1.0,
+    };
+    // A chain of forty, with pins beside: of two rows each.
+    for (loops, is_used) in [(1, true), (MOST_BESIDE / 2, true), (MOST_BESIDE / 2 + 1, false)] {
+        let mut scene = Scene::new(&vec![link.clone(); 40]);
+        for _ in 0..loops {
+            scene.connect(|[a, b]| ConnectorKind::Pin { a, b });
+        }
+        scene.with_dynamics(|dynamics| {
+            dynamics.set_out();
+            dynamics.find_tree_for(STEP_ERROR);
+            assert_eq!(dynamics.group.tree.is_used(), is_used, "{loops} pins beside the chain");
+        });
+    }
 }
 
 /// A slot, with a normal, at (0.2, 0.1) between a body that is pinned to the origin and another.
