@@ -155,9 +155,9 @@ fn a_chain_of_dots_in_syrup_creeps_however_many_they_are() {
             .collect();
         for (index, pair) in dots.windows(2).enumerate() {
             let ends = [pair[0], pair[1]].map(|body| Anchor { body, point: DVec2::ZERO });
-            let spring = Spring::new(&format!("spring {index}"), ends, spacing, 1e4);
+            let spring = Spring::new(format!("spring {index}"), ends, spacing, 1e4);
             shop.builder.add_force(Arc::new(spring));
-            shop.builder.add_force(Arc::new(Dashpot::new(&format!("dashpot {index}"), ends, 1e3)));
+            shop.builder.add_force(Arc::new(Dashpot::new(format!("dashpot {index}"), ends, 1e3)));
         }
         dots.iter().for_each(|&dot| shop.builder.add_damping(dot, damping, damping));
         let mut world = shop.build();
