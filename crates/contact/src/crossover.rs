@@ -94,7 +94,7 @@ impl DualActiveSet {
                 continue;
             }
             closed.find_response();
-            // Of what pulls, as a connector may, the others lose their shares.
+            // A connector may pull: its force is then that of the row turned round, whose shares have the other sign.
             let sign = force[row].signum();
             shares.fill(0.0);
             for (&other, step) in closed.rows.iter().zip(&closed.step) {

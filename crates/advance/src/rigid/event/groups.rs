@@ -308,8 +308,8 @@ impl RigidSystem {
         idle.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
-    /// Hands the contacts of a group that have opened beyond the target zone, run as far off their
-    /// features, or gone round their bodies and lie behind them, and the ropes that have slackened as much, back to the search.
+    /// Hands back to the search the contacts of a group that have opened beyond the target zone, run as far off
+    /// their features, or gone round their bodies and lie behind them, and the ropes that have slackened as much.
     pub(crate) fn let_go(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
