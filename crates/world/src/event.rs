@@ -9,7 +9,8 @@ use halfgap_collision::{BodyId, BodyState, ConnectorId};
 pub enum Event {
     /// Bodies collided, or a connector pulled tight.
     Impact(Impact),
-    /// From now on two bodies rest on each other, or a connector that can be slack is taut.
+    /// From now on two bodies rest on each other, a connector that can be slack is taut, or the point of a rail
+    /// rests in a corner, by one side of it.
     ContactBegins(ContactEvent),
     /// From now on they do so no longer.
     ContactEnds(ContactEvent),

@@ -49,19 +49,6 @@ pub enum RunError {
         /// How many times.
         events: u32,
     },
-    /// The point of a rail comes to rest in a corner of its path, where nothing holds it.
-    #[error(
-        "at {time} s the point of connector {connector} (rail of \"{body}\") comes to rest in a corner of its path, which cannot hold \
-         it: round the corner by an arc, or end the rail there by a rail_stop"
-    )]
-    InCorner {
-        /// When [s].
-        time: f64,
-        /// Index of the rail.
-        connector: usize,
-        /// Name of its body.
-        body: String,
-    },
     /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink,
     /// and collide again and again within a step.
     #[error(
@@ -216,7 +203,6 @@ impl RunError {
             | Self::Crawls { time, .. }
             | Self::Astray { time, .. }
             | Self::Pressed { time, .. }
-            | Self::InCorner { time, .. }
             | Self::Interrupted { time }
             | Self::Stuck { time, .. } => Some(*time),
             Self::NotATime
@@ -252,9 +238,6 @@ impl RunError {
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);
                 Self::Stuck { time, primary, normal, events }
-            }
-            AdvanceError::InCorner { time, connector, body } => {
-                Self::InCorner { time, connector: connector.index(), body: name(body) }
             }
             AdvanceError::Pressed { time, between, events, step } => {
                 let (primary, normal) = names(between);

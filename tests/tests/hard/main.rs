@@ -5,6 +5,7 @@
 mod cams;
 mod chains;
 mod changes;
+mod corners;
 mod dead_points;
 mod dips;
 mod events;

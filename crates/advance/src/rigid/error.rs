@@ -1,7 +1,7 @@
 //! Why the advance of rigid bodies had to stop.
 
 use super::parts::PartsError;
-use halfgap_collision::{BodyId, ConnectorId};
+use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, SolveError};
 
 /// Two bodies, by index.
@@ -107,17 +107,6 @@ pub enum AdvanceError {
         events: u32,
         /// After how long what has sunk is put back [s].
         step: f64,
-    },
-    /// A point comes to rest in a corner of its rail, which it passes again and again, ever more slowly:
-    /// nothing holds it there.
-    #[error("at {time} s the point of connector {} comes to rest in a corner of its path, which cannot hold it", connector.0)]
-    InCorner {
-        /// When [s].
-        time: f64,
-        /// The rail.
-        connector: ConnectorId,
-        /// Its body.
-        body: BodyId,
     },
     /// The same two bodies collide again and again without any time going by.
     #[error(

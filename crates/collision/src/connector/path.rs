@@ -56,6 +56,8 @@ pub struct RailHint {
     pub(super) piece: u32,
     pub(super) parameter: f64,
     pub(super) stays: bool,
+    /// The row's normal points to the right of the path, not to the left.
+    pub(super) faces_right: bool,
 }
 
 /// A joint of two pieces of a path, at which its curvature, or even its direction, may jump.
@@ -67,7 +69,7 @@ pub struct RailKnot {
     pub before: u32,
     /// Index of the piece after it.
     pub after: u32,
-    /// By how much the direction of travel turns there [rad]: 0 where the joint is smooth.
+    /// By how much the direction of travel turns there [rad], positive to the left: 0 where the joint is smooth.
     pub turn: f64,
     /// Curvature of the two pieces [1/m], positive to the left.
     pub curvatures: [f64; 2],
@@ -168,7 +170,26 @@ impl RailPath {
             Curve::Edges(path) => path.place_at_knot(piece as usize, forward),
             Curve::Spline(_) => 0.0,
         };
-        RailHint { piece, parameter, stays: false }
+        RailHint { piece, parameter, stays: false, faces_right: false }
+    }
+
+    /// The two sides of a corner, before and after a knot: hints to stay on its pieces, whose rows face into the
+    /// angle between them. A point in the corner is where both gaps are zero; on either piece the gap to the
+    /// other is positive.
+    #[must_use]
+    pub fn corner_sides(&self, knot: &RailKnot) -> [RailHint; 2] {
+        [false, true].map(|forward| RailHint {
+            faces_right: knot.turn < 0.0,
+            ..self.hint_past(knot, forward).staying()
+        })
+    }
+
+    /// The sides of the corner that lies within a distance [m] of a point; `None` if there is none so near.
+    #[must_use]
+    pub fn corner_at(&self, point: DVec2, within: f64) -> Option<[RailHint; 2]> {
+        let is_near = |knot: &RailKnot| self.place_at(knot.arc_length).point().distance(point) <= within;
+        let mut corners = self.knots().iter().filter(|knot| knot.turn != 0.0);
+        corners.find(|knot| is_near(knot)).map(|knot| self.corner_sides(knot))
     }
 
     /// The place nearest to a point [m]: of the whole path without a hint, else the first found along the path from the
@@ -288,7 +309,7 @@ impl RailPlace {
 
 impl Foot {
     fn hint(&self) -> RailHint {
-        RailHint { piece: self.piece, parameter: self.parameter, stays: false }
+        RailHint { piece: self.piece, parameter: self.parameter, stays: false, faces_right: false }
     }
 }
 
@@ -299,5 +320,11 @@ impl RailHint {
     #[must_use]
     pub fn staying(self) -> Self {
         Self { stays: true, ..self }
+    }
+
+    /// The same place, where the row of a rail faces left again, as everywhere but in a corner.
+    #[must_use]
+    pub fn facing_left(self) -> Self {
+        Self { faces_right: false, ..self }
     }
 }

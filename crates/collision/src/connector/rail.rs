@@ -14,7 +14,7 @@ use glam::DVec2;
 /// On a closed rail a stop may be overrun by up to this part of a lap; whatever is farther beyond it has come round.
 const OVERRUN_SHARE: f64 = 1e-3;
 
-/// The row across the path.
+/// The row across the path, positive to the left of it, or where the hint faces.
 #[inline]
 pub(super) fn rail_row(
     point: DVec2,
@@ -28,7 +28,8 @@ pub(super) fn rail_row(
     let lateral = foot.tangent.dot(ends.velocity);
     let turn = foot.curvature * lateral * foot.stretch();
     let gamma = foot.normal.dot(ends.turning) - turn * lateral;
-    ends.row(foot.gap, foot.normal, foot.tangent * -turn, gamma)
+    let sign = if hint.is_some_and(|hint| hint.faces_right) { -1.0 } else { 1.0 };
+    ends.row(sign * foot.gap, foot.normal * sign, foot.tangent * (-turn * sign), sign * gamma)
 }
 
 /// The row along the path: `sign` is +1 if the rail ends below the arc length `at` [m], -1 if above.

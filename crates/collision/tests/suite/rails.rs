@@ -2,9 +2,10 @@
 
 use crate::random::Random;
 use glam::DVec2;
-use halfgap_collision::{RailError, RailPath, RailPlace};
-use halfgap_geometry::{Aabb, EdgeSpec};
+use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, Moving, RailError, RailPath, RailPlace};
+use halfgap_geometry::{Aabb, EdgeSpec, Pose};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn at(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
@@ -437,6 +438,29 @@ fn a_corner_is_a_knot_with_a_turn() {
     assert!((1..=2).contains(&place.piece()));
     let place = path.nearest(at(0.9, 0.3), Some(&path.place_at(0.5).hint()));
     assert!((place.gap() - 0.3).abs() < 1e-15, "it has a foot on the first edge: {place:?}");
+}
+
+#[test]
+fn the_sides_of_a_corner_face_into_its_angle() {
+    let bead = |place: DVec2| Moving { pose: Pose::new(place, 0.0), ..Moving::BACKGROUND };
+    for turn in [2.5_f64, 1.0, 1e-3, -1e-3, -1.0, -2.5] {
+        let back = at(-1.0, 0.0);
+        let on = at(turn.cos(), turn.sin());
+        let edges = [EdgeSpec::Line { to: DVec2::ZERO }, EdgeSpec::Line { to: on }];
+        let path = Arc::new(RailPath::from_edges(back, &edges).expect("a fine corner"));
+        assert_eq!(path.corner_at(0.5 * back, 0.1), None);
+        let sides = path.corner_at(at(0.0, 0.05), 0.1).expect("a corner is near");
+        let a = Anchor { body: BodyId(0), point: DVec2::ZERO };
+        let rail = Connector { kind: ConnectorKind::Rail { a, path }, elasticity: 0.0 };
+        let gaps = |place: DVec2| {
+            sides.map(|side| rail.measure_near(0, &bead(place), &Moving::BACKGROUND, Some(&side)).gap)
+        };
+        let sin = turn.sin().abs();
+        for (place, expected) in [(DVec2::ZERO, [0.0, 0.0]), (back, [0.0, sin]), (on, [sin, 0.0])] {
+            let off = gaps(place).iter().zip(expected).fold(0.0, |most: f64, (p, q)| most.max((p - q).abs()));
+            assert!(off < 1e-15, "{turn} rad at {place} m: {off} m");
+        }
+    }
 }
 
 #[test]

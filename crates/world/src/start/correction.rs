@@ -1,11 +1,11 @@
 //! Least corrections, weighted by mass, that satisfy rows: displacements for gaps, velocities for rates.
 
-use super::StartParts;
 use super::joined::{name_of, rows};
+use super::{StartParts, moving};
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, Connector};
+use halfgap_collision::{BodyId, Collision, Connector, ConnectorKind, ConnectorSample, Tolerances};
 use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Settings, Solution, Solver};
 
 /// Contradiction between dependent connectors, in units of the largest gap, that a round may leave to the next: gaps
@@ -94,16 +94,17 @@ fn join<'a>(
 }
 
 /// Changes the velocities so that no bilateral connector comes apart; which did most, and how fast [m/s]. Those that
-/// contradict each other stay as they are if none comes apart faster than what counts as slow [m/s].
+/// contradict each other stay as they are if none comes apart faster than what counts as slow.
 pub(super) fn correct_velocities(
     bodies: &mut [StartParts],
     named: &[Named],
     connectors: &[Connector],
-    slow: f64,
+    tolerances: &Tolerances,
 ) -> Result<Option<(ConnectorName, f64)>, WorldError> {
     let bilateral = rows(bodies, connectors).filter(|(_, connector, _)| connector.is_bilateral());
     let (mut corrections, mut worst) = (Vec::new(), None::<(usize, f64)>);
     for (index, connector, sample) in bilateral {
+        let sample = along_corner(bodies, connector, tolerances.accuracy).unwrap_or(sample);
         let (jacobian, rate) = (sample.kinematics.jacobian, sample.kinematics.rate);
         let ends = connector.bodies();
         if rate.abs() > RATE_ROUNDINGS * f64::EPSILON * rate_size(bodies, ends, &jacobian)
@@ -116,7 +117,7 @@ pub(super) fn correct_velocities(
     let Some((index, rate)) = worst else { return Ok(None) };
     let Some(changes) = least_changes(bodies, &corrections) else {
         let connector = name_of(index, named, connectors);
-        return if rate <= slow {
+        return if rate <= tolerances.velocity_tol {
             Ok(None)
         } else {
             Err(WorldError::ConnectorComesApart { connector, rate })
@@ -127,6 +128,15 @@ pub(super) fn correct_velocities(
         state.angular_velocity += change[2];
     }
     Ok(Some((name_of(index, named, connectors), rate)))
+}
+
+/// The row of a rail whose point is within a distance [m] of a corner: that of the side along which it moves.
+fn along_corner(bodies: &[StartParts], connector: &Connector, within: f64) -> Option<ConnectorSample> {
+    let ConnectorKind::Rail { a: anchor, path } = &connector.kind else { return None };
+    let [a, b] = connector.bodies().map(|body| moving(bodies, body));
+    let sides = path.corner_at(a.pose.point_to_world(anchor.point), within)?;
+    let samples = sides.map(|side| connector.measure_near(0, &a, &b, Some(&side)));
+    samples.into_iter().min_by(|p, q| p.kinematics.rate.abs().total_cmp(&q.kinematics.rate.abs()))
 }
 
 /// The speeds that a rate is the difference of [m/s]. What of them is across the row counts, too: where a row

@@ -1,7 +1,6 @@
 //! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
 
 use super::region::Region;
-use crate::rigid::error::AdvanceError;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::limits::repeats::is_same_time;
 use crate::rigid::motion::path::Path;
@@ -11,27 +10,26 @@ use crate::rigid::step::group::Stop;
 use crate::rigid::step::rows::{RowSource, knot_rooms};
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
+use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Detector, Flight, Motion,
-    MotionBounds, RailHint, Rope, RopeSearch, rope_contact,
+    MotionBounds, Moving, RailHint, Rope, RopeSearch, rope_contact,
 };
 
 /// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
 const LOOKS: u32 = 8;
-/// A point may pass a corner so often in succession, and all but rest there, before it does.
-const MOST_RESTS: u32 = 100;
 
 /// What is known of a connector beside its parts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ConnectorState {
     /// Where on a rail the point is.
     pub(crate) hint: Option<RailHint>,
+    /// The sides of the corner of a rail in which the point is, before it and after it.
+    pub(super) corner: Option<[RailHint; 2]>,
     /// A rope does not go taut before this time, other than predicted.
     clear: Time,
     /// When it goes taut; `None` if it does not while the motions are known, or the search goes on then.
     taut: Option<Time>,
-    /// How often, one time after another, the point of a rail has passed a corner more slowly than `velocity_tol`.
-    rests_in_corner: u32,
     /// By how much longer [m] a rope is taken that has just gone slack.
     slack: f64,
     /// It is unilateral, and held: wherever that was begun, it stays.
@@ -42,6 +40,14 @@ pub(crate) struct ConnectorState {
 }
 
 impl ConnectorState {
+    /// Where a row of the connector looks for its rail.
+    pub(crate) fn hint_of(&self, row: usize) -> Option<&RailHint> {
+        match &self.corner {
+            Some(sides) => sides.get(row),
+            None => self.hint.as_ref(),
+        }
+    }
+
     /// How often before a rope has gone taut at the present time: it lies nearer to its length than the
     /// search can tell.
     fn repeats_at(&self, now: Time) -> u32 {
@@ -56,9 +62,10 @@ impl ConnectorState {
 }
 
 impl RigidSystem {
-    /// True if a connector is unilateral, and held.
-    pub(super) fn is_rope_or_stop_held(&self, id: ConnectorId) -> bool {
-        self.connector_states[id.index()].held
+    /// True if rows of a connector that only keep gaps from closing were held until now.
+    pub(super) fn is_held_unilaterally(&self, id: ConnectorId) -> bool {
+        let state = &self.connector_states[id.index()];
+        state.held || state.corner.is_some()
     }
 
     pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
@@ -76,31 +83,19 @@ impl RigidSystem {
                 continue;
             }
             let moving = [a, b].map(|body| self.moving_at(body, time));
-            let hint = self.connector_states[id.index()].hint;
-            let tolerances = &self.settings.tolerances;
-            for row in 0..connector.row_count() {
-                let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
-                let is_held = connector.is_bilateral() || self.is_rope_or_stop_held(id);
-                if !is_held && sample.gap > tolerances.accuracy {
+            for row in 0..self.row_count(id) {
+                let record = self.connector_record(id, row, &moving, time);
+                let is_held = connector.is_bilateral() || self.is_held_unilaterally(id);
+                if !is_held && record.geometry.distance > self.settings.tolerances.accuracy {
                     continue;
                 }
                 // What neither closes nor opens is held, or may be; what is held does not graze, though dense output
                 // may have it closing.
-                let closes = !is_held && sample.kinematics.rate < -self.rest_speed();
+                let closes = !is_held && record.motion.normal_velocity < -self.rest_speed();
                 if is_rope(connector) && closes && self.rope_grazes(id) {
                     continue;
                 }
-                let row = u32::try_from(row).unwrap_or(u32::MAX);
-                let bodies = [&moving[0], &moving[1]];
-                region.records.push(Collision::of_connector(
-                    id,
-                    row,
-                    connector,
-                    &sample,
-                    bodies,
-                    tolerances,
-                    time.seconds(),
-                ));
+                region.records.push(record);
                 if self.is_movable(other) {
                     region.add(other);
                 }
@@ -108,14 +103,38 @@ impl RigidSystem {
         }
     }
 
+    /// How many rows a connector has now: two where the point of a rail is in a corner.
+    fn row_count(&self, id: ConnectorId) -> usize {
+        self.connector_states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
+    }
+
+    /// The record of a row of a connector, whose bodies move as given at a time. The sides of a corner only
+    /// push, and without elasticity.
+    pub(super) fn connector_record(
+        &self,
+        id: ConnectorId,
+        row: usize,
+        moving: &[Moving; 2],
+        time: Time,
+    ) -> Collision {
+        let (connector, state) = (self.connector(id), &self.connector_states[id.index()]);
+        let sample = connector.measure_near(row, &moving[0], &moving[1], state.hint_of(row));
+        let row = u32::try_from(row).unwrap_or(u32::MAX);
+        let (bodies, tolerances) = ([&moving[0], &moving[1]], &self.settings.tolerances);
+        let mut record =
+            Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
+        if state.corner.is_some() {
+            record.parties.bilateral = false;
+            record.response.elasticity = 0.0;
+        }
+        record
+    }
+
     /// The record of a connector's row anew, with the response that it has.
     pub(crate) fn remeasure_connector(&self, record: &mut Collision, id: ConnectorId, row: u32, time: Time) {
-        let connector = self.connector(id);
-        let moving = connector.bodies().map(|body| self.moving_at(body, time));
-        let sample = self.measure_connector(id, row as usize, time);
+        let moving = self.connector(id).bodies().map(|body| self.moving_at(body, time));
         let response = record.response;
-        let (bodies, tolerances) = ([&moving[0], &moving[1]], &self.settings.tolerances);
-        *record = Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
+        *record = self.connector_record(id, row as usize, &moving, time);
         record.response = response;
     }
 
@@ -123,7 +142,7 @@ impl RigidSystem {
     pub(super) fn measure_connector(&self, id: ConnectorId, row: usize, time: Time) -> ConnectorSample {
         let connector = self.connector(id);
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, time));
-        connector.measure_near(row, &a, &b, self.connector_states[id.index()].hint.as_ref())
+        connector.measure_near(row, &a, &b, self.connector_states[id.index()].hint_of(row))
     }
 
     /// What makes the row of a record.
@@ -140,9 +159,11 @@ impl RigidSystem {
             for index in 0..self.connectors_of.of(body).len() {
                 let id = self.connectors_of.of(body)[index];
                 let Some(path) = self.connector(id).path() else { continue };
-                let (anchor, _) = self.connector(id).anchors();
-                let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
                 let state = &self.connector_states[id.index()];
+                if state.corner.is_some() {
+                    continue;
+                }
+                let point = self.point_on_rail(id, time);
                 let hint = path.hint_near(point, state.hint.as_ref());
                 // A stop lies on whatever piece: it must see its point pass the joints before it.
                 let hint = if is_stop(self.connector(id)) { hint } else { hint.staying() };
@@ -151,37 +172,29 @@ impl RigidSystem {
         }
     }
 
-    /// The point of a rail passes a joint of the path: it goes on along the next piece. True if the joint is a corner.
+    /// Where [m] the point of a rail or a stop is at a time.
+    pub(super) fn point_on_rail(&self, id: ConnectorId, time: Time) -> DVec2 {
+        let (anchor, _) = self.connector(id).anchors();
+        self.moving_at(anchor.body, time).pose.point_to_world(anchor.point)
+    }
+
+    /// The point of a rail comes to a joint of the path: it goes on along the next piece, unless the joint is a
+    /// corner, where it is for now. True if it is one.
     pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
-        let connector = self.connector(id);
-        let (Some(path), (anchor, _)) = (connector.path(), connector.anchors()) else { return false };
-        let point = self.moving_at(anchor.body, time).pose.point_to_world(anchor.point);
-        let place = path.nearest(point, self.connector_states[id.index()].hint.as_ref());
+        let Some(path) = self.connector(id).path() else { return false };
+        let place =
+            path.nearest(self.point_on_rail(id, time), self.connector_states[id.index()].hint.as_ref());
         let ends = path.knots().iter().flat_map(|knot| {
             let [before, after] = knot_rooms(path, knot, &place);
             [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
         });
         let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
         let Some((_, knot, forward)) = nearest else { return false };
-        let is_corner = knot.turn.abs() > 0.0;
         let hint = path.hint_past(knot, forward).staying();
-        self.connector_states[id.index()].hint = Some(hint);
-        is_corner
-    }
-
-    /// Notes that the point of a rail has passed a corner; fails if it all but rests there, again and again.
-    pub(crate) fn note_corner(&mut self, id: ConnectorId) -> Result<(), AdvanceError> {
-        let anchor = *self.connector(id).anchors().0;
-        let moving = self.moving_at(anchor.body, self.now);
-        let speed = moving.velocity_at(moving.pose.vector_to_world(anchor.point)).length();
-        let rests = speed <= self.settings.tolerances.velocity_tol;
+        let corner = (knot.turn != 0.0).then(|| path.corner_sides(knot));
         let state = &mut self.connector_states[id.index()];
-        state.rests_in_corner = if rests { state.rests_in_corner + 1 } else { 0 };
-        if state.rests_in_corner > MOST_RESTS {
-            let (time, body) = (self.now.seconds(), anchor.body);
-            return Err(AdvanceError::InCorner { time, connector: id, body });
-        }
-        Ok(())
+        (state.hint, state.corner) = (Some(hint), corner);
+        corner.is_some()
     }
 
     /// Notes which ropes and stops of a region are held from now on.

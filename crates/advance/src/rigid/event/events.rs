@@ -41,6 +41,7 @@ impl RigidSystem {
         self.with_work(Cause::Start, |system, work| {
             work.seeds.clear();
             work.seeds.extend(system.bodies());
+            system.note_corners();
             system.collect_region(&mut work.region, &work.seeds, system.now);
             if !system.closes_slowly(&work.region) {
                 return system.go_on(work);
@@ -110,8 +111,12 @@ impl RigidSystem {
                 if let Some(touch) = group.rows[row].touch() {
                     work.region.cause = Cause::Released(touch);
                 }
+                let source = group.rows[row].source;
                 if group.made == self.now {
                     self.last_pull = Some(self.now);
+                }
+                if let RowSource::Connector(id, side @ (0 | 1)) = source {
+                    self.go_along(id, 1 - side);
                 }
                 self.handle_change(work)
             }
@@ -147,11 +152,7 @@ impl RigidSystem {
     fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
         let is_corner = self.pass_knot(id, self.now);
         work.region.cause = if is_corner { Cause::Other } else { Cause::SmoothJoint };
-        let happened = self.handle_impact(work)?;
-        if is_corner {
-            self.note_corner(id)?;
-        }
-        Ok(happened)
+        self.handle_impact(work)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
@@ -299,9 +300,13 @@ impl RigidSystem {
         for &body in &work.region.bodies {
             self.flyers[body.index()].unwind();
         }
+        self.leave_corners(&mut work.region);
         self.note_rails(&work.region, self.now);
         work.region.is_hasty = self.take_haste(&work.region);
         self.settle_and_still(work)?;
+        while self.leave_loose_corner(work)? {
+            self.settle_and_still(work)?;
+        }
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
         work.region.motions.iter().for_each(|&(gap, _)| self.counts.note_gap(gap));

@@ -465,27 +465,29 @@ impl RigidSystem {
             *hint = Some(path.hint_near(point, hint.as_ref()).staying());
         };
         stops.iter_mut().for_each(|stop| renew(stop.id, &mut stop.hint, false));
-        for row in rows.iter_mut() {
+        let mechanism = self.mechanism();
+        for row in rows.iter_mut().filter(|row| !mechanism.is_in_corner(row)) {
             if let RowSource::Connector(id, _) = row.source {
                 renew(id, &mut row.hint, true);
             }
         }
-        let hints = rows.iter().filter_map(|row| match row.source {
-            RowSource::Connector(id, _) => Some((id, row.hint?)),
-            RowSource::Contact(_) => None,
-        });
-        for (id, hint) in hints {
-            self.connector_states[id.index()].hint = Some(hint);
+        self.note_hints(rows);
+    }
+
+    /// Notes where on their rails the points of rows are, but for those that rest in a corner.
+    fn note_hints(&mut self, rows: &[HeldRow]) {
+        for row in rows {
+            if let (RowSource::Connector(id, _), Some(hint)) = (row.source, row.hint)
+                && !self.mechanism().is_in_corner(row)
+            {
+                self.connector_states[id.index()].hint = Some(hint);
+            }
         }
     }
 
     /// Extends a group by a segment and puts it back.
     fn extend_group(&mut self, mut group: Box<Group>) -> Result<(), AdvanceError> {
-        for row in &group.rows {
-            if let (RowSource::Connector(id, _), Some(_)) = (row.source, row.hint) {
-                self.connector_states[id.index()].hint = row.hint;
-            }
-        }
+        self.note_hints(&group.rows);
         let leader = group.leader();
         self.skip_dense(leader);
         let next_step = group.next_step;

@@ -77,6 +77,10 @@ impl RigidSystem {
             let outcome = self.find_impulses_of_pressed(region, impact, manner);
             outcome.map_err(|source| impact_error(region, time, source))?;
         }
+        while self.hold_back(region, impact.rates()) {
+            let outcome = self.find_impulses(region, impact, manner);
+            outcome.map_err(|source| impact_error(region, time, source))?;
+        }
         self.conclude_impact(region, impact, report, time);
         Ok(())
     }
@@ -104,7 +108,7 @@ impl RigidSystem {
     /// True if what a unilateral record is of was held until now.
     fn was_held(&self, record: &Collision) -> bool {
         match record.parties.detector {
-            Detector::Connector { id, .. } => self.is_rope_or_stop_held(id),
+            Detector::Connector { id, .. } => self.is_held_unilaterally(id),
             _ => self.is_likely(record).is_some(),
         }
     }

@@ -7,7 +7,7 @@
 
 use super::settling::{SMALL_CONTRADICTION, Settling};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::event::cause::Cause;
+use crate::rigid::event::cause::{Cause, EventWork};
 use crate::rigid::event::jams::JAM;
 use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::step::dynamics::{LEVEL, Physics, Stage};
@@ -194,6 +194,13 @@ impl RigidSystem {
         settling.pushed = pushed;
     }
 
+    /// Accelerations [m/s^2] of the gaps of some records under the forces found last.
+    pub(crate) fn accelerations_of(&self, work: &mut EventWork, records: [usize; 2]) -> [f64; 2] {
+        let EventWork { region, settling, .. } = work;
+        self.push_bodies(region, settling, &self.stage);
+        records.map(|record| offset_under(region, &region.records[record], &settling.pushed))
+    }
+
     /// True if a unilateral row may carry a force: connectors always do.
     fn holds(&self, record: &Collision) -> bool {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
@@ -321,7 +328,7 @@ impl RigidSystem {
         let source = self.source_of(record)?;
         let bodies = record.bodies();
         let hint = match source {
-            RowSource::Connector(id, _) => self.connector_states[id.index()].hint,
+            RowSource::Connector(id, index) => self.connector_states[id.index()].hint_of(index).copied(),
             RowSource::Contact(_) => None,
         };
         // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to

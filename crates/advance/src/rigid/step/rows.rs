@@ -159,9 +159,16 @@ impl Mechanism<'_> {
                 !sides.all(|(&body, feature)| is_full(self.shape(body).feature(feature)))
             }
             RowSource::Connector(id, _) => {
-                self.connectors[id.index()].path().is_some_and(|path| !path.knots().is_empty())
+                let path = self.connectors[id.index()].path();
+                !self.is_in_corner(row) && path.is_some_and(|path| !path.knots().is_empty())
             }
         }
+    }
+
+    /// True for a side of the corner of a rail in which its point rests: it only pushes.
+    pub(crate) fn is_in_corner(&self, row: &HeldRow) -> bool {
+        let RowSource::Connector(id, _) = row.source else { return false };
+        !row.bilateral && self.connectors[id.index()].is_bilateral()
     }
 
     /// Where a row's force acts on its primary body [m], and its normal.

@@ -1,0 +1,149 @@
+//! Corners of rails: the point of a rail comes to one, may rest in it, and leaves it along one of its sides.
+//!
+//! Where a path turns, the point is on the piece before the corner or on the one after it. With normals n that
+//! face into the angle between the two, on either piece n.u = 0 of its own and n.u >= 0 of the other one: what
+//! two rows that only push keep to, but that they would let the point go from both. So the point of a rail has
+//! two unilateral rows from when it comes to a corner until one of them opens, or carries no force; the other
+//! goes on as the bilateral row of its piece. Where both would open, the point is kept on the side from
+//! which it parts more slowly: the force, or the impulse, then is one that holds it back.
+
+use super::cause::EventWork;
+use super::events::Booking;
+use super::impacts::Manner;
+use super::region::Region;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::step::rows::RowSource;
+use crate::rigid::system::RigidSystem;
+use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
+
+/// A corner of a rail in which its point is, in a region.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    id: ConnectorId,
+    /// Places of the records of its sides.
+    records: [usize; 2],
+}
+
+impl RigidSystem {
+    /// Notes which points of rails are in a corner at the start. One that moves is on the side along which it
+    /// does: if that leads through the corner, it comes to it at once.
+    pub(super) fn note_corners(&mut self) {
+        let (now, fast) = (self.now, self.settings.tolerances.velocity_tol);
+        for index in 0..self.connectors.len() {
+            let id = ConnectorId(u32::try_from(index).unwrap_or(u32::MAX));
+            let ConnectorKind::Rail { path, .. } = &self.connector(id).kind else { continue };
+            let within = self.settings.tolerances.accuracy;
+            let corner = path.corner_at(self.point_on_rail(id, now), within);
+            self.connector_states[index].corner = corner;
+            let [before, after] = [0, 1].map(|side| match corner {
+                Some(_) => self.measure_connector(id, side, now).kinematics.rate.abs(),
+                None => 0.0,
+            });
+            if before.max(after) > fast {
+                self.go_along(id, usize::from(after < before));
+            }
+        }
+    }
+
+    /// Takes a point that an impact drives out of its corner, from both sides at once, along one of them: which
+    /// has to hold it back, in the same impact. True if there is one.
+    pub(super) fn hold_back(&mut self, region: &mut Region, rates: &[f64]) -> bool {
+        let (rest, fast) = (self.rest_speed(), self.settings.tolerances.velocity_tol);
+        let opening = |corner: Corner| corner.records.map(|record| rates[record]);
+        let is_driven_out = |corner: &Corner| {
+            let [before, after] = opening(*corner);
+            before.min(after) > rest && before.max(after) > fast
+        };
+        let Some(corner) = corners(region).find(is_driven_out) else { return false };
+        self.take_slower(region, corner, opening(corner));
+        true
+    }
+
+    /// Takes the points that leave their corners along the sides that do not open.
+    pub(super) fn leave_corners(&mut self, region: &mut Region) {
+        let fast = self.settings.tolerances.velocity_tol;
+        let leaves = |region: &Region, corner: &Corner| corner.rates(region).iter().any(|&rate| rate > fast);
+        let leaving = |region: &Region| corners(region).find(|corner| leaves(region, corner));
+        while let Some(corner) = leaving(region) {
+            let rates = corner.rates(region);
+            self.take_slower(region, corner, rates);
+        }
+    }
+
+    /// Takes a point that two forces do not hold in its corner along one of the sides, and stops what of its
+    /// velocity is across that. True if there is one: forces are to be found anew.
+    pub(super) fn leave_loose_corner(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+        let held = &work.settling.held;
+        let sides = |id: ConnectorId| {
+            [0, 1].map(|side| held.iter().any(|(_, row)| row.source == RowSource::Connector(id, side)))
+        };
+        let Some(corner) = corners(&work.region).find(|corner| sides(corner.id) != [true; 2]) else {
+            return Ok(false);
+        };
+        if let Some(side) = sides(corner.id).iter().position(|is_held| *is_held) {
+            self.take_side(&mut work.region, corner, side);
+        } else {
+            let rates = corner.rates(&work.region);
+            let opens = rates.into_iter().any(|rate| rate > self.rest_speed());
+            let opening = if opens { rates } else { self.accelerations_of(work, corner.records) };
+            self.take_slower(&mut work.region, corner, opening);
+        }
+        self.stop_across(work, corner.id)?;
+        Ok(true)
+    }
+
+    /// Stops what of the velocity of a point that leaves a corner is across its side: too slow for an impact.
+    fn stop_across(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
+        let (now, rest) = (self.now, self.rest_speed());
+        let mut records = work.region.records.iter();
+        let moves =
+            |record: &Collision| record.connector() == Some(id) && record.motion.normal_velocity.abs() > rest;
+        if !records.any(moves) {
+            return Ok(());
+        }
+        self.resolve_impact(&mut work.region, &mut work.impact, &mut work.stop, now, Manner::Inelastic)?;
+        self.remeasure(&mut work.region, now);
+        self.book_impact(&work.stop, Booking::Capture);
+        Ok(())
+    }
+
+    /// The point of a rail leaves its corner along the side from which it parts more slowly; if it does from
+    /// both alike, on along the path.
+    fn take_slower(&mut self, region: &mut Region, corner: Corner, [before, after]: [f64; 2]) {
+        self.take_side(region, corner, usize::from(after <= before));
+    }
+
+    fn take_side(&mut self, region: &mut Region, corner: Corner, side: usize) {
+        self.go_along(corner.id, side);
+        let moving = self.connector(corner.id).bodies().map(|body| self.moving_at(body, self.now));
+        region.records[corner.records[0]] = self.connector_record(corner.id, 0, &moving, self.now);
+        region.records.remove(corner.records[1]);
+    }
+
+    /// The point of a rail goes on along a side of the corner in which it is, if it is in one.
+    pub(super) fn go_along(&mut self, id: ConnectorId, side: usize) {
+        let state = &mut self.connector_states[id.index()];
+        if let Some(sides) = state.corner.take() {
+            state.hint = Some(sides[side].facing_left());
+        }
+    }
+}
+
+impl Corner {
+    /// Rates [m/s] at which the point parts from the sides.
+    fn rates(&self, region: &Region) -> [f64; 2] {
+        self.records.map(|record| region.records[record].motion.normal_velocity)
+    }
+}
+
+/// The corners in which points of rails are in a region: the records of their sides follow each other.
+fn corners(region: &Region) -> impl Iterator<Item = Corner> + use<'_> {
+    let side = |record: &Collision| match record.parties.detector {
+        Detector::Connector { id, row } if !record.parties.bilateral => Some((id, row)),
+        _ => None,
+    };
+    region.records.windows(2).enumerate().filter_map(move |(first, pair)| {
+        let [(id, 0), (other, 1)] = [side(&pair[0])?, side(&pair[1])?] else { return None };
+        (id == other).then_some(Corner { id, records: [first, first + 1] })
+    })
+}
