@@ -1,17 +1,20 @@
 //! How deep two shapes overlap.
 
 use glam::DVec2;
-use halfgap_geometry::{Edge, GapSample, Pose, Relation, Shape, edge_crossings};
+use halfgap_geometry::{Edge, GapSample, Pose, Ray, Relation, Shape, edge_crossings};
 use std::f64::consts::TAU;
 
 /// Points at which an edge is looked at, beside its ends and the places where it could touch.
 const SAMPLES: u32 = 16;
+/// Part of the reach of a shape by which a ray into it starts within its outline.
+const STEP_IN: f64 = 1e-9;
 
 /// The largest distance [m] of a point of one outline inside the other shape from that shape's outline; `None` if the
 /// shapes are apart.
 ///
 /// Exact for a shallow overlap, whose deepest point is a vertex or the touching point of a pair of features. Of others it
-/// is the depth of some point of each piece of an outline that lies in the other shape, however short that is.
+/// is the depth of some point of each piece of an outline that lies in the other shape, however short that is. Of shapes
+/// that cover each other, outline on outline, a point well inside of each counts: by how much it lies in both.
 pub(crate) fn overlap_depth(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Option<f64> {
     if a.relation(pose_a, b, pose_b) == Relation::Apart {
         return None;
@@ -26,7 +29,28 @@ pub(crate) fn overlap_depth(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) 
     let deepest = |points: &mut dyn Iterator<Item = DVec2>, shape: &Shape, pose: &Pose| {
         points.map(|point| -shape.nearest(pose.point_to_body(point)).signed_distance).fold(0.0, f64::max)
     };
-    Some(deepest(&mut { points_of_a }, b, pose_b).max(deepest(&mut { points_of_b }, a, pose_a)))
+    let covered = covered_depth((a, pose_a), (b, pose_b)).max(covered_depth((b, pose_b), (a, pose_a)));
+    let crossed = deepest(&mut { points_of_a }, b, pose_b).max(deepest(&mut { points_of_b }, a, pose_a));
+    Some(crossed.max(covered))
+}
+
+/// How deep [m] a point well inside a shape lies in both this one and another; 0 if it is outside of that.
+fn covered_depth((shape, pose): (&Shape, &Pose), (other, other_pose): (&Shape, &Pose)) -> f64 {
+    let Some(inner) = inner_point(shape) else { return 0.0 };
+    let in_other = other_pose.point_to_body(pose.point_to_world(inner));
+    let depths = [shape.nearest(inner), other.nearest(in_other)].map(|near| -near.signed_distance);
+    depths[0].min(depths[1]).max(0.0)
+}
+
+/// A point inside a shape: half the way from the middle of its longest edge straight to the other side.
+fn inner_point(shape: &Shape) -> Option<DVec2> {
+    let edge = shape.edges().max_by(|p, q| p.length().total_cmp(&q.length()))?;
+    let middle = point_along(edge, 0.5);
+    let inward = -edge.normal_at(middle);
+    // A ray that starts on the outline may meet it at once.
+    let start = middle + STEP_IN * shape.reach() * inward;
+    let hit = shape.cast_ray(&Ray { origin: start, direction: inward }, f64::INFINITY)?;
+    Some(0.5 * (middle + hit.point))
 }
 
 /// The two touching points of every pair of features that overlaps within both of them, that of `a` first.
@@ -95,6 +119,32 @@ mod tests {
         for (x, y, width) in [(0.06, 0.1, 0.02), (-0.7, 1.3, 0.002), (0.3, 0.3, 0.2)] {
             let depth = depth_of_bar(&wall, 2.0, width, Pose::new(DVec2::new(x, y), 0.0));
             assert!((depth - 0.5 * width.max(0.05)).abs() < 1e-12, "{depth} m of a bar of {width} m");
+        }
+    }
+
+    #[test]
+    fn shapes_that_cover_each_other_overlap_by_all_they_have() {
+        let hexagon: Vec<DVec2> =
+            (0..6).map(|corner| DVec2::from_angle(TAU * f64::from(corner) / 6.0)).collect();
+        // Each with the depth of its middle, of a ring of that of its wall.
+        let shapes = [
+            (Shape::disc(0.7), 0.7),
+            (Shape::ring(1.0, 0.6), 0.2),
+            (Shape::block(3.0, 0.4), 0.2),
+            (Shape::rounded_block(1.0, 0.5, 0.1), 0.25),
+            (Shape::polygon(&hexagon), 0.75f64.sqrt()),
+        ];
+        for (shape, expected) in shapes {
+            let shape = shape.expect("a fine shape");
+            for shift in [0.0, 1e-9, 1e-5] {
+                let pose = Pose::new(DVec2::new(0.3, -1.0), 0.4);
+                let beside = Pose::new(pose.position + DVec2::new(shift, 0.0), 0.4);
+                let depth = overlap_depth(&shape, &pose, &shape, &beside).expect("they overlap");
+                assert!(
+                    (depth - expected).abs() <= shift + 1e-12,
+                    "{depth} m for {expected}, moved by {shift} m"
+                );
+            }
         }
     }
 
