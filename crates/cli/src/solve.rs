@@ -148,14 +148,9 @@ fn json(method: Choice, problem: &Problem, outcome: &Outcome) -> String {
         }
         let residuals = Residuals::of(problem, &file.force);
         (file.r_nat, file.growth, file.r_bwd) = (residuals.natural, residuals.growth, residuals.backward);
-        file.acceleration = accelerations(problem, &file.force);
+        file.acceleration = problem.accelerations(&file.force);
     }
     serde_json::to_string(&file).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
-}
-
-fn accelerations(problem: &Problem, force: &[f64]) -> Vec<f64> {
-    let change = |row: &Vec<f64>| row.iter().zip(force).map(|(a, f)| a * f).sum::<f64>();
-    problem.dense().iter().zip(problem.offset()).map(|(row, b)| change(row) + b).collect()
 }
 
 /// The answer in words.

@@ -1,28 +1,38 @@
 //! `halfgap sweep`: runs a scene many times, one of its numbers varied.
 //!
-//! Runs share nothing, so they go to all cores at once, and each gives the bits that it gives alone.
+//! Runs share nothing, so they go to all cores at once, and each gives the bits that it gives alone. A value of
+//! which no world can be made, as one at which bodies overlap, is a run that was refused: the others are told.
 
 use crate::args::SweepOptions;
 use crate::failure::{End, Failure};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{output, table};
-use halfgap::scene::{Scene, SceneError, SceneSource, VariedScene};
+use halfgap::scene::{SceneError, SceneSource, VariedScene};
 use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Write as _;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The status of a value of which no world can be made.
+const REFUSED: &str = "refused";
+/// What the table says of each body.
+const QUANTITIES: [&str; 6] = ["x", "y", "angle", "vx", "vy", "w"];
 
 /// One run of the sweep.
 #[derive(Debug, Serialize)]
 struct SweepRun {
     value: f64,
-    result: RunResult,
-    /// Why it stopped early, if it did.
+    /// What came of it, unless it was refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    result: Option<RunResult>,
+    /// Why it stopped early, or was refused, if it was.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(skip)]
@@ -40,18 +50,25 @@ struct Sweep {
 pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     let source = SceneSource::read(&options.scene)?;
     let varied = VariedScene::new(source.clone(), &options.vary.field)?;
-    // All are read before one runs: a value out of range is found at once.
     let values = options.vary.values();
-    let scenes = values.iter().map(|&value| Ok((value, varied.with(value)?)));
-    let scenes = scenes.collect::<Result<Vec<_>, SceneError>>()?;
-    let title = scenes.first().map_or(String::new(), |(_, scene)| scene.title.clone());
+    // All are read before one runs: a value out of range is found at once.
+    let scenes = values.iter().map(|&value| varied.with(value));
+    let scenes = scenes.map(|scene| scene.map(|scene| scene.title)).collect::<Result<BTreeSet<_>, _>>()?;
+    let title = scenes.first().cloned().unwrap_or_default();
+    let interrupt = Interrupt::listen();
+    // Nor are they lost to a bad path.
+    let file = match &options.out {
+        Some(path) => Some((path, File::create(path).map_err(|error| Failure::Write(path.clone(), error))?)),
+        None => None,
+    };
     let progress = Progress::new(!options.quiet && !options.json, &title);
-    let runs = run_all(&scenes, &source, options, &progress)?;
+    let runs = run_all(&values, &varied, options, (&progress, &interrupt))?;
     progress.finish();
     let sweep = Sweep { format: "halfgap-sweep-1", field: varied.field().to_string(), runs };
-    tell_on_stderr(&sweep, &options.scene);
-    if let Some(file) = &options.out {
-        std::fs::write(file, csv(&sweep)).map_err(|error| Failure::Write(file.clone(), error))?;
+    tell_on_stderr(&sweep, &options.scene, values.len());
+    if let Some((path, mut file)) = file {
+        let written = file.write_all(csv(&sweep).as_bytes());
+        written.map_err(|error| Failure::Write(path.clone(), error))?;
     }
     if options.json {
         let json = serde_json::to_string(&sweep).expect("a sweep is strings and numbers only");
@@ -59,52 +76,91 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     } else if !options.quiet {
         output::print(&lines(&sweep))?;
     }
-    let stopped = sweep.runs.iter().any(|run| run.result.status != Outcome::Done);
-    Ok(if stopped { End::Stopped } else { End::Done })
+    Ok(sweep.end(values.len()))
 }
 
+/// Runs all values but those that are left when somebody interrupts.
 fn run_all(
-    scenes: &[(f64, Scene)],
-    source: &SceneSource,
+    values: &[f64],
+    varied: &VariedScene,
     options: &SweepOptions,
-    progress: &Progress,
+    (progress, interrupt): (&Progress, &Interrupt),
 ) -> Result<Vec<SweepRun>, Failure> {
     let threads = options.threads.map_or(0, usize::from);
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::Threads)?;
     let done = AtomicUsize::new(0);
-    let interrupt = Interrupt::listen();
-    let run_one = |(value, scene): &(f64, Scene)| {
-        let run = run_scene(*value, scene, &interrupt).map_err(|error| source.locate(error))?;
+    let run_one = |&value: &f64| {
+        if interrupt.flow().is_break() {
+            return None;
+        }
+        let run = run_scene(value, varied, interrupt);
         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress.set(count as f64 / scenes.len() as f64);
-        Ok(run)
+        progress.set(count as f64 / values.len() as f64);
+        Some(run)
     };
-    let runs: Result<Vec<_>, SceneError> = pool.install(|| scenes.par_iter().map(run_one).collect());
-    Ok(runs?)
+    let runs: Vec<_> = pool.install(|| values.par_iter().map(run_one).collect());
+    Ok(runs.into_iter().flatten().collect())
 }
 
-fn run_scene(value: f64, scene: &Scene, interrupt: &Interrupt) -> Result<SweepRun, SceneError> {
-    let mut world = World::from_scene(scene)?;
-    let report = run(&mut world, &RunPlan::of_scene(scene, Record::Ends), &mut |_| interrupt.flow());
-    let result = RunResult::new(&world, &report);
-    let error = report.error.map(|error| error.to_string());
-    Ok(SweepRun { value, result, error, warnings: world.warnings().to_vec() })
+fn run_scene(value: f64, varied: &VariedScene, interrupt: &Interrupt) -> SweepRun {
+    let outcome = || -> Result<SweepRun, SceneError> {
+        let scene = varied.with(value)?;
+        let mut world = World::from_scene(&scene)?;
+        let report = run(&mut world, &RunPlan::of_scene(&scene, Record::Ends), &mut |_| interrupt.flow());
+        let result = Some(RunResult::new(&world, &report));
+        let error = report.error.map(|error| error.to_string());
+        Ok(SweepRun { value, result, error, warnings: world.warnings().to_vec() })
+    };
+    outcome().unwrap_or_else(|error| SweepRun {
+        value,
+        result: None,
+        error: Some(error.to_string()),
+        warnings: Vec::new(),
+    })
 }
 
-/// Warnings, each where it comes first, and why runs stopped early, with the value of the run.
-fn tell_on_stderr(sweep: &Sweep, scene: &Path) {
+impl Sweep {
+    /// How a sweep of so many values ends.
+    fn end(&self, values: usize) -> End {
+        let is_done = |run: &SweepRun| run.status() == Outcome::Done.name();
+        if self.runs.iter().any(|run| run.result.is_none()) {
+            End::BadInput
+        } else if self.runs.len() == values && self.runs.iter().all(is_done) {
+            End::Done
+        } else {
+            End::Stopped
+        }
+    }
+}
+
+impl SweepRun {
+    fn status(&self) -> &'static str {
+        self.result.as_ref().map_or(REFUSED, |result| result.status.name())
+    }
+}
+
+/// Warnings, each where it comes first, and why runs stopped early or were refused, with the value of the run;
+/// how many were not made, if somebody interrupted.
+fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     let mut told = BTreeSet::new();
     for SweepRun { value, result, error, warnings } in &sweep.runs {
         let at = format!("{} with {} = {}", scene.display(), sweep.field, table::number(*value));
         for warning in warnings.iter().filter(|warning| told.insert(warning.as_str())) {
             eprintln!("warning: {at}: {warning}");
         }
-        for finding in &result.findings {
+        for finding in result.iter().flat_map(|result| &result.findings) {
             eprintln!("warning: {at}: {finding}");
         }
-        if let Some(error) = error {
-            eprintln!("error: {at}: stopped early at t = {} s: {error}", result.time);
+        match (result, error) {
+            (Some(result), Some(error)) => {
+                eprintln!("error: {at}: stopped early at t = {} s: {error}", result.time);
+            }
+            (None, Some(error)) => eprintln!("error: {at}: {error}"),
+            (_, None) => {}
         }
+    }
+    if sweep.runs.len() < values {
+        eprintln!("error: interrupted: {} of {values} runs were not made", values - sweep.runs.len());
     }
 }
 
@@ -114,53 +170,57 @@ fn lines(sweep: &Sweep) -> String {
     let mut text = format!("{:>20}", sweep.field);
     heads.iter().for_each(|head| text.push_str(&format!(" {head:>18}")));
     text.push('\n');
-    for SweepRun { value, result, .. } in &sweep.runs {
-        let statistics = &result.statistics.world;
-        let _ = writeln!(
-            text,
-            "{:>20} {:>18} {:>18} {:>18.9e} {:>18} {:>18}",
-            table::number(*value),
-            result.status.name(),
-            table::number(result.time),
-            result.energy.total - result.energy.start,
-            statistics.impacts,
-            statistics.steps
-        );
-    }
-    text
-}
-
-/// Everything but the wall time, in digits that read back as the same bits: equal sweeps write equal files.
-fn csv(sweep: &Sweep) -> String {
-    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", quoted(&sweep.field));
-    let bodies = sweep.runs.first().map_or(&[][..], |run| &run.result.bodies);
-    for (name, _) in bodies {
-        for quantity in ["x", "y", "angle", "vx", "vy", "w"] {
-            let _ = write!(text, ",{}", quoted(&format!("{name}.{quantity}")));
-        }
-    }
-    text.push('\n');
-    for SweepRun { value, result, .. } in &sweep.runs {
-        let (energy, statistics) = (&result.energy, &result.statistics.world);
-        let _ = write!(
-            text,
-            "{value:?},{},{:?},{:?},{:?},{},{}",
-            result.status.name(),
-            result.time,
-            energy.start,
-            energy.total,
-            statistics.impacts,
-            statistics.steps
-        );
-        for (_, state) in &result.bodies {
-            let (place, speed) = (state.position, state.velocity);
-            for number in [place.x, place.y, state.angle, speed.x, speed.y, state.angular_velocity] {
-                let _ = write!(text, ",{number:?}");
-            }
+    for run in &sweep.runs {
+        let _ = write!(text, "{:>20} {:>18}", table::number(run.value), run.status());
+        if let Some(result) = &run.result {
+            let statistics = &result.statistics.world;
+            let _ = write!(
+                text,
+                " {:>18} {:>18.9e} {:>18} {:>18}",
+                table::number(result.time),
+                result.energy.total - result.energy.start,
+                statistics.impacts,
+                statistics.steps
+            );
         }
         text.push('\n');
     }
     text
+}
+
+/// Everything but the wall time, in digits that read back as the same bits: equal sweeps write equal files. Of a run
+/// that was refused all but its value and status is empty.
+fn csv(sweep: &Sweep) -> String {
+    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", quoted(&sweep.field));
+    let known = sweep.runs.iter().find_map(|run| run.result.as_ref());
+    let bodies = known.map_or(&[][..], |result| &result.bodies);
+    for (name, _) in bodies {
+        for quantity in QUANTITIES {
+            let _ = write!(text, ",{}", quoted(&format!("{name}.{quantity}")));
+        }
+    }
+    text.push('\n');
+    for run in &sweep.runs {
+        let _ = write!(text, "{:?},{}", run.value, run.status());
+        match &run.result {
+            Some(result) => write_result(&mut text, result),
+            None => text.push_str(&",".repeat(5 + QUANTITIES.len() * bodies.len())),
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn write_result(text: &mut String, result: &RunResult) {
+    let (energy, statistics) = (&result.energy, &result.statistics.world);
+    let (impacts, steps) = (statistics.impacts, statistics.steps);
+    let _ = write!(text, ",{:?},{:?},{:?},{impacts},{steps}", result.time, energy.start, energy.total);
+    for (_, state) in &result.bodies {
+        let (place, speed) = (state.position, state.velocity);
+        for number in [place.x, place.y, state.angle, speed.x, speed.y, state.angular_velocity] {
+            let _ = write!(text, ",{number:?}");
+        }
+    }
 }
 
 /// A field of CSV, in quotes where it needs them.

@@ -54,6 +54,20 @@ impl Residuals {
     }
 }
 
+impl Problem {
+    /// Accelerations A f + b of the rows [m/s²] under the forces `force`, by J where the problem has one.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one force per row.
+    #[must_use]
+    pub fn accelerations(&self, force: &[f64]) -> Vec<f64> {
+        let mut acceleration = vec![0.0; self.len()];
+        Checker::default().check(self, force, &mut acceleration);
+        acceleration
+    }
+}
+
 impl fmt::Display for Residuals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Residuals { natural, growth, backward } = self;
@@ -337,6 +351,20 @@ mod tests {
         let by_matrix = Problem::from_dense(&by_rows.dense(), by_rows.offset())?;
         let (x, y) = (Residuals::of(&by_rows, &[0.25, 1.5]), Residuals::of(&by_matrix, &[0.25, 1.5]));
         assert!((x.natural - y.natural).abs() < 1e-15 && (x.growth - y.growth).abs() < 1e-15);
+        Ok(())
+    }
+
+    #[test]
+    fn accelerations_are_those_of_the_matrix() -> Result<(), ProblemError> {
+        let rows = [(0, 0, 1.0), (0, 1, 2.0), (1, 1, -1.0), (1, 2, 0.5), (2, 0, 3.0)];
+        let problem = Problem::from_rows(&rows, &[0.5, 2.0, 0.0], &[-3.0, 1.0, 0.5])?;
+        let force = [0.25, 1.5, -2.0];
+        let dense = problem.dense();
+        let accelerations = problem.accelerations(&force);
+        for ((row, b), acceleration) in dense.iter().zip(problem.offset()).zip(accelerations) {
+            let expected = row.iter().zip(&force).map(|(a, f)| a * f).sum::<f64>() + b;
+            assert!((acceleration - expected).abs() < 1e-14);
+        }
         Ok(())
     }
 

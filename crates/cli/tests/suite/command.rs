@@ -1,5 +1,6 @@
 //! The command as a user meets it: exit codes, messages, JSON and files.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -438,6 +439,57 @@ fn sweep_prints_a_table_or_json() {
     assert_eq!(object["format"], "halfgap-sweep-1");
     assert_eq!(object["runs"][2]["value"], 1e-3);
     assert_eq!(object["runs"][2]["result"]["status"], "done");
+}
+
+#[test]
+fn sweep_goes_on_past_a_value_of_which_no_world_can_be_made() {
+    let folder = Folder::new("sweep-refused");
+    let scene = folder.write("bounce.toml", BOUNCE);
+    let file = folder.path("table.csv");
+    // At 0.2 m the ball lies in the floor.
+    let arguments = ["sweep", &scene, "--vary", "body.ball.position[1]=0.2..2/3", "--out", &file];
+    let output = halfgap(&arguments);
+    let (text, message) = (folder.plain(&output.stdout), folder.plain(&output.stderr));
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    let status = |line: &str| line.split_whitespace().nth(1).map(str::to_owned);
+    let statuses: Vec<_> = text.lines().skip(1).filter_map(status).collect();
+    assert_eq!(statuses, ["refused", "done", "done"], "{text}");
+    let why =
+        "with body[1].position[1] = 0.200000000: body[1].position: bodies \"floor\" and \"ball\" overlap by";
+    assert!(message.contains(why), "{message}");
+    let table = std::fs::read_to_string(&file).expect("the table was written");
+    let columns: BTreeSet<_> = table.lines().map(|line| line.split(',').count()).collect();
+    assert_eq!(columns.len(), 1, "{table}");
+    let object = json(&halfgap(&[&arguments[..], &["--json"]].concat()));
+    assert!(object["runs"][0]["result"].is_null() && object["runs"][0]["error"].is_string());
+    assert_eq!(object["runs"][1]["result"]["status"], "done");
+}
+
+#[test]
+fn sweep_opens_its_table_before_it_runs() {
+    let folder = Folder::new("sweep-out");
+    let scene = folder.write("bounce.toml", BOUNCE);
+    let file = folder.path("nowhere/table.csv");
+    let output = halfgap(&["sweep", &scene, "--vary", "body.ball.position[1]=0.2..0.3/2", "--out", &file]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = folder.plain(&output.stderr);
+    assert!(message.starts_with("error: --out: cannot write") && message.lines().count() == 1, "{message}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_sweep_that_is_interrupted_prints_the_runs_that_were_made() {
+    let folder = Folder::new("sweep-interrupted");
+    let endless = FLIGHT.replace("duration = 2.0", "duration = 1e4\noutput_step = 1e-3");
+    let (scene, file) = (folder.write("endless.toml", &endless), folder.path("table.csv"));
+    let vary = "body.disc.velocity[0]=1..2/100";
+    let output = terminated_once(&["sweep", &scene, "--vary", vary, "--threads", "2", "--out", &file], &file);
+    let (text, message) = (folder.plain(&output.stdout), folder.plain(&output.stderr));
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    let made = text.lines().count() - 1;
+    assert!(made <= 2, "{text}");
+    let left = format!("error: interrupted: {} of 100 runs were not made", 100 - made);
+    assert_eq!(message.lines().last(), Some(left.as_str()), "{message}");
 }
 
 #[test]
