@@ -1,7 +1,7 @@
 //! The folder that `--out` names: recording, result and pictures.
 
 use crate::failure::Failure;
-use halfgap::picture::{energy_picture, events_picture, scene_picture};
+use halfgap::picture::{ScenePictures, energy_picture, events_picture};
 use halfgap::{Frame, Recording, RunResult, World};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -27,15 +27,16 @@ pub(crate) fn write_all(
     write(folder, "energy.csv", |out| recording.write_energy_csv(out))?;
     write(folder, "recording.json", |out| recording.write_json(out))?;
     write(folder, "result.json", |out| writeln!(out, "{}", result.to_json()))?;
+    let scene = ScenePictures::new(world, recording);
     let mut ends = Vec::new();
     ends.extend(recording.frames.first().map(|frame| ("start.svg", frame)));
     ends.extend(recording.frames.last().map(|frame| ("end.svg", frame)));
     for (name, frame) in ends {
-        write(folder, name, |out| out.write_all(scene_picture(world, recording, frame).as_bytes()))?;
+        write(folder, name, |out| out.write_all(scene.at(frame).as_bytes()))?;
     }
     for (index, frame) in evenly(&recording.frames, pictures).enumerate() {
         let name = format!("picture-{index:04}.svg");
-        write(folder, &name, |out| out.write_all(scene_picture(world, recording, frame).as_bytes()))?;
+        write(folder, &name, |out| out.write_all(scene.at(frame).as_bytes()))?;
     }
     write(folder, "energy.svg", |out| out.write_all(energy_picture(recording).as_bytes()))?;
     write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))

@@ -17,7 +17,7 @@ mod view;
 
 pub use energy::energy_picture;
 pub use events::events_picture;
-pub use scene::scene_picture;
+pub use scene::{ScenePictures, scene_picture};
 
 /// Colours of the bodies, in turn.
 const PALETTE: [&str; 8] =

@@ -9,8 +9,10 @@ use super::ties::{draw_rails, draw_ties, fixed_boxes};
 use super::view::{FOOT, View};
 use crate::recording::{Frame, Recording};
 use crate::world::World;
+use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{Aabb, Pose};
+use std::collections::BTreeMap;
 
 /// Fixed bodies that reach no farther than this beyond what moves are shown whole, as part of the size of that.
 const NEAR: f64 = 1.5;
@@ -18,34 +20,75 @@ const NEAR: f64 = 1.5;
 const SURROUNDINGS: f64 = 0.35;
 /// More points of a trail than this are thinned out.
 const LONGEST_TRAIL: usize = 4000;
+/// So are trails that have more points than this together.
+const MOST_POINTS: usize = 200_000;
 /// The time in the title is rounded to this [s].
 const TITLE_TIME_STEP: f64 = 1e-3;
 
-/// Draws the bodies of a world as they are in a frame of its recording, and the forces of its contacts and connectors;
-/// the trails, and the scale of the forces, are those of the whole recording.
+/// What the pictures of a recording have in common: what they show of the world, the trails, and the scale of
+/// the forces are those of all of it.
+#[derive(Debug)]
+pub struct ScenePictures<'a> {
+    world: &'a World,
+    recording: &'a Recording,
+    view: View,
+    /// The path of each movable body's trail.
+    trails: Vec<String>,
+    forces: Option<ForceScale>,
+}
+
+impl<'a> ScenePictures<'a> {
+    /// Makes ready for pictures of a world at times of its recording.
+    #[must_use]
+    pub fn new(world: &'a World, recording: &'a Recording) -> Self {
+        let view = View::of_box(shown_box(world, recording));
+        let trails = trails(recording, &view);
+        Self { world, recording, view, trails, forces: ForceScale::of(recording) }
+    }
+
+    /// Draws the bodies as they are in a frame, and the forces of contacts and connectors.
+    #[must_use]
+    pub fn at(&self, frame: &Frame) -> String {
+        let Self { world, recording, view, trails, forces } = self;
+        let mut svg = Svg::new(view.page_width(), view.page_height());
+        draw_title(&mut svg, recording, frame);
+        svg.open_group(&[
+            ("stroke-linejoin", "round"),
+            ("stroke-linecap", "round"),
+            ("fill-rule", "evenodd"),
+        ]);
+        for body in world.bodies().filter(|&body| world.is_fixed(body)) {
+            let data = path_data(world.shape(body), &pose(&world.state(body)), view);
+            svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
+        }
+        draw_rails(&mut svg, world, view);
+        for (place, data) in trails.iter().enumerate() {
+            let attributes = [
+                ("fill", "none"),
+                ("stroke", color(place)),
+                ("stroke-width", "1"),
+                ("stroke-opacity", "0.45"),
+            ];
+            svg.path(data, &attributes);
+        }
+        for (place, (&body, state)) in recording.movable.iter().zip(&frame.states).enumerate() {
+            draw_movable(&mut svg, world, body, (place, state), view);
+        }
+        draw_ties(&mut svg, world, recording, frame, view);
+        svg.close_group();
+        if let Some(forces) = forces {
+            forces.draw(&mut svg, recording, frame, view);
+            forces.draw_key(&mut svg, (view.page_width() - 20.0, view.page_height() - 0.45 * FOOT));
+        }
+        draw_scale_bar(&mut svg, view);
+        svg.finish()
+    }
+}
+
+/// One picture of a recording, as [`ScenePictures`] draws it: these are quicker where there are several.
 #[must_use]
 pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> String {
-    let view = View::of_box(shown_box(world, recording));
-    let mut svg = Svg::new(view.page_width(), view.page_height());
-    draw_title(&mut svg, recording, frame);
-    svg.open_group(&[("stroke-linejoin", "round"), ("stroke-linecap", "round"), ("fill-rule", "evenodd")]);
-    for body in world.bodies().filter(|&body| world.is_fixed(body)) {
-        let data = path_data(world.shape(body), &pose(&world.state(body)), &view);
-        svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
-    }
-    draw_rails(&mut svg, world, &view);
-    draw_trails(&mut svg, recording, &view);
-    for (place, (&body, state)) in recording.movable.iter().zip(&frame.states).enumerate() {
-        draw_movable(&mut svg, world, body, (place, state), &view);
-    }
-    draw_ties(&mut svg, world, recording, frame, &view);
-    svg.close_group();
-    if let Some(forces) = ForceScale::of(recording) {
-        forces.draw(&mut svg, recording, frame, &view);
-        forces.draw_key(&mut svg, (view.page_width() - 20.0, view.page_height() - 0.45 * FOOT));
-    }
-    draw_scale_bar(&mut svg, &view);
-    svg.finish()
+    ScenePictures::new(world, recording).at(frame)
 }
 
 fn pose(state: &BodyState) -> Pose {
@@ -81,37 +124,41 @@ fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
     svg.text((20.0, 47.0), subtitle, &format!("t = {} s", label(frame.time, TITLE_TIME_STEP)));
 }
 
-fn draw_trails(svg: &mut Svg, recording: &Recording, view: &View) {
-    for (place, &body) in recording.movable.iter().enumerate() {
-        let points = trail(recording, place, body);
-        let every = points.len().div_ceil(LONGEST_TRAIL).max(1);
-        let (mut data, mut last) = (String::new(), String::new());
-        for &(_, position) in points.iter().step_by(every).chain(points.last()) {
-            let point = view.to_page(position);
-            let shown = format!("{} {}", number(point.0), number(point.1));
-            // What stands still leaves one point, not one for each output.
-            if shown != last {
-                data.push(if data.is_empty() { 'M' } else { 'L' });
-                data.push_str(&shown);
-                last = shown;
-            }
+/// The paths of the centres of mass at output times and at impacts, where trails have their corners.
+fn trails(recording: &Recording, view: &View) -> Vec<String> {
+    let mut impacts: BTreeMap<BodyId, Vec<(f64, DVec2)>> = BTreeMap::new();
+    for impact in &recording.impacts {
+        for (body, state) in &impact.states {
+            impacts.entry(*body).or_default().push((impact.time, state.position));
         }
-        let attributes =
-            [("fill", "none"), ("stroke", color(place)), ("stroke-width", "1"), ("stroke-opacity", "0.45")];
-        svg.path(&data, &attributes);
     }
+    let longest = (MOST_POINTS / recording.movable.len().max(1)).clamp(1, LONGEST_TRAIL);
+    let mut points = Vec::new();
+    let mut trail = |(place, body): (usize, &BodyId)| {
+        points.clear();
+        points.extend(recording.frames.iter().map(|frame| (frame.time, frame.states[place].position)));
+        points.extend(impacts.get(body).into_iter().flatten());
+        points.sort_by(|p, q| p.0.total_cmp(&q.0));
+        trail_data(&points, longest, view)
+    };
+    recording.movable.iter().enumerate().map(&mut trail).collect()
 }
 
-/// Where a body's centre of mass was at output times and at its impacts, where the trail has its corners.
-fn trail(recording: &Recording, place: usize, body: BodyId) -> Vec<(f64, glam::DVec2)> {
-    let frames = recording.frames.iter().map(|frame| (frame.time, frame.states[place].position));
-    let impacts = recording.impacts.iter().flat_map(|impact| {
-        let own = impact.states.iter().filter(|(taking_part, _)| *taking_part == body);
-        own.map(|(_, state)| (impact.time, state.position))
-    });
-    let mut points: Vec<_> = frames.chain(impacts).collect();
-    points.sort_by(|p, q| p.0.total_cmp(&q.0));
-    points
+/// The path of a trail, thinned out to so many points.
+fn trail_data(points: &[(f64, DVec2)], longest: usize, view: &View) -> String {
+    let every = points.len().div_ceil(longest).max(1);
+    let (mut data, mut last) = (String::new(), String::new());
+    for &(_, position) in points.iter().step_by(every).chain(points.last()) {
+        let point = view.to_page(position);
+        let shown = format!("{} {}", number(point.0), number(point.1));
+        // What stands still leaves one point, not one for each output.
+        if shown != last {
+            data.push(if data.is_empty() { 'M' } else { 'L' });
+            data.push_str(&shown);
+            last = shown;
+        }
+    }
+    data
 }
 
 /// Draws a body, its centre of mass, and a line that shows how far it has turned.
@@ -122,7 +169,7 @@ fn draw_movable(svg: &mut Svg, world: &World, body: BodyId, drawn: (usize, &Body
     let attributes =
         [("fill", color(place)), ("fill-opacity", "0.55"), ("stroke", color(place)), ("stroke-width", "1.5")];
     svg.path(&data, &attributes);
-    let hand = pose.point_to_world(glam::DVec2::new(0.5 * world.shape(body).reach(), 0.0));
+    let hand = pose.point_to_world(DVec2::new(0.5 * world.shape(body).reach(), 0.0));
     let center = view.to_page(state.position);
     svg.line(center, view.to_page(hand), &[("stroke", "#22272b"), ("stroke-width", "1")]);
     svg.circle(center, 2.0, &[("fill", "#22272b")]);
