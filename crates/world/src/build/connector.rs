@@ -1,5 +1,6 @@
 //! The connectors of a scene.
 
+use super::bodies::Bodies;
 use super::edge_spec;
 use super::force::anchor;
 use crate::builder::WorldBuilder;
@@ -17,13 +18,14 @@ const HOLDING_ELASTICITY: f64 = 0.0;
 const LIMITING_ELASTICITY: f64 = 1.0;
 
 /// Adds all connectors; all bodies have been added before, in the order of the scene.
-pub(super) fn add_all(builder: &mut WorldBuilder, scene: &Scene) -> Result<(), SceneError> {
+pub(super) fn add_all(builder: &mut WorldBuilder, bodies: &Bodies<'_>) -> Result<(), SceneError> {
+    let scene = bodies.scene;
     let mut paths = Paths { scene, made: Vec::new() };
     for (index, data) in scene.connectors.iter().enumerate() {
         let field = FieldPath::top().field("connector").element(index).field(data.key());
-        let kind = kind(builder, scene, data, &mut paths, &field)?;
+        let kind = kind(builder, bodies, data, &mut paths, &field)?;
         let options = data.options();
-        let elasticity = options.elasticity.unwrap_or(default_elasticity(scene, data));
+        let elasticity = options.elasticity.unwrap_or(default_elasticity(bodies, data));
         let connector = Connector::new(kind, elasticity).map_err(|error| refused(&error, &field))?;
         builder.add_connector(ConnectorSpec { connector, collide: options.collide, align: options.align });
     }
@@ -32,11 +34,9 @@ pub(super) fn add_all(builder: &mut WorldBuilder, scene: &Scene) -> Result<(), S
 
 /// The elasticity of a connector that does not say it: what limits is as elastic as the lesser of its bodies, like any
 /// pair of bodies that meet.
-fn default_elasticity(scene: &Scene, data: &ConnectorData) -> f64 {
-    let of_body = |point: &PointData| {
-        let body = scene.bodies.iter().find(|body| body.name == point.body);
-        body.map_or(LIMITING_ELASTICITY, |body| body.elasticity)
-    };
+fn default_elasticity(bodies: &Bodies<'_>, data: &ConnectorData) -> f64 {
+    let of_body =
+        |point: &PointData| bodies.data(&point.body).map_or(LIMITING_ELASTICITY, |body| body.elasticity);
     match data {
         ConnectorData::Rope(rope) => of_body(&rope.a).min(of_body(&rope.b)),
         ConnectorData::RailStop(stop) => of_body(&stop.a),
@@ -46,12 +46,12 @@ fn default_elasticity(scene: &Scene, data: &ConnectorData) -> f64 {
 
 fn kind<'a>(
     builder: &WorldBuilder,
-    scene: &'a Scene,
+    bodies: &Bodies<'a>,
     data: &'a ConnectorData,
     paths: &mut Paths<'a>,
     field: &FieldPath,
 ) -> Result<ConnectorKind, SceneError> {
-    let end = |point: &PointData| anchor(builder, scene, point);
+    let end = |point: &PointData| anchor(builder, bodies, point);
     let ends = |length: &LengthData| (end(&length.a), end(&length.b), length.length);
     Ok(match data {
         ConnectorData::Pin(pin) => ConnectorKind::Pin { a: end(&pin.a), b: end(&pin.b) },

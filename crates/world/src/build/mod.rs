@@ -1,11 +1,13 @@
-//! A world from a scene: bodies here, `settings`, `force` and `connector` beside.
+//! A world from a scene: its bodies here (`bodies`: by their names), `settings`, `force` and `connector` beside.
 
+mod bodies;
 mod connector;
 mod force;
 pub(crate) mod settings;
 
+use self::bodies::Bodies;
 use crate::builder::{BodySpec, WorldBuilder};
-use crate::scene::{BodyData, EdgeData, FieldPath, PathData, Scene, SceneError, ShapeData, WORLD};
+use crate::scene::{BodyData, EdgeData, FieldPath, PathData, Scene, SceneError, ShapeData};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, BodyState};
@@ -33,13 +35,14 @@ fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
             SceneError::new(field, error.to_string())
         })?);
     }
+    let bodies = Bodies::of(scene);
     for (index, force) in scene.forces.iter().enumerate() {
-        force::add(&mut builder, scene, (index, force))?;
+        force::add(&mut builder, &bodies, (index, force))?;
     }
-    connector::add_all(&mut builder, scene)?;
+    connector::add_all(&mut builder, &bodies)?;
     for (index, body) in scene.bodies.iter().enumerate() {
         for other in &body.passes_through {
-            builder.let_pass(BodyId::from_index(index), find_body(scene, other));
+            builder.let_pass(BodyId::from_index(index), bodies.find(other));
         }
     }
     Ok(builder)
@@ -103,12 +106,6 @@ fn edge_spec(edge: &EdgeData) -> EdgeSpec {
             EdgeSpec::Arc { to: arc.to.into(), center: arc.center.into(), clockwise: arc.clockwise }
         }
     }
-}
-
-/// The body of a name, or the background; names have been checked.
-fn find_body(scene: &Scene, name: &str) -> BodyId {
-    let index = scene.bodies.iter().position(|body| name != WORLD && body.name == name);
-    index.map_or(BodyId::WORLD, BodyId::from_index)
 }
 
 /// Points the error at the field that it is about.

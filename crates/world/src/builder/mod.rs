@@ -3,7 +3,7 @@
 mod checks;
 
 use crate::connector::ConnectorSpec;
-use crate::force::{ForceLaw, Moving, Snapshot, Wrench, wrenches_of};
+use crate::force::{ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
 use crate::rigid_settings::{method, rigid_settings, tolerances};
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
@@ -297,23 +297,34 @@ impl WorldBuilder {
 
     /// Forces and torques of all laws at the start.
     fn wrenches(&self) -> Result<Vec<Wrench>, WorldError> {
-        let count = self.bodies.len();
         let moving: Vec<_> = self.bodies.iter().map(|body| Moving::from(&body.state)).collect();
         let now = Snapshot::new(self.settings.start_time, &moving);
+        let mut own = vec![Wrench::default(); moving.len()];
         for law in &self.forces {
-            let own = wrenches_of(from_ref(law), &now, count);
-            if let Some(bad) = own.iter().position(|sum| !(sum.force.is_finite() && sum.torque.is_finite())) {
-                let body = self.bodies[bad].name.clone();
-                return Err(WorldError::BadForce { law: law.name().to_owned(), body });
+            let is_left = |body: &BodyId| own.get(body.index()).is_some_and(|sum| *sum != Wrench::default());
+            if law.bodies().iter().any(is_left) {
+                break;
             }
-            let is_unnamed = |index: usize| !law.bodies().iter().any(|body| body.index() == index);
-            let mut pushed = own.iter().enumerate().filter(|(_, sum)| **sum != Wrench::default());
-            if let Some((unnamed, _)) = pushed.find(|&(index, _)| is_unnamed(index)) {
-                let body = self.bodies[unnamed].name.clone();
-                return Err(WorldError::UnnamedBody { law: law.name().to_owned(), body });
+            law.apply(&now, &mut Wrenches::new(&mut own));
+            for &body in law.bodies() {
+                let Some(sum) = own.get_mut(body.index()).map(std::mem::take) else { continue };
+                if !(sum.force.is_finite() && sum.torque.is_finite()) {
+                    let body = self.bodies[body.index()].name.clone();
+                    return Err(WorldError::BadForce { law: law.name().to_owned(), body });
+                }
             }
         }
-        Ok(wrenches_of(&self.forces, &now, count))
+        // What is left acts on a body that its law does not name.
+        let Some(unnamed) = own.iter().position(|sum| *sum != Wrench::default()) else {
+            return Ok(wrenches_of(&self.forces, &now, moving.len()));
+        };
+        let acts = |law: &&Arc<dyn ForceLaw>| {
+            let named = law.bodies().iter().any(|body| body.index() == unnamed);
+            !named && wrenches_of(from_ref(*law), &now, moving.len())[unnamed] != Wrench::default()
+        };
+        let law = self.forces.iter().find(acts).map_or("", |law| law.name());
+        let body = self.bodies[unnamed].name.clone();
+        Err(WorldError::UnnamedBody { law: law.to_owned(), body })
     }
 
     fn scales(&self, wrenches: &[Wrench]) -> Scales {
