@@ -97,6 +97,7 @@ impl World {
         interventions.iter().try_for_each(|intervention| self.check_intervention(intervention))?;
         let changes = self.changes_by(interventions);
         changes.iter().try_for_each(|change| self.check_change(change))?;
+        self.ask_guard()?;
         let has_failed = self.system.failure().is_some();
         let outcome = self.system.intervene(self.now, &changes);
         let mut go_on = |event: &Event| {

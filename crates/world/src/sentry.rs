@@ -43,13 +43,15 @@ pub(crate) struct Sentry {
     /// The last advance ended with a look, which found connectors together and bodies apart: they are so
     /// still, for nothing moves without another advance.
     pub(crate) is_sound: bool,
+    /// What it has found, after which there is no going on.
+    found: Option<RunError>,
     room: Room,
 }
 
 /// Energies [J] of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct EnergyScales {
-    /// What is usual in such a scene.
+    /// What is usual in such a scene; 0 where nothing moves.
     pub(crate) usual: f64,
     /// The work of its forces at the start along a target gap.
     pub(crate) rough: f64,
@@ -82,12 +84,21 @@ impl Sentry {
             looks: 0.0,
             is_watchful: duration > 0.0,
             is_sound: false,
+            found: None,
             room: Room::default(),
         }
     }
 }
 
 impl World {
+    /// What the sentry has found before.
+    ///
+    /// # Errors
+    /// It has found something: there is no going on.
+    pub(crate) fn ask_guard(&self) -> Result<(), RunError> {
+        self.sentry.found.clone().map_or(Ok(()), Err)
+    }
+
     /// Looks at what must hold after an advance, if it ended with an error, or enough has happened since the last time.
     ///
     /// # Errors
@@ -110,7 +121,11 @@ impl World {
         self.sentry.room = room;
         self.sentry.is_sound = found.is_none();
         match found {
-            Some(finding) => Err(RunError::Astray { time: self.time(), finding }),
+            Some(finding) => {
+                let error = RunError::Astray { time: self.time(), finding };
+                self.sentry.found = Some(error.clone());
+                Err(error)
+            }
             None => outcome,
         }
     }
@@ -141,7 +156,7 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BodySpec, ConnectorSpec, ToleranceOverrides, WorldBuilder};
+    use crate::{BodySpec, ConnectorSpec, Intervention, ToleranceOverrides, WorldBuilder};
     use glam::DVec2;
     use halfgap_collision::{Anchor, BodyId, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
@@ -181,7 +196,12 @@ mod tests {
         assert_eq!(*time, LATER_STILL);
         assert!((error - 1e-3).abs() < 1e-9, "{error}");
         let start = "stopped at 40 s, as it does not hold together any more: at 40 s connector 0 (rod of \"world\" and \"bob\") is off by 0.001 m";
-        assert!(outcome.is_err_and(|error| error.to_string() == start));
+        assert!(outcome.as_ref().is_err_and(|error| error.to_string() == start));
+        // There is no going on, as after any other error, but what is past is past.
+        assert_eq!(world.advance_to(LATER_STILL + 1.0, &mut |_| ()), outcome);
+        let stop = Intervention::Velocity { body: BodyId(0), velocity: DVec2::ZERO, angular_velocity: 0.0 };
+        assert_eq!(world.intervene(&[stop], &mut |_| ()), outcome);
+        assert_eq!((world.advance_to(LATER, &mut |_| ()), world.time()), (Ok(()), LATER_STILL));
     }
 
     #[test]

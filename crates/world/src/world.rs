@@ -374,6 +374,9 @@ impl World {
         if !time.is_finite() {
             return Err(RunError::NotATime);
         }
+        if time >= self.time() {
+            self.ask_guard()?;
+        }
         let has_failed = self.system.failure().is_some();
         let until = Time::from_seconds(time);
         self.system.set_duration(self.sentry.duration.max(time - self.time()));

@@ -79,7 +79,7 @@ fn root(value: f64, degree: u32) -> f64 {
     match degree {
         8 => value.sqrt().sqrt().sqrt(),
         4 => value.sqrt().sqrt(),
-        _ => value.powf(1.0 / f64::from(degree)),
+        _ => libm::pow(value, 1.0 / f64::from(degree)),
     }
 }
 

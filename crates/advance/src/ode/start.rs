@@ -45,7 +45,7 @@ impl Stepper {
         let proposed = if largest <= NO_CHANGE {
             BLIND_GUESS.max(AT_REST * guess)
         } else {
-            (SMALL_CHANGE / largest).powf(1.0 / f64::from(order + 1))
+            libm::pow(SMALL_CHANGE / largest, 1.0 / f64::from(order + 1))
         };
         Ok(way * proposed.min(LARGEST_GROWTH * guess).min(longest))
     }

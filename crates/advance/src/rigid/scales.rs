@@ -146,7 +146,7 @@ impl RigidSettings {
 /// add up to falls faster than what is asked of the estimate, by one power in so many.
 fn local_error(tolerance: f64, method: Method) -> f64 {
     let power = -1.0 / f64::from(method.order() + 1);
-    LOCAL_SHARE * tolerance * (tolerance / FINEST_TOLERANCE).powf(power)
+    LOCAL_SHARE * tolerance * libm::pow(tolerance / FINEST_TOLERANCE, power)
 }
 
 /// Rates up to which a row is at rest, in a scene of the given speed [m/s].

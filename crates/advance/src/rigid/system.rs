@@ -426,6 +426,9 @@ impl EventDriven for RigidSystem {
     /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no
     /// going on from it, and it is told again whenever that is tried.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
         let Some(event) = self.queue.first() else { return Ok(None) };
         self.happen(event.time, |system| system.handle(event.source))
     }

@@ -338,7 +338,7 @@ impl Connector {
             let gap = self.measure_near(row, a, b, hint).gap;
             if self.is_bilateral() { gap.abs() } else { (-gap).max(0.0) }
         };
-        (0..self.row_count()).map(off).fold(0.0, f64::hypot)
+        (0..self.row_count()).map(off).fold(0.0, libm::hypot)
     }
 }
 

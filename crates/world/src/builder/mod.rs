@@ -28,8 +28,13 @@ const DEFAULT_START_ERROR: f64 = 1e-6;
 
 /// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
 const CENTROID_ROUNDINGS: f64 = 16.0;
+/// Speeds that are lower [m/s, rad/s] are none.
+const VANISHING: f64 = 1e-140;
 /// A speed is told from rounding of the coordinates by so many roundings, of its square.
 const LOST_ROUNDINGS: f64 = 1e4;
+/// What moves by no rounding of its coordinates in this time [s] stands still, where it is not known how long the
+/// world will run.
+const TIME_TO_MOVE: f64 = 1.0;
 /// Forces press what is held to within so many tolerances of a body's size.
 const LOST_TOLERANCES: f64 = 10.0;
 
@@ -165,6 +170,7 @@ impl WorldBuilder {
     /// error names the body or the connector, and the number.
     pub fn build(mut self) -> Result<World, WorldError> {
         self.check()?;
+        self.stop_vanishing();
         self.align();
         let wrenches = self.wrenches()?;
         let scales = self.scales(&wrenches);
@@ -208,10 +214,11 @@ impl WorldBuilder {
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
+        let (usual, still) = (usual_energy(&bodies, forces) + torques, still_energy(&bodies, &self.settings));
         let energies = EnergyScales {
-            usual: usual_energy(&bodies, forces) + torques,
+            usual: if usual > still { usual } else { 0.0 },
             rough: tolerances.target_gap * forces,
-            lost: lost_energy(&bodies, forces, &self.settings),
+            lost: lost_energy(&bodies, forces, &self.settings) + still,
             left: f64::EPSILON * start.energy_change.abs(),
         };
         let sentry = Sentry::new(&self.settings, energies);
@@ -278,6 +285,15 @@ impl WorldBuilder {
         let moves = |state: &BodyState| state.velocity != DVec2::ZERO || state.angular_velocity != 0.0;
         let body = self.bodies.iter().find(|body| body.inertia.is_none() && moves(&body.state))?;
         Some(format!("body \"{}\" is fixed: its velocity is left out of account", body.name))
+    }
+
+    /// Stops what moves at speeds whose squares are no numbers any more.
+    fn stop_vanishing(&mut self) {
+        let stop = |speed: &mut f64| *speed = if speed.abs() < VANISHING { 0.0 } else { *speed };
+        for BodyState { velocity, angular_velocity, .. } in self.bodies.iter_mut().map(|body| &mut body.state)
+        {
+            [&mut velocity.x, &mut velocity.y, angular_velocity].into_iter().for_each(stop);
+        }
     }
 
     /// Moves the bodies that connectors are to align, in the connectors' order.
@@ -367,14 +383,28 @@ fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
 /// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have
 /// at a speed that is rounding of their coordinates.
 fn lost_energy(bodies: &[StartParts], forces: f64, settings: &WorldSettings) -> f64 {
-    let movable = || bodies.iter().filter(|(body, ..)| !body.is_fixed());
-    let reach = movable().map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);
+    let reach = movable(bodies).map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);
+    let rounding = settings.duration.map_or(0.0, |duration| crossing_energy(bodies, duration));
+    LOST_ROUNDINGS * f64::EPSILON * rounding + forces * LOST_TOLERANCES * settings.tolerance * reach
+}
+
+/// Energy [J] of bodies that move so slowly that in all of the run their coordinates do not change by a rounding.
+fn still_energy(bodies: &[StartParts], settings: &WorldSettings) -> f64 {
+    let time = settings.duration.unwrap_or(TIME_TO_MOVE);
+    f64::EPSILON * f64::EPSILON * crossing_energy(bodies, time)
+}
+
+/// Energy [J] of the bodies, if all went as far as the coordinates are large in a time [s].
+fn crossing_energy(bodies: &[StartParts], time: f64) -> f64 {
     let farthest =
         bodies.iter().map(|(body, _, state)| state.position.abs().max_element() + body.shape.reach());
-    let speed = settings.duration.map_or(0.0, |duration| farthest.fold(0.0, f64::max) / duration);
-    let mass: f64 = movable().map(|(body, ..)| body.inverse_mass.recip()).sum();
-    LOST_ROUNDINGS * f64::EPSILON * mass * speed * speed
-        + forces * LOST_TOLERANCES * settings.tolerance * reach
+    let speed = farthest.fold(0.0, f64::max) / time;
+    let mass: f64 = movable(bodies).map(|(body, ..)| body.inverse_mass.recip()).sum();
+    mass * speed * speed
+}
+
+fn movable(bodies: &[StartParts]) -> impl Iterator<Item = &StartParts> {
+    bodies.iter().filter(|(body, ..)| !body.is_fixed())
 }
 
 /// Sum of the sizes of the forces [N] on the movable bodies.

@@ -62,6 +62,20 @@ fn an_impact_after_which_nothing_can_go_on_is_told_and_so_is_every_try() {
     assert_eq!(world.intervene(&[down], &mut |event| panic!("{event:?}")), failed, "nothing helps any more");
 }
 
+#[test]
+fn an_intervention_after_which_nothing_can_go_on_is_told_again_where_nothing_else_happens() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let disc = Shape::disc(0.5).expect("a fine radius");
+    let ball = builder.add(BodySpec::movable("ball", disc, 1.0, BodyState::default()));
+    builder.add_force(Arc::new(OnlyDown([ball])));
+    let mut world = builder.build().expect("it falls");
+    world.advance_to(1.0, &mut |_| ()).expect("it goes down");
+    let up = Intervention::Velocity { body: ball, velocity: DVec2::Y, angular_velocity: 0.0 };
+    let failed = world.intervene(&[up], &mut |_| ());
+    assert!(matches!(failed, Err(RunError::StepCollapsed { .. })), "{failed:?}");
+    assert_eq!(world.advance_to(2.0, &mut |_| ()), failed);
+}
+
 /// A push on the body that is named second.
 #[derive(Debug)]
 struct Push([BodyId; 2], usize);
@@ -93,6 +107,20 @@ fn a_law_that_acts_on_a_body_it_does_not_name_is_refused() {
         let refused = WorldError::UnnamedBody { law: "push".to_owned(), body: "second".to_owned() };
         assert_eq!(builder.build().err(), (!is_fine).then_some(refused));
     }
+}
+
+#[test]
+fn that_another_law_names_the_body_helps_nothing() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let bodies = [("first", 0.0), ("second", 5.0)].map(|(name, x)| {
+        let state = BodyState { position: DVec2::new(x, 0.0), ..BodyState::default() };
+        let disc = Shape::disc(0.5).expect("a fine radius");
+        builder.add(BodySpec::movable(name, disc, 1.0, state))
+    });
+    builder.add_force(Arc::new(Push(bodies, 1)));
+    builder.add_force(Arc::new(OnlyDown([bodies[1]])));
+    let refused = WorldError::UnnamedBody { law: "push".to_owned(), body: "second".to_owned() };
+    assert_eq!(builder.build().err(), Some(refused));
 }
 
 #[test]

@@ -243,3 +243,45 @@ fn what_is_struck_where_contacts_carry_impulses_only_bounces_and_comes_to_rest()
     world.advance_to(3.0, &mut |_| ()).expect("it rests again");
     assert!((world.state(disc).position.y - 0.5).abs() < 1e-3, "{:?}", world.state(disc));
 }
+
+/// A bar of 1 kg that is pinned to the background off its centre, and turns at a rate [rad/s].
+fn door(rate: f64) -> (World, BodyId) {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let hinge = DVec2::new(-0.5, 0.03);
+    let arm = DVec2::from_angle(0.3).rotate(hinge);
+    let state = BodyState {
+        position: DVec2::new(0.3, 0.7),
+        angle: 0.3,
+        velocity: -rate * arm.perp(),
+        angular_velocity: rate,
+    };
+    let bar = Shape::block(1.0, 0.2).expect("a fine size");
+    let bar = builder.add(BodySpec::movable("door", bar, 1.0, state));
+    let a = builder.anchor(bar, hinge);
+    let b = Anchor { body: BodyId::WORLD, point: state.position + arm };
+    let pin = Connector::new(ConnectorKind::Pin { a, b }, 0.0).expect("a fine pin");
+    builder.add_connector(ConnectorSpec::new(pin));
+    (builder.build().expect("it hangs together"), bar)
+}
+
+#[test]
+fn who_holds_a_door_for_long_holds_it() {
+    let (mut world, bar) = door(1.0);
+    let hold = Intervention::Velocity { body: bar, velocity: DVec2::ZERO, angular_velocity: 0.0 };
+    for frame in 1..=3000 {
+        world.advance_to(f64::from(frame) / 60.0, &mut |_| ()).expect("it stands");
+        world.intervene(&[hold], &mut |_| ()).expect("it is held");
+        let state = world.state(bar);
+        assert_eq!((state.velocity, state.angular_velocity), (DVec2::ZERO, 0.0), "frame {frame}");
+    }
+}
+
+#[test]
+fn a_door_that_hardly_moves_is_no_trouble() {
+    for rate in [1e-30, 1e-60, 1e-120, 1e-300, 1e-314, f64::MIN_POSITIVE * f64::EPSILON] {
+        let (mut world, bar) = door(rate);
+        world.advance_to(10.0, &mut |_| ()).unwrap_or_else(|error| panic!("{rate} rad/s: {error}"));
+        assert!(world.state(bar).angular_velocity <= rate, "{rate} rad/s: {:?}", world.state(bar));
+        assert_eq!(world.findings(1.0), []);
+    }
+}

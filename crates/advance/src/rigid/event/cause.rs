@@ -51,8 +51,9 @@ pub(crate) struct EventWork {
     pub(crate) seeds: Vec<BodyId>,
     /// Impulses that the contacts of the region carry until its low hops have come down [N s].
     pub(crate) carried: Vec<f64>,
-    /// States of the region's bodies before contacts were stopped as bilateral ones, and what that was.
-    pub(super) before: Vec<BodyState>,
+    /// States of bodies to go back to: before contacts were stopped as bilateral ones, or groups were cut.
+    pub(crate) before: Vec<BodyState>,
+    /// How contacts were stopped as bilateral ones.
     pub(crate) stop: ImpactReport,
     pub(super) lift: Lift,
     /// How often the pair that fired has done so without time going by, beyond what is calm.

@@ -211,7 +211,7 @@ impl RigidSystem {
         let halo = |body: BodyId| self.lanes[body.index()].halo;
         let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
         let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
-        let nearest = record.geometry.distance * across.abs() / along.hypot(across);
+        let nearest = record.geometry.distance * across.abs() / libm::hypot(along, across);
         nearest > halos.min(record.tolerances.target_gap)
     }
 

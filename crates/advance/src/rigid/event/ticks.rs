@@ -274,7 +274,7 @@ impl RigidSystem {
     fn longest_way(&self, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
         let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
             let reach = self.flyer(body).reach();
-            let way = x.hypot(*y) + turn.abs() * reach;
+            let way = libm::hypot(*x, *y) + turn.abs() * reach;
             (way, way / reach)
         });
         ways.fold((0.0, 0.0), |most, way| (most.0.max(way.0), most.1.max(way.1)))

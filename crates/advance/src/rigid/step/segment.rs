@@ -47,6 +47,9 @@ const DENSE_ERROR: f64 = 0.1;
 /// it is in the middle.
 const EARLY_SHARE: f64 = 16.0;
 
+/// Part of the speed of what is at rest from which on a group moves: squares of less are no numbers any more.
+const STANDSTILL: f64 = 1e-140;
+
 /// How often a step is made otherwise so that no stage of it comes near a point where its rows depend on each other.
 const MOST_PLACEMENTS: usize = 4;
 
@@ -330,7 +333,7 @@ impl Dynamics<'_> {
     pub(crate) fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
         let forced = (self.group.free_acceleration * self.length(control)).sqrt();
         let speed = forced.max(self.top_speed(state));
-        if speed > 0.0 { speed } else { control.speed }
+        if speed > STANDSTILL * control.speed { speed } else { control.speed }
     }
 
     /// Speed [m/s] of the fastest point of the group in a state.
@@ -356,7 +359,7 @@ impl Dynamics<'_> {
     fn first_step(&self, control: &StepControl) -> f64 {
         let speed = self.speed(control);
         let time = if speed > 0.0 { self.length(control) / speed } else { 1.0 };
-        time * control.local_error.powf(FIRST_STEP_POWER)
+        time * libm::pow(control.local_error, FIRST_STEP_POWER)
     }
 
     /// Error [J] of a work that is just acceptable: what errors of velocities, just acceptable too, make of

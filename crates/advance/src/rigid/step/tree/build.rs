@@ -118,7 +118,7 @@ impl JointTree {
     fn complete(&mut self, error: f64) {
         for link in &mut self.links {
             let reach = link.lever_square.sqrt();
-            link.most_turn = 2.0 * (error / (INNER_ERROR * reach)).powf(INNER_DEGREE.recip());
+            link.most_turn = 2.0 * libm::pow(error / (INNER_ERROR * reach), INNER_DEGREE.recip());
         }
         for index in (0..self.links.len()).rev() {
             let Hinge::Link { parent, arm, .. } = self.links[index].hinge else { continue };
