@@ -41,9 +41,10 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         result.error_estimate = Some(estimate.map_err(|error| source.locate(error))?);
     }
     progress.finish();
-    if let Some(folder) = &options.out {
-        files::write_all(folder, &world, &report.recording, &result, options.pictures)?;
-    }
+    // What cannot be written is told last: the rest is not lost with it.
+    let written = options.out.as_ref().map_or(Ok(()), |folder| {
+        files::write_all(folder, &world, &report.recording, &result, options.pictures)
+    });
     let printed = match (options.json, options.quiet) {
         (true, _) => output::print(&format!("{}\n", result.to_json())),
         (false, false) => output::print(&table::of_result(&result)),
@@ -55,6 +56,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     if let Some(error) = &report.error {
         eprintln!("error: {}: stopped early at t = {} s: {error}", options.scene.display(), result.time);
     }
+    written?;
     printed?;
     Ok(if report.error.is_none() { End::Done } else { End::Stopped })
 }

@@ -64,8 +64,7 @@ pub struct ErrorEstimate {
 /// that run off, both are compared up to there.
 ///
 /// # Errors
-/// The scene cannot be built at the tighter tolerance, as when its bodies overlap by more than that allows;
-/// the run did not record everything.
+/// The run did not record everything; the scene cannot be built, or not at the tighter tolerance.
 pub fn estimate_error(
     scene: &Scene,
     plan: &RunPlan,

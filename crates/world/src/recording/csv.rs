@@ -21,8 +21,9 @@ impl Recording {
         for frame in &self.frames {
             for (name, state) in names.iter().zip(&frame.states) {
                 let (position, velocity) = (state.position, state.velocity);
-                write!(out, "{},{name},{},{},", frame.time, position.x, position.y)?;
-                writeln!(out, "{},{},{},{}", state.angle, velocity.x, velocity.y, state.angular_velocity)?;
+                let place = numbers([position.x, position.y, state.angle]);
+                let speed = numbers([velocity.x, velocity.y, state.angular_velocity]);
+                writeln!(out, "{:?},{name},{place},{speed}", frame.time)?;
             }
         }
         Ok(())
@@ -41,11 +42,11 @@ impl Recording {
         for (index, impact) in self.impacts.iter().enumerate() {
             for row in &impact.rows {
                 let (primary, normal) = (quoted(self.name(row.primary)), quoted(self.name(row.normal_body)));
-                write!(out, "{index},{},{primary},{normal},{},{},", impact.time, row.point.x, row.point.y)?;
-                write!(out, "{},{},{},{},", row.normal.x, row.normal.y, row.gap, row.velocity_before)?;
+                let place = numbers([row.point.x, row.point.y, row.normal.x, row.normal.y, row.gap]);
+                let blow = numbers([row.velocity_before, row.velocity_after, row.impulse]);
                 let connector = row.connector.map(|id| id.0.to_string()).unwrap_or_default();
-                write!(out, "{},{},", row.velocity_after, row.impulse)?;
-                writeln!(out, "{},{connector}", impact.energy_change)?;
+                write!(out, "{index},{:?},{primary},{normal},{place},{blow},", impact.time)?;
+                writeln!(out, "{:?},{connector}", impact.energy_change)?;
             }
         }
         Ok(())
@@ -58,7 +59,7 @@ impl Recording {
     pub fn write_contacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "change,time [s],{FORCE_HEADER}")?;
         for record in &self.contacts {
-            write!(out, "{},{},", record.change.name(), record.event.time)?;
+            write!(out, "{},{:?},", record.change.name(), record.event.time)?;
             self.write_force(out, &record.event.contact)?;
         }
         Ok(())
@@ -72,7 +73,7 @@ impl Recording {
         writeln!(out, "time [s],{FORCE_HEADER}")?;
         for frame in &self.frames {
             for force in &frame.forces {
-                write!(out, "{},", frame.time)?;
+                write!(out, "{:?},", frame.time)?;
                 self.write_force(out, force)?;
             }
         }
@@ -83,8 +84,8 @@ impl Recording {
         let [primary, normal] = force.bodies.map(|body| quoted(self.name(body)));
         let connector = force.connector.map(|id| id.0.to_string()).unwrap_or_default();
         let (point, direction) = (force.point, force.normal);
-        write!(out, "{primary},{normal},{connector},{},{},", point.x, point.y)?;
-        writeln!(out, "{},{},{}", direction.x, direction.y, force.force)
+        let told = numbers([point.x, point.y, direction.x, direction.y, force.force]);
+        writeln!(out, "{primary},{normal},{connector},{told}")
     }
 
     /// Writes a line for each output time.
@@ -95,10 +96,16 @@ impl Recording {
         writeln!(out, "time [s],kinetic [J],potential [J],total [J]")?;
         for frame in &self.frames {
             let energy = &frame.energy;
-            writeln!(out, "{},{},{},{}", frame.time, energy.kinetic, energy.potential, energy.total())?;
+            let told = numbers([frame.time, energy.kinetic, energy.potential, energy.total()]);
+            writeln!(out, "{told}")?;
         }
         Ok(())
     }
+}
+
+/// Numbers, with commas between them.
+fn numbers<const COUNT: usize>(values: [f64; COUNT]) -> String {
+    values.map(|value| format!("{value:?}")).join(",")
 }
 
 /// A name, in quotes if it needs them.
