@@ -123,18 +123,6 @@ impl ContactGeometry {
     pub fn tangent(&self) -> DVec2 {
         self.normal.perp()
     }
-
-    /// True if the primary body is an arc at the impact.
-    #[must_use]
-    pub fn primary_is_curved(&self) -> bool {
-        self.radius_primary.is_some_and(|radius| radius != 0.0)
-    }
-
-    /// True if the normal body is an arc at the impact.
-    #[must_use]
-    pub fn normal_is_curved(&self) -> bool {
-        self.radius_normal.is_some_and(|radius| radius != 0.0)
-    }
 }
 
 /// How the bodies move at the place where they touch.

@@ -142,13 +142,6 @@ impl Method {
             Method::Other => "other",
         }
     }
-
-    /// The method of that name, if this crate offers it.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let methods =
-            [Method::Auto, Method::DualActiveSet, Method::ProximalNewton, Method::Qp, Method::Lemke];
-        methods.into_iter().find(|method| method.name() == name)
-    }
 }
 
 impl fmt::Display for Method {

@@ -108,13 +108,6 @@ impl FeatureTree {
         }
     }
 
-    /// Visits every feature whose bounds come within `distance` [m] of a point in body coordinates.
-    pub fn visit_near_point(&self, point: DVec2, distance: f64, visit: &mut impl FnMut(FeatureId)) {
-        if !self.nodes.is_empty() {
-            self.near_point(0, point, distance, visit);
-        }
-    }
-
     /// Visits every pair of features, of this tree at `pose` and of another at its own, whose bounds come within
     /// `distance` [m] of each other.
     pub fn visit_near_pairs(
@@ -175,20 +168,6 @@ impl FeatureTree {
                 for child in children {
                     self.visit_below(child, wanted, visit);
                 }
-            }
-        }
-    }
-
-    fn near_point(&self, node: usize, point: DVec2, distance: f64, visit: &mut impl FnMut(FeatureId)) {
-        let here = &self.nodes[node];
-        if here.bounds.distance_to(point) > distance {
-            return;
-        }
-        match here.content {
-            Content::Leaf(feature) => visit(feature),
-            Content::Branch(second) => {
-                self.near_point(node + 1, point, distance, visit);
-                self.near_point(second as usize, point, distance, visit);
             }
         }
     }

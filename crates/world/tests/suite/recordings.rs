@@ -105,7 +105,10 @@ fn names_are_escaped_wherever_they_are_written() {
     let mut csv = Vec::new();
     recording.write_impacts_csv(&mut csv).expect("memory takes everything");
     let csv = String::from_utf8(csv).expect("text");
-    assert_eq!(csv.lines().nth(1), Some("0,0.5,disc,\"rim, \"\"fixed\"\"\",1,0,-1,0,0.01,-1,1,2,0,"));
+    assert_eq!(
+        csv.lines().nth(1),
+        Some("0,0.5,disc,\"rim, \"\"fixed\"\"\",1.0,0.0,-1.0,0.0,0.01,-1.0,1.0,2.0,0.0,")
+    );
     let picture = scene_picture(&world, &recording, &recording.frames[0]);
     assert!(picture.contains("A &lt;b&gt; &amp; co"), "{picture}");
 }
@@ -249,12 +252,12 @@ fn forces_and_contacts_are_written_as_tables() {
     recording.write_contacts_csv(&mut csv).expect("memory takes everything");
     insta::assert_snapshot!(String::from_utf8(csv).expect("text"), @r#"
     time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]
-    0,disc,"rim, ""fixed""",,0,-1,0,1,5
-    0,disc,world,3,0,-1,1,0,-6
-    0,disc,world,3,0,-1,0,1,8
+    0.0,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,5.0
+    0.0,disc,world,3,0.0,-1.0,1.0,0.0,-6.0
+    0.0,disc,world,3,0.0,-1.0,0.0,1.0,8.0
     change,time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]
-    begins,0.5,disc,"rim, ""fixed""",,0,-1,0,1,2.5
-    ends,0.75,disc,"rim, ""fixed""",,0,-1,0,1,2.5
+    begins,0.5,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5
+    ends,0.75,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5
     "#);
 }
 

@@ -44,6 +44,34 @@ fn contacts_are_found_again_by_their_keys() {
 }
 
 #[test]
+fn keys_of_a_matrix_tell_which_of_its_rows_carried_a_force() {
+    let case = Case::named("wall_20");
+    let (matrix, offset) = (case.problem.dense(), case.problem.offset());
+    // The same rows in two orders, each with its name.
+    let problem = |order: &[usize]| {
+        let entries: Vec<Vec<f64>> =
+            order.iter().map(|&i| order.iter().map(|&j| matrix[i][j]).collect()).collect();
+        let offset: Vec<f64> = order.iter().map(|&row| offset[row]).collect();
+        let mut problem = Problem::from_dense(&entries, &offset).unwrap();
+        let keys: Vec<_> = order.iter().map(|&row| ContactKey(row as u64)).collect();
+        assert!(problem.set_keys(&keys[1..]).is_err());
+        problem.set_keys(&keys).unwrap();
+        problem
+    };
+    let count = offset.len();
+    let mut solver = DualActiveSet::default();
+    let (mut solution, mut warm) = (Solution::new(), WarmStart::new());
+    let before = problem(&(0..count).collect::<Vec<_>>());
+    solver.solve(&before, &mut solution).unwrap();
+    warm.remember(&before, &solution);
+    let after = problem(&(0..count).rev().collect::<Vec<_>>());
+    solver.solve(&after, &mut solution).unwrap();
+    let cold = solution.iterations;
+    solver.solve_from(&after, &warm, &mut solution).unwrap();
+    assert!(solution.iterations < cold, "{} iterations, {cold} without", solution.iterations);
+}
+
+#[test]
 fn a_misleading_warm_start_does_no_harm() {
     let case = Case::named("wall_20");
     let (mut right, mut solution, mut warm) = (Solution::new(), Solution::new(), WarmStart::new());
