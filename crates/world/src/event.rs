@@ -55,7 +55,8 @@ pub struct ImpactRow {
     pub velocity_before: f64,
     /// Rate of the gap after [m/s].
     pub velocity_after: f64,
-    /// Impulse on the primary body along the normal [N s]; the other body gets the opposite.
+    /// Impulse on the primary body along the normal [N s]; the other body gets the opposite, at that place but for
+    /// what [`ContactForce`] says of slots.
     pub impulse: f64,
 }
 
@@ -72,7 +73,8 @@ pub struct Impact {
     pub states: Vec<(BodyId, BodyState)>,
 }
 
-/// The force of one row between two bodies: a contact, or one direction of a connector.
+/// The force of one row between two bodies: a contact, or one direction of a connector. Of a slot whose direction is
+/// fixed in the world it acts on the second body at that one's own anchor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce {
     /// The body that the normal points to, and the one that it points out of; [`BodyId::WORLD`] for the background.

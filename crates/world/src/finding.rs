@@ -303,10 +303,10 @@ impl World {
     }
 
     /// Whether captures have taken a good part of the energy turned over, which is taken for the second of two
-    /// numbers [J], and more than is allowed [J].
+    /// numbers [J], and more than is allowed [J] beside what interventions have put in: gentle pushes are slow.
     fn captured(&self, books: &Books, [turned_over, taken_for]: [f64; 2], allowed: f64) -> Option<Finding> {
         let (energy, slow) = (-books.captures, self.tolerances().velocity_tol);
-        let is_blow = energy > CAPTURED * taken_for + allowed;
+        let is_blow = energy > CAPTURED * taken_for + books.given.max(0.0) + allowed;
         (is_blow && !self.is_slow_asked_for()).then_some(Finding::Captured { energy, turned_over, slow })
     }
 

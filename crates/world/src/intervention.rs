@@ -66,6 +66,10 @@ impl World {
     /// and a velocity that connectors do not allow does not come about. Velocities that belong together, as
     /// those of a linkage, are given in one call.
     ///
+    /// A force law whose numbers somebody outside changes, as that of a spring by which a mouse drags, acts as it is
+    /// then from the next intervention on one of its bodies on, even if that gives it the velocity that it has:
+    /// steps are made ahead.
+    ///
     /// Thresholds and steps follow the scales of the world as it was built: say so there if what comes is much faster
     /// ([`WorldSettings::usual_speed`](crate::WorldSettings::usual_speed)).
     ///

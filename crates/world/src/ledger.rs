@@ -66,6 +66,8 @@ pub(crate) struct Books {
     pub(crate) captures: f64,
     /// That of projections among them [J].
     pub(crate) projections: f64,
+    /// What interventions have put in [J].
+    pub(crate) given: f64,
     /// Sum of the sizes of the works of force laws that have no potential [J].
     pub(crate) works: f64,
 }
@@ -80,8 +82,8 @@ impl Books {
 impl From<&Ledger> for Books {
     fn from(ledger: &Ledger) -> Self {
         let works = ledger.laws.iter().map(|law| law.work.abs()).sum();
-        let Ledger { now, start, captures, projections, .. } = *ledger;
-        Self { now, start, booked: ledger.booked(), captures, projections, works }
+        let Ledger { now, start, captures, projections, interventions: given, .. } = *ledger;
+        Self { now, start, booked: ledger.booked(), captures, projections, given, works }
     }
 }
 

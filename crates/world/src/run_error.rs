@@ -109,10 +109,10 @@ pub enum RunError {
         laws: Vec<String>,
     },
     /// Steps have become so short that those for all the time that is to be simulated would never come to an
-    /// end, and nothing happens meanwhile.
+    /// end, and nothing happens meanwhile. The world is as it should be at that time: who asks for less may go on.
     #[error(
-        "at {time} s {} goes on in steps of {} s{}: for {duration} s that would be {} of them",
-        quoted(bodies), Rounded(*step), under(laws), Rounded(duration / step)
+        "at {time} s {} goes on in steps of {} s{}: for {} s that would be {} of them",
+        quoted(bodies), Rounded(*step), under(laws), Rounded(*duration), Rounded(duration / step)
     )]
     Crawls {
         /// When [s].

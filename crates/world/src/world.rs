@@ -221,6 +221,7 @@ impl World {
                 + works(|work| work),
             captures: booked.captures,
             projections: booked.projections,
+            given: booked.interventions,
             works: works(f64::abs),
         }
     }

@@ -76,7 +76,7 @@ pub enum AdvanceError {
         laws: Vec<String>,
     },
     /// Steps have become so short that those for all the time that is to be simulated would never come to an
-    /// end, and nothing happens meanwhile.
+    /// end, and nothing happens meanwhile. Where less is asked for one may go on.
     #[error(
         "at {time} s the steps of bodies {bodies:?} are {step:e} s long: too many of them for {duration} s; forces on them: {laws:?}"
     )]

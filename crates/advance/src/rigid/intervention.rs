@@ -10,7 +10,7 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
 
-/// A change of the velocities of a body.
+/// A change of the velocities of a body. One of nothing makes its group begin anew, with the force laws as they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityChange {
     /// The body; a fixed one, or the background, stays as it is.
@@ -68,9 +68,7 @@ impl RigidSystem {
         }
         self.forget_past(work);
         // What touches is told by the velocities: they are others now.
-        work.seeds.clear();
-        work.seeds.extend(&work.region.bodies);
-        self.collect_region(&mut work.region, &work.seeds, self.now);
+        self.collect_again(work);
         self.collide(work)
     }
 

@@ -178,6 +178,8 @@ pub struct RigidSystem {
     pub(crate) last_pull: Option<Time>,
     /// Why an event could not be handled.
     failure: Option<AdvanceError>,
+    /// What is to be told of steps that will never come to an end: nothing else is wrong.
+    pub(crate) crawls: Option<AdvanceError>,
     /// There has been an impact in the present event.
     pub(crate) has_hit: bool,
     pub(crate) links: Vec<Link>,
@@ -247,6 +249,7 @@ impl RigidSystem {
             last_insistent: None,
             last_pull: None,
             failure: None,
+            crawls: None,
             has_hit: false,
             links: Vec::new(),
             neighbours: Vec::new(),
@@ -392,7 +395,9 @@ impl RigidSystem {
         let outcome = act(self);
         self.changes.time = self.now;
         if outcome.as_ref().is_ok_and(|impact| !impact && self.changes.is_empty()) {
-            return Ok(None);
+            let Some(crawls) = self.crawls.take() else { return Ok(None) };
+            self.complete_dense();
+            return Err(crawls);
         }
         self.complete_dense();
         self.failure = outcome.as_ref().err().cloned();

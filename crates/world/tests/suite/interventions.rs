@@ -3,8 +3,8 @@
 use glam::DVec2;
 use halfgap::geometry::Shape;
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Intervention, World,
-    WorldBuilder, WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Intervention,
+    RunError, World, WorldBuilder, WorldSettings,
 };
 use std::ops::ControlFlow;
 
@@ -284,4 +284,122 @@ fn a_door_that_hardly_moves_is_no_trouble() {
         assert!(world.state(bar).angular_velocity <= rate, "{rate} rad/s: {:?}", world.state(bar));
         assert_eq!(world.findings(1.0), []);
     }
+}
+
+/// A plank on a block that juts out over another block, which is slid in and stopped there: all of 1 kg. Each is
+/// so many gaps above what it stands on, and in a state of its own if there are any.
+fn plank(gaps: f64, states: Option<&[BodyState]>) -> (World, Vec<BodyId>) {
+    let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(2.0), ..WorldSettings::default() });
+    let block = |width: f64, height: f64| Shape::block(width, height).expect("a fine size");
+    builder.add(BodySpec::fixed("floor", block(40.0, 1.0), DVec2::new(0.0, -0.5)));
+    let parts = [
+        ("support", block(2.0, 1.0), DVec2::new(0.0, 0.5 + gaps), 0.0),
+        ("plank", block(4.0, 0.5), DVec2::new(0.0, 1.25 + 2.0 * gaps), 0.0),
+        ("slider", block(1.0, 1.0), DVec2::new(5.0, 0.5 + gaps), -2.0),
+    ];
+    let bodies = parts.into_iter().enumerate().map(|(index, (name, shape, position, speed))| {
+        let start = BodyState { position, velocity: DVec2::new(speed, 0.0), ..BodyState::default() };
+        let state = states.map_or(start, |states| states[index]);
+        let body = builder.add(BodySpec { elasticity: 0.5, ..BodySpec::movable(name, shape, 1.0, state) });
+        builder.add_gravity(body, DVec2::new(0.0, -GRAVITY));
+        body
+    });
+    let bodies = bodies.collect();
+    (builder.build().expect("it stands"), bodies)
+}
+
+#[test]
+fn what_is_driven_into_another_group_takes_it_along() {
+    let gap = plank(0.0, None).0.tolerances().target_gap;
+    for gaps in [1.0, 1.2, 1.4, 1.5] {
+        let (mut world, bodies) = plank(gaps * gap, None);
+        let slider = bodies[2];
+        world.advance_to(1.6, &mut |_| ()).expect("it slides in");
+        world.intervene(&[upwards(slider, 0.0)], &mut |_| ()).expect("it is stopped");
+        world.advance_to(2.0, &mut |_| ()).expect("it stands");
+        world.intervene(&[upwards(slider, 0.5)], &mut |_| ()).expect("it lifts the plank");
+        let states: Vec<_> = bodies.iter().map(|&body| world.state(body)).collect();
+        assert!(states[1].angular_velocity > 0.1, "{gaps}: {states:?}");
+        let (mut fresh, _) = plank(0.0, Some(&states));
+        world.advance_to(2.1, &mut |_| ()).expect("it turns over");
+        fresh.advance_to(0.1, &mut |_| ()).expect("so does one that is made like that");
+        for &body in &bodies {
+            let off = world.state(body).position.distance(fresh.state(body).position);
+            assert!(off < 1e-7, "{gaps}: {} is off by {off} m", world.name(body));
+        }
+        assert!(world.ledger().integration_error().abs() < 1e-7, "{gaps}: {:?}", world.ledger());
+    }
+}
+
+#[test]
+fn what_is_pushed_in_a_world_at_rest_comes_to_rest_on_what_it_meets() {
+    // Seen from above: height [m], angle [rad] and mass [kg] of two blocks, and how the first is thrown.
+    let cases = [
+        ([(-0.0031, -0.9055, 1.2996), (-0.1980, 0.0256, 1.1553)], (-0.1982, 0.8662)),
+        ([(-0.3179, -0.0742, 0.9418), (-0.1198, -0.0241, 1.2524)], (0.1671, 0.8994)),
+        ([(0.4893, 0.0297, 1.1142), (0.5888, -0.6630, 0.8477)], (-0.1443, -0.9137)),
+        ([(-0.0383, 0.5502, 1.0110), (0.0889, -0.1383, 1.2516)], (-0.1242, 0.8823)),
+    ];
+    for (blocks, (across, spin)) in cases {
+        let mut builder = WorldBuilder::new(WorldSettings::default());
+        let mut bodies = Vec::new();
+        for (index, (height, angle, mass)) in blocks.into_iter().enumerate() {
+            let position = DVec2::new(2.0 * index as f64, height);
+            let state = BodyState { position, angle, ..BodyState::default() };
+            let block = Shape::block(1.0, 0.5).expect("a fine size");
+            let spec = BodySpec::movable(["first", "second"][index], block, mass, state);
+            bodies.push(builder.add(BodySpec { elasticity: 0.0, ..spec }));
+        }
+        let mut world = builder.build().expect("it is at rest");
+        assert!(world.tolerances().velocity_tol > 0.0);
+        let throw = Intervention::Velocity {
+            body: bodies[0],
+            velocity: DVec2::new(1.0, across),
+            angular_velocity: spin,
+        };
+        world.intervene(&[throw], &mut |_| ()).expect("it sets out");
+        let (mut blows, mut least) = (0, f64::INFINITY);
+        let mut note = |event: &Event| {
+            for row in event.impact().iter().flat_map(|impact| &impact.rows) {
+                blows += 1;
+                least = row.gap.min(least);
+            }
+        };
+        world.advance_to(5.0, &mut note).expect("they go on together");
+        assert!(blows < 10 && least > 0.0, "{blows} blows, the lowest gap {least} m");
+    }
+}
+
+#[test]
+fn what_is_pressed_down_gently_for_long_stays_where_it_is() {
+    let settings = WorldSettings { tolerance: 1e-2, duration: Some(10.0), ..WorldSettings::default() };
+    let mut builder = WorldBuilder::new(settings);
+    let [floor, block] =
+        [Shape::block(10.0, 1.0), Shape::block(1.0, 0.5)].map(|shape| shape.expect("a fine size"));
+    builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
+    let state = BodyState { position: DVec2::new(0.0, 0.25), ..BodyState::default() };
+    let block = builder.add(BodySpec { elasticity: 0.0, ..BodySpec::movable("block", block, 1.0, state) });
+    builder.add_gravity(block, DVec2::new(0.0, -GRAVITY));
+    let mut world = builder.build().expect("it stands");
+    let press = 0.99 * world.tolerances().velocity_tol;
+    for frame in 1..=600 {
+        world.advance_to(f64::from(frame) / 60.0, &mut |_| ()).expect("it lies there");
+        let point = world.state(block).position;
+        let impulse = DVec2::new(0.0, -press);
+        let push = Intervention::Impulse { body: block, impulse, point };
+        world.intervene(&[push], &mut |_| ()).expect("it is pressed");
+    }
+    assert_eq!(world.findings(1.0), []);
+}
+
+#[test]
+fn who_has_asked_for_too_long_a_time_may_ask_for_less() {
+    let (mut world, _) = double_pendulum();
+    let start = Intervention::Velocity { body: BodyId(0), velocity: DVec2::X, angular_velocity: 2.0 };
+    world.intervene(&[start], &mut |_| ()).expect("it swings");
+    let outcome = world.advance_to(1e12, &mut |_| ());
+    assert!(matches!(outcome, Err(RunError::Crawls { .. })), "{outcome:?}");
+    let reached = world.time();
+    world.advance_to(reached + 1.0, &mut |_| ()).expect("nothing is wrong with it");
+    assert_eq!(world.time(), reached + 1.0);
 }

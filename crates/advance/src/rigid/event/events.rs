@@ -186,11 +186,8 @@ impl RigidSystem {
         self.remeasure(&mut work.region, self.now);
         if self.neighbour_closes(&work.region) {
             // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again.
-            // It takes over only if it is what is nearest now. The groups that have been cut no longer tell
-            // who belongs together.
-            work.seeds.clear();
-            work.seeds.extend(&work.region.bodies);
-            self.collect_region(&mut work.region, &work.seeds, self.now);
+            // It takes over only if it is what is nearest now.
+            self.collect_again(work);
         }
         self.hand_over(work);
         // Beside a seam a corner may be as near to the next one, and pass over it.
@@ -244,6 +241,18 @@ impl RigidSystem {
         }
         if any {
             self.stop_bilaterally(work);
+        }
+    }
+
+    /// Collects the region of bodies in flight anew. The groups that have been cut no longer tell who belongs
+    /// together; others may have come in, and are cut, too.
+    pub(crate) fn collect_again(&mut self, work: &mut EventWork) {
+        work.seeds.clear();
+        work.seeds.extend(&work.region.bodies);
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        if !work.region.groups.is_empty() {
+            self.cut_groups(&mut work.region);
+            self.remeasure(&mut work.region, self.now);
         }
     }
 

@@ -498,11 +498,12 @@ impl RigidSystem {
             outcome = self.with_group(&mut group, |dynamics, tools| dynamics.extend_watched(tools));
         }
         self.counts.segments += 1;
-        if let Err(failure) = outcome.and_then(|()| self.note_pace(&group)) {
+        if let Err(failure) = outcome {
             let error = self.step_error(&group, failure);
             self.give_up(&group);
             return Err(error);
         }
+        self.note_pace(&group);
         self.note_kinetic_energy(&group);
         self.queue.set(self.source_id(Source::Group(leader)), group.due());
         if group.is_unwatched {
@@ -541,12 +542,9 @@ impl RigidSystem {
 
     fn step_error(&self, group: &Group, failure: StepFailure) -> AdvanceError {
         let (time, bodies) = (group.start.seconds(), group.bodies.clone());
-        let laws = group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect();
+        let laws = self.names_of_laws(group);
         match failure {
             StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
-            StepFailure::Crawls(step) => {
-                AdvanceError::Crawls { time, step, duration: self.duration, bodies, laws }
-            }
             StepFailure::Unresolved(length) => {
                 let bodies = self.so_far_apart(group, length).map_or(bodies, Vec::from);
                 AdvanceError::Unresolved { time, length, bodies, laws }

@@ -8,9 +8,9 @@
 //! A group may also be hasty because contacts that count as resting take turns: to hold one brings what it
 //! opens by to rest, and another, moved along, pulls or closes. Then those that open are let go.
 
+use crate::rigid::error::AdvanceError;
 use crate::rigid::event::region::Region;
 use crate::rigid::step::group::Group;
-use crate::rigid::step::segment::StepFailure;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::BodyId;
@@ -57,21 +57,30 @@ impl<const STEPS: u32> Count<STEPS> {
 impl RigidSystem {
     /// Tells for how long [s] the system will be advanced in all. With that, steps are told that will never
     /// come to an end ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for
-    /// ever.
+    /// ever. Nothing is wrong with a system that says so: for less time it goes on.
     pub fn set_duration(&mut self, duration: f64) {
         self.duration = duration;
     }
 
-    /// Notes the step that a group has begun, and fails if such steps have become hopeless.
-    pub(crate) fn note_pace(&mut self, group: &Group) -> Result<(), StepFailure> {
+    /// Notes the step that a group has begun; if such steps have become hopeless, that is told once the event is over.
+    pub(crate) fn note_pace(&mut self, group: &Group) {
         let pace = &mut self.paces[group.leader().index()];
         if let Some(mean) = pace.few.note(group.start) {
             pace.is_hasty = mean < HASTE * self.settings.resolution_time;
         }
-        match pace.all.note(group.start).filter(|mean| mean * HOPELESS < self.duration) {
-            Some(mean) => Err(StepFailure::Crawls(mean)),
-            None => Ok(()),
-        }
+        let mean = pace.all.note(group.start).filter(|mean| mean * HOPELESS < self.duration);
+        self.crawls = mean.map(|step| AdvanceError::Crawls {
+            time: group.start.seconds(),
+            step,
+            duration: self.duration,
+            bodies: group.bodies.clone(),
+            laws: self.names_of_laws(group),
+        });
+    }
+
+    /// Names of the laws that act on a group.
+    pub(crate) fn names_of_laws(&self, group: &Group) -> Vec<String> {
+        group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect()
     }
 
     /// Bodies have taken part in an impact: something happens.
@@ -102,7 +111,7 @@ mod tests {
         system.collect_region(&mut work.region, &[BodyId(1)], system.now);
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         for _ in 0..=FEW_STEPS {
-            system.note_pace(&group).expect("not hopeless yet");
+            system.note_pace(&group);
             group.start = group.start.plus(step);
         }
         [system.take_haste(&work.region), system.take_haste(&work.region)]

@@ -76,7 +76,8 @@ impl<'a> Wrenches<'a> {
 /// A force law.
 ///
 /// A law must not change branch inside a step: where it does, it says so by a switching function, whose sign
-/// changes are located like impacts.
+/// changes are located like impacts. Nor must anybody outside change its numbers meanwhile, but for a moment at
+/// which its bodies begin anew, as after an intervention on one of them: one that changes no velocity will do.
 pub trait ForceLaw: Debug + Send + Sync {
     /// What the law is called in messages and in the energy ledger.
     fn name(&self) -> &str;

@@ -70,8 +70,6 @@ pub(crate) enum StepFailure {
     Collapsed(f64),
     /// Forces vary over this length [m], which rounding of positions does not resolve.
     Unresolved(f64),
-    /// Steps of this mean length [s] will never come to the end.
-    Crawls(f64),
 }
 
 impl Dynamics<'_> {
