@@ -3,6 +3,7 @@
 use halfgap::scene::{Scene, SceneError, SceneFormat};
 use halfgap::{Event, World};
 use halfgap_tests::world_of;
+use std::ops::ControlFlow;
 
 /// A slope, a hollow of radius 1 m and a slope back up, and a bead that starts on the first; the stop is on the last.
 const RAIL: &str = r#"
@@ -219,4 +220,63 @@ fn a_stop_lets_go_what_has_left_its_spline_by_the_other_end() {
     let stopped = scene(&format!("[[connector]]\nrail_stop = {{ {rail}, at = 4.0, upper = true }}\n"));
     let (free, stopped) = (end(scene("")), end(stopped));
     assert!((free - stopped).length() < 1e-9, "{stopped}, not {free}");
+}
+
+#[test]
+fn a_carriage_that_a_rope_jerks_at_its_stop_goes_on_with_steps_of_a_given_length() {
+    // Low order leaves it a little beyond the stop, from which it sets out by less than that.
+    let scene = |integrator: &str, stabilization: &str| {
+        let path = "path = { start = [-2.5744623043915458, 1.375120050582826], edges = [\
+                    { line = [2.5744623043915458, -1.375120050582826] }] }";
+        let point = "a = { body = \"car\", point = [0.022165507618524843, 0.08361743710666245] }";
+        world_of(&format!(
+            r#"
+format = "halfgap-scene-1"
+title = "A carriage at its stop"
+run = {{ duration = 5.0, integrator = "{integrator}", time_step = 0.002, stabilization = "{stabilization}" }}
+force = [{{ gravity = {{ acceleration = [-2.7802105203430347, -6.0] }} }}]
+
+[[body]]
+name = "car"
+shape = {{ block = {{ width = 0.5, height = 0.3 }} }}
+mass = 1.009939289938767
+position = [-0.5141744931728811, 0.17918362234121074]
+velocity = [0.7483336259118866, -0.3997139797935362]
+
+[[body]]
+name = "bob"
+shape = {{ block = {{ width = 0.3, height = 0.5 }} }}
+mass = 0.7511079230864344
+position = [-0.49200898555435624, -0.6657800157150418]
+velocity = [0.5072230741044295, 0.4422700805839088]
+passes_through = ["car"]
+elasticity = 0.5
+
+[[connector]]
+rail = {{ {point}, {path} }}
+
+[[connector]]
+rail_stop = {{ {point}, {path}, at = 5.253660499613897, upper = true, elasticity = 0.0 }}
+
+[[connector]]
+rope = {{ {point}, b = {{ body = "bob", point = [0.0, 0.0] }}, length = 1.018715258540035, elasticity = 0.4 }}
+"#
+        ))
+    };
+    for (integrator, stabilization) in
+        [("modified_euler", "projection"), ("modified_euler", "none"), ("rk4", "velocity_and_distance")]
+    {
+        let mut world = scene(integrator, stabilization);
+        let mut events = 0;
+        let outcome = world.advance_while(5.0, &mut |_| {
+            events += 1;
+            if events < 10_000 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        assert_eq!(
+            outcome,
+            Ok(ControlFlow::Continue(())),
+            "{integrator}, {stabilization}: at {} s",
+            world.time()
+        );
+    }
 }

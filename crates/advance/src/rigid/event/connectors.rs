@@ -34,7 +34,7 @@ pub(crate) struct ConnectorState {
     slack: f64,
     /// It is unilateral, and held: wherever that was begun, it stays.
     held: bool,
-    /// When the rope went taut last, and how often before that without time going by.
+    /// When the rope went taut last, or the stop was met, and how often before that without time going by.
     last_taut: Option<Time>,
     repeats: u32,
 }
@@ -48,13 +48,13 @@ impl ConnectorState {
         }
     }
 
-    /// How often before a rope has gone taut at the present time: it lies nearer to its length than the
-    /// search can tell.
+    /// How often before a rope has gone taut, or a stop was met, at the present time: a rope lies nearer to its
+    /// length than the search can tell.
     fn repeats_at(&self, now: Time) -> u32 {
         if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
     }
 
-    fn note_taut(&mut self, now: Time) {
+    pub(super) fn note_taut(&mut self, now: Time) {
         let is_repeat = self.last_taut.is_some_and(|last| is_same_time(last, now));
         self.repeats = if is_repeat { self.repeats + 1 } else { 0 };
         self.last_taut = Some(now);
@@ -314,7 +314,10 @@ impl RigidSystem {
         let hint = self.connector_states[id.index()].hint;
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
-        Stop { id, hint, slack: self.slack_of(&sample) }
+        // What fires again without time going by lies beyond by more than it sets out by: it fires once it has sunk on.
+        let repeats = f64::from(self.connector_states[id.index()].repeats_at(self.now));
+        let slack = if repeats > 0.0 { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
+        Stop { id, hint, slack: slack.max(self.slack_of(&sample)) }
     }
 
     /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than

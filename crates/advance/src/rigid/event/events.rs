@@ -136,6 +136,7 @@ impl RigidSystem {
             }
             SegmentEnd::Stop(id) => {
                 work.region.cause = Cause::Taut(id);
+                self.connector_states[id.index()].note_taut(self.now);
                 self.handle_impact(work)
             }
             SegmentEnd::Switch => self.handle_change(work),
