@@ -24,8 +24,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT};
 use halfgap_collision::BodyId as WorldBody;
 use halfgap_contact::{
-    Auto, CollisionRow, ContactFile, HeldRows, Impact, ImpactLaw, ImpactOrder, Inertia, Problem, RowsField,
-    Solution, Solver, WarmStart,
+    Auto, CollisionRow, ContactFile, HeldRows, Impact, ImpactLaw, ImpactOrder, InverseInertia, Problem,
+    RowsField, Solution, Solver, WarmStart,
 };
 
 /// Time spent on each problem [s], and the most solves of one kind.
@@ -62,7 +62,7 @@ fn main() {
 }
 
 /// Bodies all alike: 1.25 kg, a third of a kg m².
-const BLOCK: Inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+const BLOCK: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
 /// Prints the table of held rows.
 fn measure_held_rows() {
@@ -159,7 +159,7 @@ fn measure_impacts() {
 }
 
 fn impact_row(bodies: [WorldBody; 2], jacobian: [f64; 6], rate: f64, bilateral: bool) -> CollisionRow {
-    let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
     let inertia = bodies.map(|body| if body.is_world() { fixed } else { BLOCK });
     CollisionRow::new(bodies, jacobian, inertia, rate, 1.0, 1e-9, bilateral)
 }

@@ -3,14 +3,14 @@
 //! `cargo run -p halfgap-contact --example box_on_two_supports`
 
 use halfgap_contact::{
-    Auto, ContactKey, ForceSelection, Inertia, Problem, Row, Settings, Solution, SolveError, Solver,
+    Auto, ContactKey, ForceSelection, InverseInertia, Problem, Row, Settings, Solution, SolveError, Solver,
     WarmStart,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A box of 2 kg and 1 m x 1 m, its centre of mass half a metre above the floor, on five points of the floor.
     let mut problem = Problem::new();
-    let block = problem.add_body(Inertia { inverse_mass: 0.5, inverse_moment: 3.0 })?;
+    let block = problem.add_body(InverseInertia { inverse_mass: 0.5, inverse_moment: 3.0 })?;
     for (key, arm) in [-0.5, -0.25, 0.0, 0.25, 0.5].into_iter().enumerate() {
         problem.add_row(&Row::new(block, [0.0, 1.0, arm], -9.81).with_key(ContactKey(key as u64)))?;
     }

@@ -241,7 +241,7 @@ impl Solver for Auto {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::{Inertia, Row};
+    use crate::problem::{InverseInertia, Row};
     use crate::test_problems::{crooked_pyramid, pyramid};
 
     #[test]
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(dual.pivots, 0);
         // A box on a floor has many wrong rows, too, but a pivot rights many of them.
         let mut floor = Problem::new();
-        let body = floor.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
+        let body = floor.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
         for place in 0..200 {
             let arm = f64::from(place) / 199.0 - 0.5;
             let unevenness = 1e-3 * f64::from(place % 7);

@@ -36,6 +36,7 @@ impl Residuals {
     /// # Panics
     ///
     /// If there is not one force per row.
+    #[must_use]
     pub fn of(problem: &Problem, force: &[f64]) -> Self {
         let mut acceleration = vec![0.0; problem.len()];
         Checker::default().check(problem, force, &mut acceleration)
@@ -43,6 +44,7 @@ impl Residuals {
 
     /// Whether an answer with these residuals is right, allowing for a known contradiction `inconsistency` between
     /// dependent rows.
+    #[must_use]
     pub fn accepted(&self, settings: &Settings, inconsistency: f64) -> bool {
         let natural = self.natural - inconsistency;
         if !natural.is_finite() || inconsistency > settings.inconsistency {

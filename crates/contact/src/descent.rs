@@ -163,7 +163,7 @@ impl ClosedRows {
 #[cfg(test)]
 mod tests {
     use crate::dual_active_set::DualActiveSet;
-    use crate::problem::{Inertia, Problem, Row};
+    use crate::problem::{InverseInertia, Problem, Row};
     use crate::solution::Solution;
     use crate::solver::Solver;
     use crate::warm::WarmStart;
@@ -172,7 +172,7 @@ mod tests {
     /// of a radian; those at the ends of a row lean on walls.
     fn heap(across: usize, rows: usize) -> Problem {
         let mut problem = Problem::new();
-        let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 8.0 };
+        let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 8.0 };
         let discs: Vec<_> = (0..across * rows).map(|_| problem.add_body(inertia).expect("a disc")).collect();
         let tilt = |index: usize| 0.5 * (1.7 * index as f64).sin();
         for (index, &disc) in discs.iter().enumerate() {

@@ -528,7 +528,7 @@ impl Solver for DualActiveSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::{Inertia, Row};
+    use crate::problem::{InverseInertia, Row};
 
     #[test]
     fn rows_that_all_but_depend_on_each_other_do_not_swap_for_ever() {
@@ -537,7 +537,7 @@ mod tests {
         /// Forces [N] of the two.
         const FORCES: [f64; 2] = [4.0, 6.0];
         let mut problem = Problem::new();
-        let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 1.0 };
+        let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 };
         let body = problem.add_body(inertia).expect("a body");
         let together = FORCES[0] + FORCES[1];
         for (arm, own) in [(0.0, 0.0), (FARTHER, FARTHER * FARTHER * FORCES[1])] {

@@ -160,6 +160,7 @@ pub struct Infeasibility {
 impl Infeasibility {
     /// The growth that any solution would at least have, as far as the certificate can tell: forces of that size would
     /// have to use the rounding in A z.
+    #[must_use]
     pub fn least_growth(&self) -> f64 {
         self.contradiction / self.leakage.max(f64::EPSILON)
     }

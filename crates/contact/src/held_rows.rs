@@ -37,10 +37,10 @@ const NONE: u32 = u32::MAX;
 /// # Examples
 ///
 /// ```
-/// use halfgap_contact::{HeldRows, Inertia};
+/// use halfgap_contact::{HeldRows, InverseInertia};
 ///
 /// // A pendulum: a rod of 2 kg and 1 m, pinned at its upper end, lying level; gravity pulls its middle down.
-/// let rod = Inertia { inverse_mass: 0.5, inverse_moment: 6.0 };
+/// let rod = InverseInertia { inverse_mass: 0.5, inverse_moment: 6.0 };
 /// let mut held = HeldRows::default();
 /// held.set_structure(&[rod], &[[Some(0), None]; 2]);
 /// let dependent = held.factorize(&[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, -0.5, 0.0, 0.0, 0.0]]);
@@ -284,14 +284,14 @@ impl HeldRows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
     use proptest::prelude::*;
 
-    const INERTIA: Inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+    const INERTIA: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
     /// A = J M⁻¹ Jᵀ and M⁻¹ Jᵀ f the plain way.
     fn accelerations(
-        inertia: &[Inertia],
+        inertia: &[InverseInertia],
         rows: &[[Option<u32>; 2]],
         jacobians: &[[f64; 6]],
         force: &[f64],
@@ -314,7 +314,7 @@ mod tests {
     /// Solves and compares with the plain products. The offsets must be those of some motion, so that dependent rows
     /// agree. Returns how many rows are dependent.
     fn check(
-        inertia: &[Inertia],
+        inertia: &[InverseInertia],
         rows: &[[Option<u32>; 2]],
         jacobians: &[[f64; 6]],
         offset: &[f64],
@@ -425,8 +425,8 @@ mod tests {
     fn what_depends_on_nothing_is_as_stiff_as_before() {
         // A heavy body hangs from a light one, which a pin holds; beside them a body is pinned twice.
         let (light, heavy) = (
-            Inertia { inverse_mass: 1e3, inverse_moment: 1e3 },
-            Inertia { inverse_mass: 1e-5, inverse_moment: 1e-5 },
+            InverseInertia { inverse_mass: 1e3, inverse_moment: 1e3 },
+            InverseInertia { inverse_mass: 1e-5, inverse_moment: 1e-5 },
         );
         let (to_world, between) = (
             pin([Some(0), None], [[0.3, 0.1], [0.0; 2]]),
@@ -458,7 +458,7 @@ mod tests {
 
     #[test]
     fn rows_without_a_movable_body_take_no_force() {
-        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let jacobians = [[1.0, 0.0, 0.0, -1.0, 0.0, 0.0]; 2];
         assert_eq!(
             check(&[fixed, INERTIA], &[[Some(0), None], [Some(0), Some(1)]], &jacobians, &[0.0, 1.0]),
@@ -486,15 +486,15 @@ mod tests {
         }
     }
 
-    fn any_body() -> impl Strategy<Value = Inertia> {
+    fn any_body() -> impl Strategy<Value = InverseInertia> {
         (0.1..10.0f64, 0.1..10.0f64, 0..8).prop_map(|(inverse_mass, inverse_moment, kind)| match kind {
-            0 => Inertia { inverse_mass: 0.0, inverse_moment: 0.0 },
-            _ => Inertia { inverse_mass, inverse_moment },
+            0 => InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 },
+            _ => InverseInertia { inverse_mass, inverse_moment },
         })
     }
 
     /// Bodies, their rows, the coefficients of these, and a motion of the bodies.
-    type Linkage = (Vec<Inertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>);
+    type Linkage = (Vec<InverseInertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>);
 
     /// Pins: a tree, some loops, some of them twice.
     fn any_linkage() -> impl Strategy<Value = Linkage> {

@@ -211,7 +211,7 @@ impl InteriorPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::{Inertia, Problem, Row};
+    use crate::problem::{InverseInertia, Problem, Row};
     use crate::test_problems::crooked_pyramid;
 
     fn run(problem: &Problem, known: Option<&[f64]>) -> (bool, InteriorPoint) {
@@ -250,7 +250,8 @@ mod tests {
     #[test]
     fn connectors_may_pull() {
         let mut problem = Problem::new();
-        let body = problem.add_body(Inertia { inverse_mass: 2.0, inverse_moment: 1.0 }).expect("a body");
+        let body =
+            problem.add_body(InverseInertia { inverse_mass: 2.0, inverse_moment: 1.0 }).expect("a body");
         problem.add_row(&Row::new(body, [0.0, 1.0, 0.0], 5.0).bilateral()).expect("a row");
         problem.add_row(&Row::new(body, [1.0, 0.0, 0.0], -3.0)).expect("a row");
         let (is_near, method) = run(&problem, None);
@@ -264,7 +265,8 @@ mod tests {
     #[test]
     fn jaws_that_close_on_a_body_have_no_end() {
         let mut problem = Problem::new();
-        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 1.0 }).expect("a body");
+        let body =
+            problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 }).expect("a body");
         for direction in [1.0, -1.0] {
             problem.add_row(&Row::new(body, [direction, 0.0, 0.0], -1.0)).expect("a row");
         }

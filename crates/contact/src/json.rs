@@ -128,6 +128,7 @@ impl ContactFile {
     }
 
     /// The file that describes `problem`, to be replayed later.
+    #[must_use]
     pub fn of(problem: &Problem) -> Self {
         let mut file = ContactFile {
             format: PROBLEM_FORMAT.to_owned(),
@@ -247,6 +248,7 @@ pub struct SolutionFile {
 
 impl SolutionFile {
     /// The file of a solution; times are to be filled in.
+    #[must_use]
     pub fn of(solution: &Solution) -> Self {
         SolutionFile {
             format: SOLUTION_FORMAT.to_owned(),

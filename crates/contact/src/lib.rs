@@ -79,7 +79,7 @@ pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
 pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};
 pub use lemke::Lemke;
-pub use problem::{BodyId, ContactKey, Inertia, Problem, Row};
+pub use problem::{ContactKey, InverseInertia, Problem, ProblemBody, Row};
 pub use proximal_newton::ProximalNewton;
 #[cfg(feature = "qp")]
 pub use qp::Qp;

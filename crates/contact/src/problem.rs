@@ -23,11 +23,11 @@ use crate::matrix::{BodyRows, Matrix, SparseMatrix, check_finite};
 /// # Examples
 ///
 /// ```
-/// use halfgap_contact::{BodyId, Inertia, Problem, Row, Solution, Solver, DualActiveSet};
+/// use halfgap_contact::{InverseInertia, Problem, Row, Solution, Solver, DualActiveSet};
 ///
 /// // A block of 2 kg, half a metre wide, at rest on a floor under its two lower corners.
 /// let mut problem = Problem::new();
-/// let block = problem.add_body(Inertia { inverse_mass: 0.5, inverse_moment: 20.0 })?;
+/// let block = problem.add_body(InverseInertia { inverse_mass: 0.5, inverse_moment: 20.0 })?;
 /// for arm in [-0.25, 0.25] {
 ///     problem.add_row(&Row::new(block, [0.0, 1.0, arm], -9.81))?;
 /// }
@@ -46,7 +46,7 @@ pub struct Problem {
 
 /// Index of a body within one problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct BodyId(pub u32);
+pub struct ProblemBody(pub u32);
 
 /// Identity of a contact, kept from one problem to the next, by which a warm start finds it again.
 ///
@@ -61,7 +61,7 @@ impl ContactKey {
 
 /// Inverse masses of a body; zero for a body that nothing moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inertia {
+pub struct InverseInertia {
     /// 1/m [1/kg].
     pub inverse_mass: f64,
     /// 1/I about the centre of mass [1/(kg m²)].
@@ -72,9 +72,9 @@ pub struct Inertia {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// The primary body and the row's coefficients for its x, y \[1\] and rotation \[m\].
-    pub primary: (BodyId, [f64; 3]),
+    pub primary: (ProblemBody, [f64; 3]),
     /// The normal body and its coefficients, if the other side is a body of the problem.
-    pub normal: Option<(BodyId, [f64; 3])>,
+    pub normal: Option<(ProblemBody, [f64; 3])>,
     /// b_i: the gap's acceleration without contact forces [m/s²], or what an impulse has to undo [m/s].
     pub offset: f64,
     /// Whether the row is an equation (a = 0, f free), as of a connector.
@@ -85,18 +85,21 @@ pub struct Row {
 
 impl Row {
     /// A unilateral row against something immovable.
-    pub fn new(body: BodyId, coefficients: [f64; 3], offset: f64) -> Self {
+    #[must_use]
+    pub fn new(body: ProblemBody, coefficients: [f64; 3], offset: f64) -> Self {
         Row { primary: (body, coefficients), normal: None, offset, bilateral: false, key: None }
     }
 
     /// The same row with a second body.
-    pub fn against(self, body: BodyId, coefficients: [f64; 3]) -> Self {
+    #[must_use]
+    pub fn against(self, body: ProblemBody, coefficients: [f64; 3]) -> Self {
         Row { normal: Some((body, coefficients)), ..self }
     }
 
     /// A unilateral row of two sides, of which some are no bodies of the problem, with the coefficients for x, y and rotation of
     /// either; `None` if neither is.
-    pub fn between(sides: [Option<BodyId>; 2], coefficients: &[f64; 6], offset: f64) -> Option<Self> {
+    #[must_use]
+    pub fn between(sides: [Option<ProblemBody>; 2], coefficients: &[f64; 6], offset: f64) -> Option<Self> {
         let [c0, c1, c2, c3, c4, c5] = *coefficients;
         let (primary, normal) = ([c0, c1, c2], [c3, c4, c5]);
         match sides {
@@ -108,11 +111,13 @@ impl Row {
     }
 
     /// The same row as an equation.
+    #[must_use]
     pub fn bilateral(self) -> Self {
         Row { bilateral: true, ..self }
     }
 
     /// The same row with an identity.
+    #[must_use]
     pub fn with_key(self, key: ContactKey) -> Self {
         Row { key: Some(key), ..self }
     }
@@ -120,6 +125,7 @@ impl Row {
 
 impl Problem {
     /// A problem without bodies and rows, to be filled by [`add_body`](Self::add_body) and [`add_row`](Self::add_row).
+    #[must_use]
     pub fn new() -> Self {
         Problem {
             matrix: Matrix::Bodies(BodyRows::new()),
@@ -218,7 +224,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError::BadInverseMass`]; [`ProblemError::NoBodies`] if the problem was made from a matrix A.
-    pub fn add_body(&mut self, inertia: Inertia) -> Result<BodyId, ProblemError> {
+    pub fn add_body(&mut self, inertia: InverseInertia) -> Result<ProblemBody, ProblemError> {
         let Matrix::Bodies(bodies) = &mut self.matrix else {
             return Err(ProblemError::NoBodies);
         };
@@ -226,7 +232,7 @@ impl Problem {
         check_inverse_mass(first, inertia.inverse_mass)?;
         check_inverse_mass(first + 2, inertia.inverse_moment)?;
         bodies.inverse_mass.extend([inertia.inverse_mass, inertia.inverse_mass, inertia.inverse_moment]);
-        Ok(BodyId((first / 3) as u32))
+        Ok(ProblemBody((first / 3) as u32))
     }
 
     /// Adds a row; rows are numbered from 0 in the order in which they are added.
@@ -301,38 +307,45 @@ impl Problem {
     }
 
     /// Number of rows n.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.offset.len()
     }
 
     /// Whether there are no rows.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.offset.is_empty()
     }
 
     /// The offset b of a = A f + b: what contacts would do without their forces, an acceleration [m/s²], or
     /// what an impulse must undo [m/s].
+    #[must_use]
     pub fn offset(&self) -> &[f64] {
         &self.offset
     }
 
     /// Which rows are equations.
+    #[must_use]
     pub fn bilateral(&self) -> &[bool] {
         &self.bilateral
     }
 
     /// Identities of the rows for warm starts: [`ContactKey::NONE`] for a row without one, and none at all
     /// for the rows after the last that has one.
+    #[must_use]
     pub fn keys(&self) -> &[ContactKey] {
         &self.keys
     }
 
     /// Whether the rows are given as J and inverse masses.
+    #[must_use]
     pub fn has_bodies(&self) -> bool {
         matches!(self.matrix, Matrix::Bodies(_))
     }
 
     /// Whether A is symmetric and positive semidefinite, so that forces minimise an energy.
+    #[must_use]
     pub fn is_symmetric(&self) -> bool {
         !matches!(self.matrix, Matrix::General(_))
     }
@@ -344,6 +357,7 @@ impl Problem {
     /// # Panics
     ///
     /// If there is no such row.
+    #[must_use]
     pub fn row(&self, row: usize) -> (&[usize], &[f64]) {
         match &self.matrix {
             Matrix::Bodies(bodies) => bodies.rows.row(row),
@@ -352,6 +366,7 @@ impl Problem {
     }
 
     /// Inverse mass of each column of J [1/kg, 1/(kg m²)]; `None` where A itself is given.
+    #[must_use]
     pub fn inverse_mass(&self) -> Option<&[f64]> {
         match &self.matrix {
             Matrix::Bodies(bodies) => Some(&bodies.inverse_mass),
@@ -360,6 +375,7 @@ impl Problem {
     }
 
     /// The matrix A, dense, by rows [1/kg]: for looking at it, and for checks; O(n²).
+    #[must_use]
     pub fn dense(&self) -> Vec<Vec<f64>> {
         let n = self.len();
         (0..n).map(|i| (0..n).map(|j| self.entry(i, j)).collect()).collect()

@@ -1,6 +1,6 @@
 //! Constraint rows made from collision records: the only module here that sees collisions.
 
-use crate::problem::Inertia;
+use crate::problem::InverseInertia;
 use halfgap_collision::{BodyId, Collision};
 
 /// One scalar constraint between two bodies: its rate is J v over (vA, wA, vB, wB).
@@ -27,7 +27,7 @@ pub struct CollisionRow {
 impl CollisionRow {
     /// The row of a collision between two bodies of the given inertia (primary, normal).
     #[must_use]
-    pub fn of_collision(collision: &Collision, inertia: [Inertia; 2]) -> Self {
+    pub fn of_collision(collision: &Collision, inertia: [InverseInertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
         Self {
             bodies: collision.bodies(),
@@ -47,7 +47,7 @@ impl CollisionRow {
     pub fn new(
         bodies: [BodyId; 2],
         jacobian: [f64; 6],
-        inertia: [Inertia; 2],
+        inertia: [InverseInertia; 2],
         rate: f64,
         elasticity: f64,
         velocity_tol: f64,
@@ -102,7 +102,7 @@ impl CollisionRow {
 }
 
 /// J M^-1.
-fn response(jacobian: &[f64; 6], [a, b]: [Inertia; 2]) -> [f64; 6] {
+fn response(jacobian: &[f64; 6], [a, b]: [InverseInertia; 2]) -> [f64; 6] {
     let weights =
         [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
     std::array::from_fn(|k| jacobian[k] * weights[k])

@@ -28,6 +28,7 @@ pub struct Solution {
 
 impl Solution {
     /// An empty solution, to be filled by a solver.
+    #[must_use]
     pub fn new() -> Self {
         Solution {
             force: Vec::new(),
@@ -41,11 +42,13 @@ impl Solution {
     }
 
     /// Number of rows answered.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.force.len()
     }
 
     /// Whether the problem had no rows.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.force.is_empty()
     }

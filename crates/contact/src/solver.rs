@@ -17,7 +17,7 @@ use crate::warm::WarmStart;
 ///
 /// ```
 /// use halfgap_contact::{
-///     DualActiveSet, Inertia, Method, Problem, Residuals, Row, Settings, Solution, SolveError, Solver, WarmStart,
+///     DualActiveSet, InverseInertia, Method, Problem, Residuals, Row, Settings, Solution, SolveError, Solver, WarmStart,
 /// };
 ///
 /// struct GaussSeidel;
@@ -75,7 +75,7 @@ use crate::warm::WarmStart;
 /// // Two blocks of 1 kg on each other: the lower contact carries both.
 /// let mut problem = Problem::new();
 /// let [lower, upper] = [(); 2].map(|()| {
-///     problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 0.0 }).expect("a fine inertia")
+///     problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 }).expect("a fine inertia")
 /// });
 /// problem.add_row(&Row::new(lower, [0.0, 1.0, 0.0], -9.81))?;
 /// problem.add_row(&Row::new(upper, [0.0, 1.0, 0.0], 0.0).against(lower, [0.0, -1.0, 0.0]))?;
@@ -132,6 +132,7 @@ pub enum Method {
 
 impl Method {
     /// The name used on the command line and in files.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto => "auto",

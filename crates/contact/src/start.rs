@@ -252,14 +252,15 @@ impl DualActiveSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::{Inertia, Row};
+    use crate::problem::{InverseInertia, Row};
     use crate::solution::Solution;
     use crate::solver::Solver;
 
     #[test]
     fn the_rows_of_an_answer_are_kept_those_of_a_guess_must_be_well_independent() {
         let mut problem = Problem::new();
-        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
+        let body =
+            problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
         for arm in [-0.5, 0.5] {
             problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81)).expect("a row");
         }
@@ -281,7 +282,8 @@ mod tests {
         let mut problem = Problem::new();
         let mut before = None;
         for link in 0..LINKS {
-            let body = problem.add_body(Inertia { inverse_mass: 5.0, inverse_moment: 57.7 }).expect("a body");
+            let body =
+                problem.add_body(InverseInertia { inverse_mass: 5.0, inverse_moment: 57.7 }).expect("a body");
             let arm = |k: usize| 0.5 * off(5 * link + k);
             for (k, side) in [(2, -1.0), (3, 1.0)] {
                 let offset = 6.0 * ((7 * link + 3 * k) as f64).sin() - 3.0;

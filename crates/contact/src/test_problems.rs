@@ -1,14 +1,14 @@
 //! Problems that the tests of several rooms share.
 
 use crate::matrix::Matrix;
-use crate::problem::{Inertia, Problem, Row};
+use crate::problem::{InverseInertia, Problem, Row};
 
 /// Blocks in a pyramid, each on two corners of each block below, which are `arm` [m] from their centres.
 pub(crate) fn pyramid(layers: usize, arm: f64) -> Problem {
     let mut problem = Problem::new();
     let mut below = Vec::new();
     for layer in 0..layers {
-        let inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+        let inertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
         let blocks: Vec<_> = (layer..layers).map(|_| problem.add_body(inertia).expect("a body")).collect();
         for (k, &block) in blocks.iter().enumerate() {
             if layer == 0 {

@@ -37,6 +37,7 @@ pub struct Earlier {
 
 impl WarmStart {
     /// Knows nothing yet.
+    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
@@ -89,6 +90,7 @@ impl WarmStart {
     /// # Panics
     ///
     /// If there is no such row, and rows are found by their keys.
+    #[must_use]
     pub fn of_row(&self, problem: &Problem, row: usize) -> Option<Earlier> {
         self.lookup(problem).find(row)
     }

@@ -6,8 +6,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use halfgap_contact::{
-    Auto, BodyId, CollisionRow, ContactKey, DualActiveSet, HeldRows, Impact, ImpactLaw, ImpactOrder, Inertia,
-    Method, Problem, ProximalNewton, Row, Solution, Solver, WarmStart,
+    Auto, CollisionRow, ContactKey, DualActiveSet, HeldRows, Impact, ImpactLaw, ImpactOrder, InverseInertia,
+    Method, Problem, ProblemBody, ProximalNewton, Row, Solution, Solver, WarmStart,
 };
 
 thread_local! {
@@ -38,12 +38,12 @@ static ALLOCATOR: Counting = Counting;
 fn fill(problem: &mut Problem, boxes: usize, step: usize) {
     problem.clear();
     for i in 0..boxes {
-        problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 12.0 }).unwrap();
+        problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 12.0 }).unwrap();
         for (corner, arm) in [(0, -0.5), (1, 0.5)] {
             let wobble = 1e-3 * ((7 * i + 3 * step + 5 * corner) % 11) as f64;
             let offset = if i == 0 { -9.81 } else { 0.0 };
-            let row = Row::new(BodyId(i as u32), [0.0, 1.0, arm], offset - wobble);
-            let row = if i == 0 { row } else { row.against(BodyId(i as u32 - 1), [0.0, -1.0, -arm]) };
+            let row = Row::new(ProblemBody(i as u32), [0.0, 1.0, arm], offset - wobble);
+            let row = if i == 0 { row } else { row.against(ProblemBody(i as u32 - 1), [0.0, -1.0, -arm]) };
             problem.add_row(&row.with_key(ContactKey((2 * i + corner) as u64))).unwrap();
         }
     }
@@ -86,7 +86,7 @@ fn fill_crooked(problem: &mut Problem, layers: usize, step: usize) {
     for layer in 0..layers {
         let first = bodies;
         for k in 0..layers - layer {
-            let body = problem.add_body(Inertia { inverse_mass: 0.8, inverse_moment: 3.0 }).unwrap();
+            let body = problem.add_body(InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 }).unwrap();
             bodies += 1;
             if layer == 0 {
                 for side in [-width(), width()] {
@@ -98,7 +98,7 @@ fn fill_crooked(problem: &mut Problem, layers: usize, step: usize) {
                 [(k, 0.0, -1.0), (k, 1.0, 0.0), (k + 1, -1.0, 0.0), (k + 1, 0.0, 1.0)]
             {
                 let row = Row::new(body, [0.0, width(), upper * width()], 0.0);
-                let below = BodyId((first_below + other) as u32);
+                let below = ProblemBody((first_below + other) as u32);
                 problem.add_row(&row.against(below, [0.0, -width(), -lower * width()])).unwrap();
             }
         }
@@ -126,7 +126,7 @@ fn impact_rows(boxes: u32, step: u32) -> impl Iterator<Item = CollisionRow> {
     let world = halfgap_collision::BodyId::WORLD;
     let inertia = |body: halfgap_collision::BodyId| {
         let moves = f64::from(u8::from(!body.is_world()));
-        Inertia { inverse_mass: moves, inverse_moment: 12.0 * moves }
+        InverseInertia { inverse_mass: moves, inverse_moment: 12.0 * moves }
     };
     (0..2 * boxes).map(move |row| {
         let upper = halfgap_collision::BodyId(row / 2);
@@ -161,7 +161,7 @@ fn a_warm_impact_of_known_size_allocates_nothing() {
 
 #[test]
 fn held_rows_of_known_size_allocate_nothing() {
-    let inertia = [Inertia { inverse_mass: 1.0, inverse_moment: 12.0 }; 30];
+    let inertia = [InverseInertia { inverse_mass: 1.0, inverse_moment: 12.0 }; 30];
     let rows: Vec<[Option<u32>; 2]> =
         (0..60u32).map(|row| [Some(row / 2), (row / 2).checked_sub(1)]).collect();
     let arm = |row: usize| if row.is_multiple_of(2) { [1.0, 0.0, 0.1] } else { [0.0, 1.0, 0.5] };

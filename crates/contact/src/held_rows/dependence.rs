@@ -119,7 +119,7 @@ impl HeldRows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
 
     /// Two rows that pin a body, or two at one place, at arms of both.
     fn pin(arm: [f64; 2], other: [f64; 2]) -> [[f64; 6]; 2] {
@@ -130,7 +130,10 @@ mod tests {
     fn what_rows_keep_falls_with_the_square_of_the_way_to_where_they_depend() {
         // Two rods hold a disc along directions that come together, and a third doubles the first.
         let mut held = HeldRows::default();
-        held.set_structure(&[Inertia { inverse_mass: 2.0, inverse_moment: 1.0 }], &[[Some(0), None]; 3]);
+        held.set_structure(
+            &[InverseInertia { inverse_mass: 2.0, inverse_moment: 1.0 }],
+            &[[Some(0), None]; 3],
+        );
         let along = |angle: f64| [angle.cos(), angle.sin(), 0.0, 0.0, 0.0, 0.0];
         for angle in [0.3, 1e-2, 1e-4] {
             held.factorize(&[along(0.0), along(angle), along(0.0)]);
@@ -143,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_heavy_body_on_a_light_one_that_is_pinned_is_held() {
-        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
+        let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
         let (to_world, between) = (pin([0.3, 0.1], [0.0; 2]), pin([-0.2, 0.4], [0.1, -0.5]));
         let rows: Vec<_> = to_world.into_iter().chain(between).collect();
         let sides = [[Some(0), None], [Some(0), None], [Some(0), Some(1)], [Some(0), Some(1)]];
@@ -164,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_pin_given_twice_between_a_light_and_a_heavy_body_depends() {
-        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
+        let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
         let rows: Vec<_> =
             [pin([0.3, 0.1], [0.7, -0.2]), pin([-0.2, 0.4], [0.2, 0.1]), pin([0.3, 0.1], [0.7, -0.2])]
                 .into_iter()
@@ -177,7 +180,7 @@ mod tests {
 
     #[test]
     fn what_depends_on_rows_that_leave_little_is_told_from_their_rounding() {
-        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
+        let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
         // A light and a heavy body, both pinned to the world and to each other, and the heavy one once more.
         let sides = [[Some(0), None], [Some(0), Some(1)], [Some(1), None], [Some(1), None]];
         let sides: Vec<_> = sides.iter().flat_map(|sides| [*sides; 2]).collect();

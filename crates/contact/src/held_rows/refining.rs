@@ -128,12 +128,12 @@ fn largest(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
 
     #[test]
     fn a_light_body_passes_on_what_a_heavy_one_weighs_to_rounding() {
         // A light body on two contacts, and a heavy one on it, by all that rounding may make of their arms.
-        let inertia = |mass: f64| Inertia { inverse_mass: 1.0 / mass, inverse_moment: 6.0 / mass };
+        let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 6.0 / mass };
         let sides = [[Some(0), None], [Some(0), None], [Some(1), Some(0)], [Some(1), Some(0)]];
         for heavy in [1e5, 1e6, 1e9] {
             for arm in [0.5, 1.0 / 3.0, 0.7, 0.123] {
@@ -160,8 +160,8 @@ mod tests {
     fn a_light_disc_on_two_long_arms_is_held_to_rounding() {
         // Nearly all of each row's square is the turning of the disc; what softness adds is more than all the rest.
         let (block, disc) = (
-            Inertia { inverse_mass: 0.505, inverse_moment: 2.448 },
-            Inertia { inverse_mass: 0.748, inverse_moment: 394_127.0 },
+            InverseInertia { inverse_mass: 0.505, inverse_moment: 2.448 },
+            InverseInertia { inverse_mass: 0.748, inverse_moment: 394_127.0 },
         );
         let pin =
             |[x, y]: [f64; 2], [p, q]: [f64; 2]| [[1.0, 0.0, -y, -1.0, 0.0, q], [0.0, 1.0, x, 0.0, -1.0, -p]];

@@ -66,19 +66,19 @@ impl HeldRows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
     use proptest::prelude::*;
 
     /// Planks on each other and on a floor: contacts of each with the one below, at these arms.
     struct Pile {
-        inertia: Vec<Inertia>,
+        inertia: Vec<InverseInertia>,
         sides: Vec<[Option<u32>; 2]>,
         rows: Vec<[f64; 6]>,
     }
 
     impl Pile {
         fn new(arms: &[Vec<f64>]) -> Self {
-            let inertia = vec![Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }; arms.len()];
+            let inertia = vec![InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }; arms.len()];
             let places = |plank: usize| arms[plank].iter().map(move |&arm| (plank as u32, arm));
             let contacts = || (0..arms.len()).flat_map(places);
             let sides = contacts().map(|(plank, _)| [Some(plank), plank.checked_sub(1)]).collect();

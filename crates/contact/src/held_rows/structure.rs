@@ -2,7 +2,7 @@
 //! does not change while the same rows are held.
 
 use super::{HeldRows, NONE};
-use crate::problem::Inertia;
+use crate::problem::InverseInertia;
 
 /// An earlier row on a common body.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ impl HeldRows {
     /// # Panics
     ///
     /// If a row names a body that does not exist.
-    pub fn set_structure(&mut self, inertia: &[Inertia], rows: &[[Option<u32>; 2]]) {
+    pub fn set_structure(&mut self, inertia: &[InverseInertia], rows: &[[Option<u32>; 2]]) {
         self.body_count = inertia.len();
         self.find_order(inertia, rows);
         self.bodies.clear();
@@ -48,7 +48,7 @@ impl HeldRows {
         self.motion.resize(self.body_count, [0.0; 3]);
     }
 
-    fn find_order(&mut self, inertia: &[Inertia], rows: &[[Option<u32>; 2]]) {
+    fn find_order(&mut self, inertia: &[InverseInertia], rows: &[[Option<u32>; 2]]) {
         self.start.clear();
         self.start.push(0);
         self.column.clear();
@@ -102,7 +102,7 @@ impl HeldRows {
 }
 
 /// The bodies of a row that can move, each once.
-fn movable(inertia: &[Inertia], sides: [Option<u32>; 2]) -> [u32; 2] {
+fn movable(inertia: &[InverseInertia], sides: [Option<u32>; 2]) -> [u32; 2] {
     sides.map(|side| match side {
         Some(body) if inertia[body as usize].inverse_mass > 0.0 => body,
         Some(body) if inertia[body as usize].inverse_moment > 0.0 => body,
@@ -111,10 +111,10 @@ fn movable(inertia: &[Inertia], sides: [Option<u32>; 2]) -> [u32; 2] {
 }
 
 /// Roots of the inverse masses on both sides, 0 on an immovable one.
-fn roots(inertia: &[Inertia], sides: [u32; 2]) -> [[f64; 3]; 2] {
+fn roots(inertia: &[InverseInertia], sides: [u32; 2]) -> [[f64; 3]; 2] {
     sides.map(|body| {
-        let rest = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
-        let Inertia { inverse_mass, inverse_moment } =
+        let rest = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let InverseInertia { inverse_mass, inverse_moment } =
             if body == NONE { rest } else { inertia[body as usize] };
         [inverse_mass.sqrt(), inverse_mass.sqrt(), inverse_moment.sqrt()]
     })

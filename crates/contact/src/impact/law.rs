@@ -275,12 +275,12 @@ impl Impact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
     use halfgap_collision::BodyId;
 
     /// Ends an impact of a row that nothing moves and that closes, where rates up to `noise` [m/s] are rounding.
     fn finish_at(closing: f64, noise: f64, largest_change: f64) -> Result<(), ImpactError> {
-        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
         let bodies = [BodyId(0), BodyId::WORLD];
         let mut impact = Impact::new();
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn rows_with_numbers_that_no_row_can_have_are_named() {
-        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 1.0 };
+        let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 };
         let row = |rate: f64, arm: f64, elasticity: f64| {
             let jacobian = [0.0, 1.0, arm, 0.0, -1.0, 0.0];
             CollisionRow::new([BodyId(0), BodyId(1)], jacobian, [disc; 2], rate, elasticity, 1e-3, false)

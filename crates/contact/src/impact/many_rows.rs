@@ -277,7 +277,7 @@ impl Impact {
 mod tests {
     use super::*;
     use crate::impact::{ImpactLaw, ImpactOrder};
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
     use crate::row::CollisionRow;
     use halfgap_collision::BodyId;
     use proptest::prelude::*;
@@ -285,9 +285,9 @@ mod tests {
     #[test]
     fn a_light_body_wedged_into_a_corner_stops_a_heavy_one() -> Result<(), ImpactError> {
         // Two corners of a ring of 900 t against two sides of a flake of 3 mg that leans against a wall and a floor.
-        let ring = Inertia { inverse_mass: 1.11e-6, inverse_moment: 3.83e-6 };
-        let flake = Inertia { inverse_mass: 3.07e5, inverse_moment: 6.72e6 };
-        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let ring = InverseInertia { inverse_mass: 1.11e-6, inverse_moment: 3.83e-6 };
+        let flake = InverseInertia { inverse_mass: 3.07e5, inverse_moment: 6.72e6 };
+        let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let (on_ring, on_wall) = ([BodyId(0), BodyId(1)], [BodyId(1), BodyId::WORLD]);
         let row = |bodies: [BodyId; 2], jacobian, rate| {
             let inertia = if bodies == on_ring { [ring, flake] } else { [flake, fixed] };
@@ -318,8 +318,8 @@ mod tests {
         // The rails are parallel to the floor but for 1e-6: the body goes along them at 7 m/s and comes down
         // at 1e-5 m/s.
         let (body, fixed) = (
-            Inertia { inverse_mass: 0.46, inverse_moment: 25.0 },
-            Inertia { inverse_mass: 0.0, inverse_moment: 0.0 },
+            InverseInertia { inverse_mass: 0.46, inverse_moment: 25.0 },
+            InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 },
         );
         let along = 7.0;
         let [first, second] = [[9.5e-7, 1.0, -0.029], [1.22e-6, 1.0, -0.0156]];
@@ -354,7 +354,7 @@ mod tests {
         let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, bilateral| {
             let inertia = bodies.map(|body| {
                 let (inverse_mass, inverse_moment) = inertias[body as usize];
-                Inertia { inverse_mass, inverse_moment }
+                InverseInertia { inverse_mass, inverse_moment }
             });
             let bodies = bodies.map(|body| if body == 4 { BodyId::WORLD } else { BodyId(body) });
             let jacobian = [x, y, turns[0], -x, -y, turns[1]];
@@ -401,7 +401,7 @@ mod tests {
         let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, elasticity| {
             let inertia = bodies.map(|body| {
                 let (inverse_mass, inverse_moment) = inertias[body as usize];
-                Inertia { inverse_mass, inverse_moment }
+                InverseInertia { inverse_mass, inverse_moment }
             });
             let bodies = bodies.map(|body| if body == 3 { BodyId::WORLD } else { BodyId(body) });
             let jacobian = [x, y, turns[0], -x, -y, turns[1]];
@@ -437,8 +437,8 @@ mod tests {
     fn what_rows_were_unloaded_by_is_where_their_impulses_are_looked_for() -> Result<(), ImpactError> {
         // Discs in rows, each on two of the row below in directions that vary, fall onto a floor.
         const ACROSS: usize = 9;
-        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 8.0 };
-        let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 8.0 };
+        let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let contacts = |fall: f64, hop: f64| {
             (0..2 * ACROSS * ACROSS).map(move |contact| {
                 let (index, side) = (contact / 2, contact % 2);
@@ -478,8 +478,8 @@ mod tests {
         fn few_rows_come_to_the_rates_that_many_do(
             rows in prop::collection::vec((prop::array::uniform6(-1.0..1.0f64), -1.0..0.2f64, 0u32..3), 3..=FEW),
         ) {
-            let inertia = Inertia { inverse_mass: 0.8, inverse_moment: 3.0 };
-            let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+            let inertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
+            let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
             let rows = rows.iter().map(|&(jacobian, rate, other)| {
                 let (other, theirs) = if other == 0 { (BodyId::WORLD, fixed) } else { (BodyId(other), inertia) };
                 CollisionRow::new([BodyId(0), other], jacobian, [inertia, theirs], rate, 0.0, 1e-3, false)

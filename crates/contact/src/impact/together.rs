@@ -219,13 +219,13 @@ impl Impact {
 mod tests {
     use super::super::law::{ImpactLaw, ImpactOrder};
     use super::*;
-    use crate::problem::Inertia;
+    use crate::problem::InverseInertia;
     use halfgap_collision::BodyId;
 
     #[test]
     fn rows_that_open_slowly_are_driven_in_one_problem() -> Result<(), ImpactError> {
         // Discs in a line: the first row closes at 1 m/s and drives the others, which open, each slower than that.
-        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
         let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
         let row = |place: u32, rate| {
             CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 0.0, 1e-3, false)
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn what_was_held_is_struck_with_the_rest_though_it_opens_by_rounding() -> Result<(), ImpactError> {
         // A disc strikes another, which a third lies against.
-        let disc = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
         let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
         let row = |place: u32, rate| {
             CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 1.0, 1e-6, false)

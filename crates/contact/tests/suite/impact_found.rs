@@ -1,7 +1,7 @@
 //! Impacts that laws once answered wrongly.
 
 use halfgap_collision::BodyId;
-use halfgap_contact::{CollisionRow, Impact, ImpactLaw, ImpactOrder, Inertia};
+use halfgap_contact::{CollisionRow, Impact, ImpactLaw, ImpactOrder, InverseInertia};
 
 /// Bodies, normal, moments about both, rate [m/s], `velocity_tol` [m/s], and whether the row is bilateral.
 type Data = ([u32; 2], [f64; 2], [f64; 2], f64, f64, bool);
@@ -134,7 +134,7 @@ const ROWS: [Data; 14] = [
 fn rows_that_no_impulses_hold_are_not_driven() {
     let inertia = |body: u32| {
         let (inverse_mass, inverse_moment) = INERTIAS[body as usize];
-        Inertia { inverse_mass, inverse_moment }
+        InverseInertia { inverse_mass, inverse_moment }
     };
     for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid, ImpactLaw::SerialGrouped] {
         let mut impact = Impact::new();

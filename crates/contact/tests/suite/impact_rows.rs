@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::laws::{LAWS, ORDERS};
 use halfgap_collision::BodyId;
-use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, Inertia};
+use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, InverseInertia};
 use proptest::prelude::*;
 
 /// Sums of some products of numbers near 1.
@@ -15,21 +15,21 @@ const WORLD: usize = usize::MAX;
 /// A body of the test: its inertia and its velocities.
 #[derive(Clone, Copy, Debug)]
 struct Mover {
-    inertia: Inertia,
+    inertia: InverseInertia,
     velocity: [f64; 3],
 }
 
 impl Mover {
     fn new(mass: f64, moment: f64, velocity: [f64; 3]) -> Self {
-        Self { inertia: Inertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / moment }, velocity }
+        Self { inertia: InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / moment }, velocity }
     }
 
     fn fixed(velocity: [f64; 3]) -> Self {
-        Self { inertia: Inertia { inverse_mass: 0.0, inverse_moment: 0.0 }, velocity }
+        Self { inertia: InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 }, velocity }
     }
 
     fn energy(&self) -> f64 {
-        let Inertia { inverse_mass, inverse_moment } = self.inertia;
+        let InverseInertia { inverse_mass, inverse_moment } = self.inertia;
         let inverse = [inverse_mass, inverse_mass, inverse_moment];
         let parts = self.velocity.iter().zip(inverse).filter(|&(_, inverse)| inverse > 0.0);
         parts.map(|(v, inverse)| 0.5 * v * v / inverse).sum()
@@ -433,7 +433,7 @@ fn tie(bodies: [usize; 2], angle: f64, moments: [f64; 2], elasticity: f64, bilat
 }
 
 fn mover_of(inverse_mass: f64, inverse_moment: f64, velocity: [f64; 3]) -> Mover {
-    Mover { inertia: Inertia { inverse_mass, inverse_moment }, velocity }
+    Mover { inertia: InverseInertia { inverse_mass, inverse_moment }, velocity }
 }
 
 #[test]
@@ -500,8 +500,8 @@ fn connectors_that_nearly_depend_on_each_other_have_modest_impulses() {
 
 #[test]
 fn an_impulse_that_is_carried_comes_back_as_far_as_it_is_needed() -> Result<(), ImpactError> {
-    let body = Inertia { inverse_mass: 0.5, inverse_moment: 0.0 };
-    let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    let body = InverseInertia { inverse_mass: 0.5, inverse_moment: 0.0 };
+    let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
     let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
     let row = CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, fixed], 0.1, 0.0, 1e-3, false);
     let mut impact = Impact::new();
@@ -521,8 +521,8 @@ fn an_impulse_that_is_carried_comes_back_as_far_as_it_is_needed() -> Result<(), 
 #[test]
 fn what_slides_over_two_slopes_is_not_stopped_by_what_it_carries() -> Result<(), ImpactError> {
     // A point of 1 kg rises at 1 mm/s in a hollow of 1e-4 rad, along which it slides at 1 m/s.
-    let body = Inertia { inverse_mass: 1.0, inverse_moment: 0.0 };
-    let fixed = Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    let body = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+    let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
     let (angle, slide, rise): (f64, f64, f64) = (1e-4, 1.0, 1e-3);
     let side = |angle: f64, body_id: u32| {
         let normal = [-angle.sin(), angle.cos()];

@@ -6,7 +6,7 @@ use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Connector, ConnectorKind, ConnectorSample, Tolerances};
-use halfgap_contact::{DualActiveSet, Inertia, Problem, Row, Settings, Solution, Solver};
+use halfgap_contact::{DualActiveSet, InverseInertia, Problem, Row, Settings, Solution, Solver};
 
 /// Contradiction between dependent connectors, in units of the largest gap, that a round may leave to the next: gaps
 /// are curved, so those of a linkage with more bars than it needs agree only to second order.
@@ -154,13 +154,13 @@ fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f
 fn least_changes(bodies: &[StartParts], corrections: &[Correction]) -> Option<Vec<[f64; 3]>> {
     let mut problem = Problem::new();
     for (body, _, _) in bodies {
-        let inertia = Inertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment };
+        let inertia = InverseInertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment };
         problem.add_body(inertia).ok()?;
     }
-    let background = problem.add_body(Inertia { inverse_mass: 0.0, inverse_moment: 0.0 }).ok()?;
+    let background = problem.add_body(InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 }).ok()?;
     for Correction { bodies, jacobian: j, offset, bilateral } in corrections {
-        let [primary, normal] =
-            bodies.map(|body| if body.is_world() { background } else { halfgap_contact::BodyId(body.0) });
+        let [primary, normal] = bodies
+            .map(|body| if body.is_world() { background } else { halfgap_contact::ProblemBody(body.0) });
         let row = Row::new(primary, [j[0], j[1], j[2]], *offset).against(normal, [j[3], j[4], j[5]]);
         problem.add_row(&if *bilateral { row.bilateral() } else { row }).ok()?;
     }

@@ -135,7 +135,7 @@ pub(crate) fn correct_start(
         known.clear();
     }
     regain_touches(bodies, (&lifted, &given), connectors, (rules, &mut near));
-    let apart = correct_velocities(bodies, named, connectors, &rules.tolerances)?;
+    let apart = correct_velocities(bodies, named, connectors, rules.tolerances)?;
     let moves =
         bodies.iter().zip(&given).map(|((_, _, state), given)| state.position.distance(given.position));
     Ok(Corrected { displacement: moves.fold(0.0, f64::max), apart })

@@ -16,7 +16,7 @@ use crate::rigid::step::segment::StepFailure;
 use crate::rigid::system::RigidSystem;
 
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
-use halfgap_contact::Inertia;
+use halfgap_contact::InverseInertia;
 
 /// Where a contact has sunk, others of the same bodies may lie so many times as deep.
 const SUNK_BESIDE: f64 = 2.0;
@@ -44,7 +44,7 @@ pub(crate) struct Groups {
     /// What belongs to the groups that are being made.
     members: Members,
     /// Inertias of the bodies of a group that starts.
-    inertias: Vec<Inertia>,
+    inertias: Vec<InverseInertia>,
 }
 
 impl Groups {

@@ -7,7 +7,7 @@ use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Collision, Detector, Moving};
-use halfgap_contact::{CollisionRow, Impact, ImpactError, Inertia};
+use halfgap_contact::{CollisionRow, Impact, ImpactError, InverseInertia};
 use halfgap_geometry::GapSample;
 
 /// One row of an impact, as told to the outside.
@@ -53,12 +53,12 @@ impl RigidSystem {
         self.settings.rest_speed
     }
 
-    pub(crate) fn inertia(&self, body: BodyId) -> Inertia {
+    pub(crate) fn inertia(&self, body: BodyId) -> InverseInertia {
         if body.is_world() {
-            return Inertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+            return InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         }
         let body = self.flyer(body).body();
-        Inertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
+        InverseInertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
     }
 
     /// Resolves the impact of a region's rows; the bodies, which must be in flight, go on with changed

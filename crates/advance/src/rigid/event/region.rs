@@ -11,7 +11,7 @@ use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, FeatureRule, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
 };
-use halfgap_contact::{BodyId as RowBody, Impact, Inertia, Problem, Row};
+use halfgap_contact::{Impact, InverseInertia, Problem, ProblemBody, Row};
 use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
@@ -94,14 +94,14 @@ impl Region {
 
     /// The row of a record in a problem of the region's bodies, in their order; `None` if nothing of it moves.
     pub(crate) fn row_of(&self, record: &Collision, offset: f64) -> Option<Row> {
-        let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(RowBody);
+        let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(ProblemBody);
         let sides = record.bodies().map(place);
         let row = Row::between(sides, &record.motion.kinematics.jacobian, offset)?;
         Some(if record.parties.bilateral { row.bilateral() } else { row })
     }
 
     /// Gives a problem the region's bodies and no rows.
-    pub(crate) fn begin(&self, problem: &mut Problem, inertia: impl Fn(BodyId) -> Inertia) {
+    pub(crate) fn begin(&self, problem: &mut Problem, inertia: impl Fn(BodyId) -> InverseInertia) {
         problem.clear();
         for &body in &self.bodies {
             problem.add_body(inertia(body)).expect("inertias were checked when the body was made");

@@ -9,7 +9,7 @@ use super::settling::Settling;
 use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
-use halfgap_contact::Inertia;
+use halfgap_contact::InverseInertia;
 
 /// A bilateral row of which others leave less than this part depends on them.
 const DEPENDENT: f64 = 1e-12;
@@ -26,7 +26,7 @@ pub(crate) struct Levers {
 
 impl Levers {
     /// Takes in the connectors of a region.
-    fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> Inertia) {
+    fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> InverseInertia) {
         self.basis.clear();
         for record in region.records.iter().filter(|record| record.parties.bilateral) {
             if self.left_of(region, record, &inertia) > DEPENDENT {
@@ -38,14 +38,19 @@ impl Levers {
 
     /// The part of a record's square that the connectors leave, which is the square of its lever in parts of
     /// what it would be without them; 0 if nothing moves it.
-    fn left_of(&mut self, region: &Region, record: &Collision, inertia: impl Fn(BodyId) -> Inertia) -> f64 {
+    fn left_of(
+        &mut self,
+        region: &Region,
+        record: &Collision,
+        inertia: impl Fn(BodyId) -> InverseInertia,
+    ) -> f64 {
         let Self { basis, row } = self;
         row.clear();
         row.resize(3 * region.bodies.len(), 0.0);
         let j = &record.motion.kinematics.jacobian;
         for (side, body) in record.bodies().into_iter().enumerate() {
             let Some(place) = region.place(body) else { continue };
-            let Inertia { inverse_mass, inverse_moment } = inertia(body);
+            let InverseInertia { inverse_mass, inverse_moment } = inertia(body);
             for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
                 row[3 * place + k] += weight.sqrt() * j[3 * side + k];
             }

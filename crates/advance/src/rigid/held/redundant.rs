@@ -7,13 +7,13 @@ use crate::rigid::event::cause::Cause;
 use crate::rigid::event::region::Region;
 use crate::rigid::step::dynamics::Stage;
 use crate::rigid::system::RigidSystem;
-use halfgap_contact::{HeldRows, Inertia};
+use halfgap_contact::{HeldRows, InverseInertia};
 
 /// Buffers: the rows of the candidates, and their forces [N].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Redundant {
     held: HeldRows,
-    inertia: Vec<Inertia>,
+    inertia: Vec<InverseInertia>,
     sides: Vec<[Option<u32>; 2]>,
     jacobians: Vec<[f64; 6]>,
     forces: Vec<f64>,

@@ -9,7 +9,7 @@ use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::report::RowForce;
 use crate::rigid::step::rows::HeldRow;
 use halfgap_collision::BodyId;
-use halfgap_contact::{Auto, Inertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
+use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
 /// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares:
 /// that of rows which move by what counts as rest. What crushes a body is of the order of 1.
@@ -207,7 +207,7 @@ impl Settling {
         &self,
         region: &Region,
         records: &[usize],
-        inertia: impl Fn(BodyId) -> Inertia,
+        inertia: impl Fn(BodyId) -> InverseInertia,
         sums: &mut [[f64; 3]],
     ) {
         for (&index, force) in records.iter().zip(&self.solution.force) {
@@ -216,7 +216,7 @@ impl Settling {
             let sides = record.bodies();
             for (side, body) in sides.into_iter().enumerate() {
                 let Some(place) = region.place(body) else { continue };
-                let Inertia { inverse_mass, inverse_moment } = inertia(body);
+                let InverseInertia { inverse_mass, inverse_moment } = inertia(body);
                 for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
                     sums[place][k] += weight * j[3 * side + k] * force;
                 }

@@ -1,7 +1,8 @@
 //! Extreme sizes and scales, degenerate and wrong problems.
 
 use halfgap_contact::{
-    Auto, BodyId, DualActiveSet, Inertia, Problem, ProblemError, Row, Settings, Solution, SolveError, Solver,
+    Auto, DualActiveSet, InverseInertia, Problem, ProblemBody, ProblemError, Row, Settings, Solution,
+    SolveError, Solver,
 };
 
 use super::data::{Case, judge};
@@ -14,7 +15,7 @@ fn solve(problem: &Problem) -> Result<Solution, SolveError> {
 /// A box of width 1 m and 1 kg on `points` floor points.
 fn box_on_floor(points: usize) -> Problem {
     let mut problem = Problem::new();
-    let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
+    let body = problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
     for i in 0..points {
         let arm = i as f64 / (points - 1) as f64 - 0.5;
         problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81)).unwrap();
@@ -63,10 +64,12 @@ fn mass_ratios_of_a_billion_are_solved() {
     for ratio in [1e6, 1e9] {
         for count in [2, 10, 40] {
             let mut problem = Problem::new();
-            let bodies: Vec<BodyId> = (0..count)
+            let bodies: Vec<ProblemBody> = (0..count)
                 .map(|i| {
                     let inverse_mass = if i == count - 1 { 1.0 / ratio } else { 1.0 };
-                    problem.add_body(Inertia { inverse_mass, inverse_moment: 12.0 * inverse_mass }).unwrap()
+                    problem
+                        .add_body(InverseInertia { inverse_mass, inverse_moment: 12.0 * inverse_mass })
+                        .unwrap()
                 })
                 .collect();
             for (i, &upper) in bodies.iter().enumerate() {
@@ -105,7 +108,7 @@ fn what_is_not_a_number_is_named_by_its_row() {
     let wrong = Problem::from_dense(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[f64::INFINITY, 0.0]);
     assert!(matches!(wrong, Err(ProblemError::NotFinite { row: 0, .. })));
     let mut problem = box_on_floor(3);
-    let row = Row::new(BodyId(0), [0.0, f64::NAN, 0.0], 0.0);
+    let row = Row::new(ProblemBody(0), [0.0, f64::NAN, 0.0], 0.0);
     let error = problem.add_row(&row).unwrap_err();
     assert!(error.to_string().starts_with("row 3:"), "{error}");
     assert_eq!(problem.len(), 3);
@@ -114,7 +117,7 @@ fn what_is_not_a_number_is_named_by_its_row() {
 /// A pendulum's joint, its first row doubled and the copy's offset nudged by a part of it.
 fn doubled_joint(nudge: f64) -> Problem {
     let mut problem = Problem::new();
-    let body = problem.add_body(Inertia { inverse_mass: 0.5, inverse_moment: 3.0 }).unwrap();
+    let body = problem.add_body(InverseInertia { inverse_mass: 0.5, inverse_moment: 3.0 }).unwrap();
     for (coefficients, offset) in
         [([1.0, 0.0, -0.4], 2.0), ([0.0, 1.0, 0.3], -9.81), ([1.0, 0.0, -0.4], 2.0 * (1.0 + nudge))]
     {
@@ -148,7 +151,7 @@ fn joints_that_contradict_each_other_for_good_are_infeasible() {
 #[test]
 fn a_block_squeezed_by_walls_that_both_close_is_infeasible() {
     let mut problem = Problem::new();
-    let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 1.0 }).unwrap();
+    let body = problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 }).unwrap();
     problem.add_row(&Row::new(body, [1.0, 0.0, 0.0], -1.0)).unwrap();
     problem.add_row(&Row::new(body, [-1.0, 0.0, 0.0], -1.0)).unwrap();
     let SolveError::Infeasible(proof) = solve(&problem).unwrap_err() else { panic!("must be infeasible") };

@@ -1,6 +1,6 @@
 //! Problems that went wrong once: found by trying many of a family.
 
-use halfgap_contact::{Auto, Inertia, Lemke, Problem, Row, Solution, SolveError, Solver};
+use halfgap_contact::{Auto, InverseInertia, Lemke, Problem, Row, Solution, SolveError, Solver};
 
 use super::data::{Case, disproof, judge};
 
@@ -82,7 +82,7 @@ fn what_has_no_solution_is_proven() {
 fn two_pins(angle: f64, off: f64) -> Problem {
     let mut problem = Problem::new();
     let bodies = [(3.4, 67.3), (1.7, 9.9)].map(|(inverse_mass, inverse_moment)| {
-        problem.add_body(Inertia { inverse_mass, inverse_moment }).unwrap()
+        problem.add_body(InverseInertia { inverse_mass, inverse_moment }).unwrap()
     });
     let along = [-angle.sin(), angle.cos()];
     for side in [-0.4, 0.4] {
@@ -139,7 +139,7 @@ fn crowd(seed: u64) -> Problem {
     let count = 1 + (random() * rows as f64) as usize;
     let mut problem = Problem::new();
     let bodies: Vec<_> = (0..count)
-        .map(|_| Inertia { inverse_mass: 0.1 + random(), inverse_moment: 0.1 + 6.0 * random() })
+        .map(|_| InverseInertia { inverse_mass: 0.1 + random(), inverse_moment: 0.1 + 6.0 * random() })
         .map(|inertia| problem.add_body(inertia).unwrap())
         .collect();
     for _ in 0..rows {
@@ -177,7 +177,7 @@ fn crowds_of_bodies_are_solved() {
 
 #[test]
 fn numbers_beyond_what_can_be_computed_with_are_refused_by_row() {
-    let inertia = Inertia { inverse_mass: 1.0, inverse_moment: 1.0 };
+    let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 };
     for size in [1e-170, 1e170] {
         let mut problem = Problem::new();
         let body = problem.add_body(inertia).unwrap();

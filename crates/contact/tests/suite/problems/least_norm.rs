@@ -1,6 +1,6 @@
 //! The choice of forces where redundant contacts leave one.
 
-use halfgap_contact::{Auto, ForceSelection, Inertia, Problem, Row, Settings, Solution, Solver};
+use halfgap_contact::{Auto, ForceSelection, InverseInertia, Problem, Row, Settings, Solution, Solver};
 
 use super::data::{Case, judge};
 
@@ -11,7 +11,7 @@ fn least_norm() -> Auto {
 #[test]
 fn a_box_on_many_points_is_carried_symmetrically() {
     let mut problem = Problem::new();
-    let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
+    let body = problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
     for i in 0..9 {
         let arm = f64::from(i) / 8.0 - 0.5;
         problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81)).unwrap();

@@ -1,6 +1,8 @@
 //! What must not change the answer, on random problems of bodies.
 
-use halfgap_contact::{Auto, DualActiveSet, Inertia, Lemke, Problem, ProximalNewton, Row, Solution, Solver};
+use halfgap_contact::{
+    Auto, DualActiveSet, InverseInertia, Lemke, Problem, ProximalNewton, Row, Solution, Solver,
+};
 use proptest::prelude::*;
 
 use super::data::{judge, scales};
@@ -21,7 +23,9 @@ impl Raw {
         let bodies: Vec<_> = self
             .masses
             .iter()
-            .map(|&[inverse_mass, inverse_moment]| problem.add_body(Inertia { inverse_mass, inverse_moment }))
+            .map(|&[inverse_mass, inverse_moment]| {
+                problem.add_body(InverseInertia { inverse_mass, inverse_moment })
+            })
             .collect::<Result<_, _>>()
             .unwrap();
         for &(a, b, c, offset, bilateral) in &self.rows {
@@ -160,7 +164,7 @@ proptest! {
         let build = |order: &[usize]| {
             let mut problem = Problem::new();
             let bodies: Vec<_> = (0..count)
-                .map(|i| problem.add_body(Inertia { inverse_mass: 1.0 + i as f64, inverse_moment: 1.0 }).unwrap())
+                .map(|i| problem.add_body(InverseInertia { inverse_mass: 1.0 + i as f64, inverse_moment: 1.0 }).unwrap())
                 .collect();
             for &i in order {
                 let row = Row::new(bodies[i], [1.0, 0.0, 0.1], -forces[i]);

@@ -1,6 +1,8 @@
 //! Warm starts: the same answer, whatever became of the contacts in between.
 
-use halfgap_contact::{Auto, ContactKey, DualActiveSet, Inertia, Problem, Row, Solution, Solver, WarmStart};
+use halfgap_contact::{
+    Auto, ContactKey, DualActiveSet, InverseInertia, Problem, Row, Solution, Solver, WarmStart,
+};
 
 use super::data::{Case, collection, judge};
 
@@ -22,7 +24,7 @@ fn a_warm_start_finds_the_next_answer() {
 fn blocks(names: &[u64]) -> Problem {
     let mut problem = Problem::new();
     for &name in names {
-        let body = problem.add_body(Inertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
+        let body = problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).unwrap();
         for (corner, arm) in [(0, -0.5), (1, 0.5)] {
             let key = ContactKey(2 * name + corner);
             problem.add_row(&Row::new(body, [0.0, 1.0, arm], -9.81).with_key(key)).unwrap();

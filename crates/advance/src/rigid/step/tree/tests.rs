@@ -11,7 +11,7 @@ use glam::DVec2;
 use halfgap_collision::{
     Anchor, Body, BodyId, BodyState, Connector, ConnectorId, ConnectorKind, Moving, SlotFrame, Tolerances,
 };
-use halfgap_contact::Inertia;
+use halfgap_contact::InverseInertia;
 use halfgap_geometry::Shape;
 use proptest::prelude::*;
 
@@ -136,7 +136,7 @@ impl Scene {
         let Self { flyers, connectors, group } = &mut self;
         group.bodies = (0..count).map(|place| BodyId(u32::try_from(place).expect("few bodies"))).collect();
         group.find_sides();
-        let inertia = |flyer: &Flyer| Inertia {
+        let inertia = |flyer: &Flyer| InverseInertia {
             inverse_mass: flyer.body().inverse_mass,
             inverse_moment: flyer.body().inverse_moment,
         };
