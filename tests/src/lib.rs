@@ -1,11 +1,12 @@
 //! Scenarios that cross the layers of halfgap, and the scenes that they run.
 //!
 //! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and looks
-//! (`touching` at contacts), `shrink` makes small what fails, `random` is where the numbers come from.
+//! (`touching` at contacts), `mirror` shows them in a mirror, `shrink` makes small what fails, `random` is where the numbers come from.
 
 pub mod generate;
 pub mod invariants;
 pub mod mechanism;
+pub mod mirror;
 pub mod random;
 pub mod shrink;
 mod touching;

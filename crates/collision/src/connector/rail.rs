@@ -28,8 +28,10 @@ pub(super) fn rail_row(
     let lateral = foot.tangent.dot(ends.velocity);
     let turn = foot.curvature * lateral * foot.stretch();
     let gamma = foot.normal.dot(ends.turning) - turn * lateral;
-    let sign = if hint.is_some_and(|hint| hint.faces_right) { -1.0 } else { 1.0 };
-    ends.row(sign * foot.gap, foot.normal * sign, foot.tangent * (-turn * sign), sign * gamma)
+    if hint.is_some_and(|hint| hint.faces_right) {
+        return ends.row(-foot.gap, -foot.normal, foot.tangent * turn, -gamma);
+    }
+    ends.row(foot.gap, foot.normal, foot.tangent * -turn, gamma)
 }
 
 /// The row along the path: `sign` is +1 if the rail ends below the arc length `at` [m], -1 if above.
