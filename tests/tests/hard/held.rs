@@ -1,7 +1,7 @@
 //! Bodies that connectors hold still: what hits them, and what hangs on them.
 
 use super::within;
-use halfgap::force::{ConstantForce, ForceFrame};
+use halfgap::force::{ConstantForce, ForceFrame, Push};
 use halfgap::geometry::DVec2;
 use halfgap::{Anchor, BodyId, ConnectorKind, SlotFrame};
 use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, connector_error, disc, thrown};
@@ -60,14 +60,15 @@ fn a_heavy_slide_on_a_light_frame_that_is_pinned_twice_keeps_to_its_slope() {
 fn a_light_slide_goes_along_with_the_heavy_disc_that_it_carries() {
     // A slide of a milligram lies on the floor and carries a disc of 100 kg on a pin, which a weak force
     // pushes: what is rounding of the forces on the slide is what they move by.
-    let (mass, push) = (100.0, 1e-2);
+    let (mass, force) = (100.0, 1e-2);
     let mut shop = Workshop::new(1e-10);
     shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
     let slide = shop.body("slide", block(1.0, 0.1), 1e-6, at_rest(0.0, 0.05));
     let disc = shop.body("disc", disc(0.3), mass, at_rest(0.0, 0.6));
     shop.pin(slide, disc, DVec2::new(0.0, 0.6));
-    let at = [DVec2::ZERO, DVec2::new(push, 0.0)];
-    let law = ConstantForce::new("push", disc, ForceFrame::Body, at, 0.0);
+    let push =
+        Push { frame: ForceFrame::Body, point: DVec2::ZERO, force: DVec2::new(force, 0.0), torque: 0.0 };
+    let law = ConstantForce::new("push", disc, push);
     shop.builder.add_force(std::sync::Arc::new(law));
     let mut world = shop.build();
     let mut apart: f64 = 0.0;
@@ -76,7 +77,7 @@ fn a_light_slide_goes_along_with_the_heavy_disc_that_it_carries() {
         apart = apart.max(connector_error(&world));
     }
     within("a disc of 100 kg on a slide of a milligram: pin [m]", apart, 1e-12);
-    let expected = 0.5 * push / mass;
+    let expected = 0.5 * force / mass;
     within(
         "a disc of 100 kg on a slide of a milligram: place [m]",
         world.state(slide).position.x - expected,

@@ -4,6 +4,7 @@ use halfgap::World;
 use halfgap::geometry::DVec2;
 use halfgap::scene::Scene;
 use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, connector_error};
+use halfgap_tests::random::Random;
 use halfgap_tests::reference_scene;
 
 fn world(scene: &Scene) -> World {
@@ -47,23 +48,10 @@ fn the_gears_turn_for_a_minute() {
     assert!(turned(&world, "left_gear").abs() > 10.0);
 }
 
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        low + (high - low) * ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 #[test]
 fn twenty_random_blocks_settle_in_a_pit() {
     for seed in [1, 2, 8] {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let mut shop = Workshop::new(1e-3);
         shop.fixed("floor", block(8.0, 1.0), DVec2::new(0.0, -0.5));
         shop.fixed("left", block(1.0, 12.0), DVec2::new(-3.5, 6.0));

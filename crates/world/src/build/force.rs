@@ -4,7 +4,7 @@ use super::bodies::Bodies;
 use super::mass;
 use crate::builder::WorldBuilder;
 use crate::force::{
-    Anchor, ConstantForce, Dashpot, ForceFrame, MutualGravity, RotatingForce, Spring, Turning,
+    Anchor, ConstantForce, Dashpot, ForceFrame, MutualGravity, Push, RotatingForce, Spring, Turning,
 };
 use crate::scene::{
     self, ConstantData, FieldPath, ForceData, MutualGravityData, PointData, RotatingData, SceneError,
@@ -92,7 +92,8 @@ fn constant_force(
         scene::ForceFrame::Body => (ForceFrame::Body, builder.anchor(body, constant.point.into()).point),
         scene::ForceFrame::World => (ForceFrame::World, constant.point.into()),
     };
-    ConstantForce::new(field.to_string(), body, frame, [point, constant.force.into()], constant.torque)
+    let push = Push { frame, point, force: constant.force.into(), torque: constant.torque };
+    ConstantForce::new(field.to_string(), body, push)
 }
 
 fn rotating_force(

@@ -21,23 +21,27 @@ pub enum ForceFrame {
 pub struct ConstantForce {
     name: String,
     body: [BodyId; 1],
-    frame: ForceFrame,
-    point: DVec2,
-    force: DVec2,
-    torque: f64,
+    push: Push,
+}
+
+/// What a constant force does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// The frame of the point and the force.
+    pub frame: ForceFrame,
+    /// Where the force acts [m].
+    pub point: DVec2,
+    /// The force [N].
+    pub force: DVec2,
+    /// The torque [N m], counter-clockwise.
+    pub torque: f64,
 }
 
 impl ConstantForce {
-    /// A force [N] at a point [m], both in coordinates of a frame, and a torque [N m] on a body.
+    /// A force at a point, and a torque, on a body.
     #[must_use]
-    pub fn new(
-        name: impl Into<String>,
-        body: BodyId,
-        frame: ForceFrame,
-        [point, force]: [DVec2; 2],
-        torque: f64,
-    ) -> Self {
-        Self { name: name.into(), body: [body], frame, point, force, torque }
+    pub fn new(name: impl Into<String>, body: BodyId, push: Push) -> Self {
+        Self { name: name.into(), body: [body], push }
     }
 }
 
@@ -53,12 +57,13 @@ impl ForceLaw for ConstantForce {
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
         let [body] = self.body;
         let pose = now.body(body).pose;
-        let (force, arm) = match self.frame {
-            ForceFrame::Body => (pose.vector_to_world(self.force), pose.vector_to_world(self.point)),
-            ForceFrame::World => (self.force, self.point - pose.position),
+        let Push { frame, point, force, torque } = self.push;
+        let (force, arm) = match frame {
+            ForceFrame::Body => (pose.vector_to_world(force), pose.vector_to_world(point)),
+            ForceFrame::World => (force, point - pose.position),
         };
         wrenches.add_force(body, force, arm);
-        wrenches.add_torque(body, self.torque);
+        wrenches.add_torque(body, torque);
     }
 }
 
@@ -71,9 +76,13 @@ mod tests {
     const POINT: DVec2 = DVec2::new(0.0, 2.0);
     const FORCE: DVec2 = DVec2::new(3.0, 0.0);
 
+    fn push(frame: ForceFrame, torque: f64) -> Push {
+        Push { frame, point: POINT, force: FORCE, torque }
+    }
+
     #[test]
     fn in_the_bodys_frame_force_and_point_turn_with_the_body() {
-        let law = ConstantForce::new("", BodyId(0), ForceFrame::Body, [POINT, FORCE], 0.5);
+        let law = ConstantForce::new("", BodyId(0), push(ForceFrame::Body, 0.5));
         let mut states = states();
         states[0].angle = FRAC_PI_2;
         let pushed = wrenches(&law, &states)[0];
@@ -83,7 +92,7 @@ mod tests {
 
     #[test]
     fn in_the_worlds_frame_the_point_stays_while_the_body_moves() {
-        let law = ConstantForce::new("", BodyId(0), ForceFrame::World, [POINT, FORCE], 0.0);
+        let law = ConstantForce::new("", BodyId(0), push(ForceFrame::World, 0.0));
         let mut states = states();
         for (height, torque) in [(0.0, -6.0), (2.0, 0.0), (3.0, 3.0)] {
             states[0].position = DVec2::new(7.0, height);
@@ -96,7 +105,7 @@ mod tests {
     fn neither_is_a_gradient() {
         // Around a small rectangle of height and angle the work is not zero, so no potential can exist.
         for frame in [ForceFrame::Body, ForceFrame::World] {
-            let law = ConstantForce::new("", BodyId(0), frame, [POINT, FORCE], 0.0);
+            let law = ConstantForce::new("", BodyId(0), push(frame, 0.0));
             assert_eq!(law.potential(&Snapshot::new(0.0, &states().map(|state| (&state).into()))), None);
             let push_at = |height: f64, angle: f64| {
                 let mut states = states();

@@ -54,7 +54,7 @@ mod rotating;
 mod spring;
 mod sum;
 
-pub use constant::{ConstantForce, ForceFrame};
+pub use constant::{ConstantForce, ForceFrame, Push};
 pub use dashpot::Dashpot;
 pub use halfgap_advance::rigid::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use halfgap_collision::{Anchor, Moving};

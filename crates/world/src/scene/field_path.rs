@@ -106,11 +106,28 @@ fn read_name(text: &str) -> Option<(Step, &str)> {
     while let Some((at, letter)) = letters.next() {
         match letter {
             '"' => return Some((Step::Field(name), &quoted[at + 1..])),
-            '\\' => name.push(letters.next()?.1),
+            '\\' => name.push(escaped(&mut letters)?),
             _ => name.push(letter),
         }
     }
     None
+}
+
+/// The letter that is meant by what follows a backslash, as Rust writes it.
+fn escaped(letters: &mut std::str::CharIndices<'_>) -> Option<char> {
+    Some(match letters.next()?.1 {
+        'n' => '\n',
+        'r' => '\r',
+        't' => '\t',
+        '0' => '\0',
+        'u' => {
+            letters.next().filter(|&(_, letter)| letter == '{')?;
+            let digits: String =
+                letters.map(|(_, letter)| letter).take_while(|&letter| letter != '}').collect();
+            char::from_u32(u32::from_str_radix(&digits, 16).ok()?)?
+        }
+        letter => letter,
+    })
 }
 
 impl fmt::Display for FieldPath {
@@ -154,6 +171,10 @@ mod tests {
             ["run.tolerance", "body[0].position[1]", "body.\"big \\\"ball\".mass", "expected[2].bodies.a-b_3"]
         {
             assert_eq!(text.parse::<FieldPath>().map(|path| path.to_string()), Ok(text.to_owned()));
+        }
+        for name in ["a\tb", "a\nb\r", "\0", "e\u{301}", "\u{7f}\u{1f600}", "a\\n\"b\""] {
+            let path = FieldPath::top().field("body").field(name).field("mass");
+            assert_eq!(path.to_string().parse::<FieldPath>(), Ok(path), "{name:?}");
         }
         for text in
             ["", ".run", "run.", "run..x", "body[x]", "body[1", "body.\"a", "big ball", "body[0]position"]
