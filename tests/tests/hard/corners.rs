@@ -194,3 +194,67 @@ fn slides(is_mirrored: bool) -> DVec2 {
 fn a_valley_and_its_mirror_image_do_the_same() {
     within("a disc in a valley and in its mirror image [m]", slides(true).distance(slides(false)), 1e-8);
 }
+
+/// Vertices of a valley with a piece of its own at the bottom, which rises by 2 degrees: a bead that starts from
+/// rest on the left just passes the corner at the end of it.
+#[test]
+fn a_bead_that_just_passes_a_corner_has_passed_it() {
+    let degree = std::f64::consts::PI / 180.0;
+    let (steep, gentle) = (29.0 * degree, 2.0 * degree);
+    // It keeps the cosine of each turn.
+    let kept = (steep + gentle).cos();
+    for beyond in [1e-5_f64, 1e-3, 0.1] {
+        // The height from which it comes to the end of the gentle piece, and a little farther in height.
+        let height = gentle.sin() * (1.0 + beyond) / (kept * kept);
+        let far = DVec2::new(gentle.cos(), gentle.sin());
+        let start = 2.0 * DVec2::new(-steep.cos(), steep.sin());
+        let ends = [DVec2::ZERO, far, far + 2.0 * DVec2::new(steep.cos(), steep.sin())];
+        let edges = ends.map(|to| EdgeSpec::Line { to });
+        let path = Arc::new(RailPath::from_edges(start, &edges).expect("a fine path"));
+        let way = height / steep.sin();
+        for tolerance in [1e-6, 1e-9] {
+            let mut shop = Workshop::new(tolerance);
+            let bead = shop.body("bead", disc(RADIUS), 1.0, at_rest(-way * steep.cos(), height));
+            let a = Anchor { body: bead, point: DVec2::ZERO };
+            shop.connect(ConnectorKind::Rail { a, path: path.clone() }, 0.0);
+            let mut world = shop.build();
+            // Down, up the gentle piece, round its end and back down to it: three corners.
+            let (down, up) = (GRAVITY * steep.sin(), GRAVITY * gentle.sin());
+            let speed = kept * (2.0 * GRAVITY * height).sqrt();
+            let at_end = (speed * speed - 2.0 * up).sqrt();
+            let passed = at_end * (steep - gentle).cos();
+            let time = (2.0 * way / down).sqrt() + (speed - at_end) / up + 2.0 * passed / down;
+            let blows = impacts(&mut world, time + 1e-3);
+            let what = format!("a bead {beyond:.0e} beyond a corner at {tolerance:.0e}");
+            within(&format!("{what}: impacts other than three"), blows as f64 - 3.0, 0.0);
+        }
+    }
+}
+
+#[test]
+fn what_is_struck_out_of_a_corner_goes_along_the_side_that_opens_the_other_whichever_way_the_path_runs() {
+    // The body hangs by an arm, which makes one side much easier to move than the other.
+    for is_reversed in [false, true] {
+        let sides = [0.2_f64, 0.9];
+        let mut ends = [
+            2.0 * DVec2::new(-sides[0].cos(), sides[0].sin()),
+            2.0 * DVec2::new(sides[1].cos(), sides[1].sin()),
+        ];
+        if is_reversed {
+            ends.reverse();
+        }
+        let edges = [DVec2::ZERO, ends[1]].map(|to| EdgeSpec::Line { to });
+        let path = Arc::new(RailPath::from_edges(ends[0], &edges).expect("a fine path"));
+        let mut shop = Workshop::weightless(1e-9);
+        let body = shop.body("body", disc(RADIUS), 1.0, at_rest(0.0, -0.5));
+        let a = Anchor { body, point: DVec2::new(0.0, 0.5) };
+        shop.connect(ConnectorKind::Rail { a, path }, 0.0);
+        let state = BodyState { velocity: DVec2::Y, ..at_rest(0.0, -1.0) };
+        shop.body("ball", disc(RADIUS), 1.0, state);
+        let mut world = shop.build();
+        let energy = world.energy().total();
+        let blows = impacts(&mut world, 0.35);
+        within("struck on an arm: impacts other than one", blows as f64 - 1.0, 0.0);
+        within("struck on an arm: energy [J]", world.energy().total() - energy, 1e-9);
+    }
+}

@@ -77,6 +77,10 @@ impl RigidSystem {
     fn take_back_cut(&mut self, bodies: &[BodyId], seen: &[BodyState]) {
         for (&body, &BodyState { velocity, angular_velocity, .. }) in bodies.iter().zip(seen) {
             let cut = self.flyer(body).unwound_at(self.now);
+            if (cut.velocity, cut.angular_velocity) == (velocity, angular_velocity) {
+                continue;
+            }
+            self.book_damping(body, self.now);
             let change = VelocityChange {
                 body,
                 velocity: velocity - cut.velocity,

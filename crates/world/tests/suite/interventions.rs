@@ -403,3 +403,22 @@ fn who_has_asked_for_too_long_a_time_may_ask_for_less() {
     world.advance_to(reached + 1.0, &mut |_| ()).expect("nothing is wrong with it");
     assert_eq!(world.time(), reached + 1.0);
 }
+
+#[test]
+fn what_is_damped_in_flight_loses_no_work_by_interventions() {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let state = BodyState { velocity: DVec2::new(1.0, 1.0), ..BodyState::default() };
+    let disc = Shape::disc(0.5).expect("a fine radius");
+    let disc = builder.add(BodySpec::movable("disc", disc, 1.0, state));
+    builder.add_gravity(disc, DVec2::new(0.0, -GRAVITY));
+    builder.add_damping(disc, 0.5, 0.02);
+    let mut world = builder.build().expect("it flies");
+    for frame in 1..=60 {
+        world.advance_to(f64::from(frame) / 60.0, &mut |_| ()).expect("it flies on");
+        let BodyState { velocity, angular_velocity, .. } = world.state(disc);
+        let velocity = if frame == 30 { velocity + DVec2::X } else { velocity };
+        let same = Intervention::Velocity { body: disc, velocity, angular_velocity };
+        world.intervene(&[same], &mut |_| ()).expect("nothing else changes");
+    }
+    assert!(world.ledger().integration_error().abs() < 1e-9, "{:?}", world.ledger());
+}

@@ -5,7 +5,9 @@
 //! Each is a function along the dense output whose first fall below zero is an event. Places are read at
 //! once, forces only when the time comes up to which none can vanish.
 
-use super::crossing::{EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall_before, node};
+use super::crossing::{
+    EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
+};
 use super::earliest::Earliest;
 use crate::ode::Ode;
 use crate::rigid::step::brief::Stepping;
@@ -35,6 +37,10 @@ const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
 
 /// A force may begin to fall this many times as fast as it varies along a step.
 const STEEP: f64 = 4.0;
+/// Cap on the looks for an end of a rail's piece that comes before the one that was found, and the part of the way to
+/// that from which on it is the same.
+const MOST_ZOOMS: usize = 16;
+const EARLIER_BY: f64 = 1.0 - 1e-6;
 
 /// Functions of the rows along a segment of which the first to fall below zero is an event.
 pub(super) struct Watch {
@@ -153,6 +159,7 @@ impl Dynamics<'_> {
         let mut overrun = std::mem::take(&mut self.group.overrun);
         self.find_overdue(&mut earliest, (&samples.rooms, &mut overrun), &CHANGES, |_, _| margin);
         self.group.overrun = overrun;
+        self.find_earlier_ends(&mut earliest, &samples.rooms);
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
         for place in 0..self.group.stops.len() {
@@ -321,6 +328,35 @@ impl Dynamics<'_> {
                 self.way_to_end(row)
             });
             earliest.offer(fall, SegmentEnd::Change(row));
+        }
+    }
+
+    /// Ends of rails' pieces that were passed for a moment before those that were found. A long step may hold the way up
+    /// and down a piece and far beyond, so it is looked at again up to what was found, as often as that is earlier; and
+    /// from its start on, where by rounding that lies before the piece.
+    fn find_earlier_ends(&mut self, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
+        for (row, rooms) in rooms.iter().enumerate() {
+            let is_rail = matches!(self.group.rows[row].source, RowSource::Connector(..));
+            for _ in 0..MOST_ZOOMS {
+                let is_own = earliest.found.is_some_and(|(_, end)| end == SegmentEnd::Change(row));
+                if !is_rail || rooms[0].is_infinite() || !(is_own || rooms[0] < 0.0) {
+                    break;
+                }
+                let limit = earliest.limit().unwrap_or(self.group.span);
+                // What rounding makes of a place at the end of a piece is no way beyond it.
+                let margin = self.physics.mechanism.change_margin();
+                let mut room_at = |offset: f64| {
+                    self.put_row_at(row, offset);
+                    self.way_to_end(row) + margin
+                };
+                let mut values = std::array::from_fn(|index| room_at(node(index, limit)));
+                values[0] = values[0].max(0.0);
+                let fall = first_fall(&values, limit, room_at).filter(|&fall| fall < EARLIER_BY * limit);
+                if values[1] < 0.0 || fall.is_none() {
+                    break;
+                }
+                earliest.offer(fall, SegmentEnd::Change(row));
+            }
         }
     }
 

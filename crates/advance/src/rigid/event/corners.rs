@@ -4,8 +4,8 @@
 //! face into the angle between the two, on either piece n.u = 0 of its own and n.u >= 0 of the other one: what
 //! two rows that only push keep to, but that they would let the point go from both. So the point of a rail has
 //! two unilateral rows from when it comes to a corner until one of them opens, or carries no force; the other
-//! goes on as the bilateral row of its piece. Where both would open, the point is kept on the side from
-//! which it parts more slowly: the force, or the impulse, then is one that holds it back.
+//! goes on as the bilateral row of its piece. Where both would open, the point is kept on one of the sides: the force,
+//! or the impulse, then is one that holds it back.
 
 use super::cause::EventWork;
 use super::events::Booking;
@@ -14,7 +14,9 @@ use super::region::Region;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::step::rows::RowSource;
 use crate::rigid::system::RigidSystem;
-use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
+use glam::DVec2;
+use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector, RailHint};
+use std::sync::Arc;
 
 /// A corner of a rail in which its point is, in a region.
 #[derive(Clone, Copy, Debug)]
@@ -55,19 +57,9 @@ impl RigidSystem {
             before.min(after) > rest && before.max(after) > fast
         };
         let Some(corner) = corners(region).find(is_driven_out) else { return false };
-        self.take_slower(region, corner, opening(corner));
+        let opening = opening(corner);
+        self.take_slower(region, corner, opening);
         true
-    }
-
-    /// Takes the points that leave their corners along the sides that do not open.
-    pub(super) fn leave_corners(&mut self, region: &mut Region) {
-        let fast = self.settings.tolerances.velocity_tol;
-        let leaves = |region: &Region, corner: &Corner| corner.rates(region).iter().any(|&rate| rate > fast);
-        let leaving = |region: &Region| corners(region).find(|corner| leaves(region, corner));
-        while let Some(corner) = leaving(region) {
-            let rates = corner.rates(region);
-            self.take_slower(region, corner, rates);
-        }
     }
 
     /// Takes a point that two forces do not hold in its corner along one of the sides, and stops what of its
@@ -77,9 +69,9 @@ impl RigidSystem {
         let sides = |id: ConnectorId| {
             [0, 1].map(|side| held.iter().any(|(_, row)| row.source == RowSource::Connector(id, side)))
         };
-        let Some(corner) = corners(&work.region).find(|corner| sides(corner.id) != [true; 2]) else {
-            return Ok(false);
-        };
+        let is_loose =
+            |corner: &Corner| sides(corner.id) != [true; 2] && !self.is_left_alone(&work.region, *corner);
+        let Some(corner) = corners(&work.region).find(is_loose) else { return Ok(false) };
         if let Some(side) = sides(corner.id).iter().position(|is_held| *is_held) {
             self.take_side(&mut work.region, corner, side);
         } else {
@@ -90,6 +82,27 @@ impl RigidSystem {
         }
         self.stop_across(work, corner.id)?;
         Ok(true)
+    }
+
+    /// True for a side from which the point of a rail parts slowly: what presses it into the corner keeps it there,
+    /// for rounding of places makes such speeds again and again.
+    pub(crate) fn stays_in_corner(&self, record: &Collision) -> bool {
+        let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
+        is_slow && record.connector().is_some_and(|id| self.connector_states[id.index()].corner.is_some())
+    }
+
+    /// True for a point at rest in a corner on whose body nothing acts: it stays there until something does.
+    fn is_left_alone(&self, region: &Region, corner: Corner) -> bool {
+        let [body, _] = self.connector(corner.id).bodies();
+        let record = &region.records[corner.records[0]];
+        let kinematics = &record.motion.kinematics;
+        let is_still = corner.rates(region) == [0.0; 2] && kinematics.gamma == 0.0;
+        let only_rows = region
+            .records
+            .iter()
+            .all(|other| !other.involves_body(body) || other.connector() == Some(corner.id));
+        let flyer = self.flyer(body);
+        is_still && only_rows && self.laws_of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
     }
 
     /// Stops what of the velocity of a point that leaves a corner is across its side: too slow for an impact.
@@ -107,9 +120,15 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// The point of a rail leaves its corner along the side from which it parts more slowly; if it does from
-    /// both alike, on along the path.
-    fn take_slower(&mut self, region: &mut Region, corner: Corner, [before, after]: [f64; 2]) {
+    /// The point of a rail leaves its corner along the side from which it parts more slowly, as easily as each is
+    /// moved; if it does from both alike, on along the path. Held there, its row opens the other one: with free
+    /// rates f and the matrix A of both, by f_j - (A_ij/A_ii) f_i, which is positive for the lesser f_i/sqrt(A_ii).
+    fn take_slower(&mut self, region: &mut Region, corner: Corner, opening: [f64; 2]) {
+        let [before, after] = [0, 1].map(|side: usize| {
+            let row = self.row_of(&region.records[corner.records[side]]);
+            let ease: f64 = row.jacobian.iter().zip(&row.response).map(|(j, response)| j * response).sum();
+            opening[side] / ease.sqrt()
+        });
         self.take_side(region, corner, usize::from(after <= before));
     }
 
@@ -123,8 +142,23 @@ impl RigidSystem {
     /// The point of a rail goes on along a side of the corner in which it is, if it is in one.
     pub(super) fn go_along(&mut self, id: ConnectorId, side: usize) {
         let state = &mut self.connector_states[id.index()];
-        if let Some(sides) = state.corner.take() {
-            state.hint = Some(sides[side].facing_left());
+        let Some(sides) = state.corner.take() else { return };
+        state.hint = Some(sides[side].facing_left());
+        self.lead_stops(id, &sides[side]);
+    }
+
+    /// Stops of a rail look for its point where it goes on: beyond a sharp corner the piece before it seems as near.
+    fn lead_stops(&mut self, id: ConnectorId, hint: &RailHint) {
+        let ConnectorKind::Rail { a, path } = self.connector(id).kind.clone() else { return };
+        let hint = path.hint_near(self.point_on_rail(id, self.now), Some(hint));
+        for index in 0..self.connectors_of.of(a.body).len() {
+            let stop = self.connectors_of.of(a.body)[index];
+            let ConnectorKind::RailStop { a: end, path: ends, .. } = &self.connector(stop).kind else {
+                continue;
+            };
+            if *end == a && Arc::ptr_eq(ends, &path) {
+                self.connector_states[stop.index()].hint = Some(hint);
+            }
         }
     }
 }

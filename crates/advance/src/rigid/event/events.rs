@@ -310,7 +310,6 @@ impl RigidSystem {
         for &body in &work.region.bodies {
             self.flyers[body.index()].unwind();
         }
-        self.leave_corners(&mut work.region);
         self.note_rails(&work.region, self.now);
         work.region.is_hasty = self.take_haste(&work.region);
         self.settle_and_still(work)?;

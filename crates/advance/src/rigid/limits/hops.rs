@@ -106,7 +106,10 @@ impl RigidSystem {
         self.conclude_impact(region, impact, stop, self.now);
         self.remeasure(region, self.now);
         self.book_impact(stop, Booking::Capture);
-        settling.let_leave(|index| self.opens(&region.records[index]));
+        settling.let_leave(|index| {
+            let record = &region.records[index];
+            self.opens(record) && !self.stays_in_corner(record)
+        });
         true
     }
 

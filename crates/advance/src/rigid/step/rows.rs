@@ -326,11 +326,12 @@ fn is_full(feature: &Feature) -> bool {
     matches!(feature, Feature::Round(round) if round.range == DirectionRange::Full)
 }
 
-/// Distance [m] along a rail to the nearer end of the piece on which a point is.
+/// Distance [m] along a rail to the nearer end of the piece on which a point is: of those to both ends their product
+/// over their sum, which is smooth where they are alike, and of steady acceleration a quartic.
 fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
     let place = path.nearest(point, hint);
     let rooms = path.knots().iter().flat_map(|knot| knot_rooms(path, knot, &place));
-    rooms.flatten().min_by(f64::total_cmp)
+    rooms.flatten().reduce(|room, other| room * other / (room + other))
 }
 
 /// Distance [m] along a rail to a joint at the end and to one at the start of the piece on which a place is,
