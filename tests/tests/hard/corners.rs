@@ -258,3 +258,27 @@ fn what_is_struck_out_of_a_corner_goes_along_the_side_that_opens_the_other_which
         within("struck on an arm: energy [J]", world.energy().total() - energy, 1e-9);
     }
 }
+
+#[test]
+fn a_stop_holds_beyond_a_corner_that_turns_by_more_than_a_right_angle() {
+    let (sides, room) = ([1.0, 0.82], 0.05);
+    let mut shop = Workshop::new(1e-8);
+    let start = at_rest(-0.6 * f64::cos(sides[0]), 0.6 * f64::sin(sides[0]) - ARM);
+    let body = shop.body("body", disc(RADIUS), 1.0, start);
+    let a = Anchor { body, point: DVec2::new(0.0, ARM) };
+    let path = valley(sides);
+    shop.connect(ConnectorKind::Rail { a, path: path.clone() }, 0.0);
+    shop.connect(ConnectorKind::RailStop { a, path, at: 2.0 + room, upper: true }, 0.0);
+    let mut world = shop.build();
+    let (mut farthest, mut blows) = (0.0f64, 0);
+    for look in 1..=2000 {
+        blows += impacts(&mut world, 1e-3 * f64::from(look));
+        let state = world.state(body);
+        let point = state.position + ARM * DVec2::new(-state.angle.sin(), state.angle.cos());
+        if point.x > 0.0 {
+            farthest = farthest.max(point.length());
+        }
+    }
+    assert!(blows > 1 && farthest > 0.5 * room, "it comes to the stop: {farthest} m, {blows} impacts");
+    within("a stop beyond a sharp corner: run over by [m]", (farthest - room).max(0.0), 1e-9);
+}

@@ -322,6 +322,12 @@ impl RailHint {
         Self { stays: true, ..self }
     }
 
+    /// The hint to look near the place, on whatever piece.
+    #[must_use]
+    pub fn moving_on(self) -> Self {
+        Self { stays: false, ..self }
+    }
+
     /// The same place, where the row of a rail faces left again, as everywhere but in a corner.
     #[must_use]
     pub fn facing_left(self) -> Self {

@@ -15,6 +15,7 @@ use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Detector, Flight, Motion,
     MotionBounds, Moving, RailHint, Rope, RopeSearch, rope_contact,
 };
+use std::sync::Arc;
 
 /// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
 const LOOKS: u32 = 8;
@@ -166,10 +167,32 @@ impl RigidSystem {
                 let point = self.point_on_rail(id, time);
                 let hint = path.hint_near(point, state.hint.as_ref());
                 // A stop lies on whatever piece: it must see its point pass the joints before it.
-                let hint = if is_stop(self.connector(id)) { hint } else { hint.staying() };
-                self.connector_states[id.index()].hint = Some(hint);
+                if !is_stop(self.connector(id)) {
+                    self.set_hint(id, hint.staying());
+                } else if !self.is_led(id) {
+                    self.connector_states[id.index()].hint = Some(hint);
+                }
             }
         }
+    }
+
+    /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
+    /// seems as near to them.
+    pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
+        self.connector_states[id.index()].hint = Some(hint);
+        for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
+            let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
+            if is_stop_of(self.connector(stop), self.connector(id)) {
+                self.connector_states[stop.index()].hint = Some(hint.moving_on());
+            }
+        }
+    }
+
+    /// True for a stop whose rail is there, too.
+    fn is_led(&self, id: ConnectorId) -> bool {
+        let stop = self.connector(id);
+        let beside = self.connectors_of.of(stop.bodies()[0]);
+        beside.iter().any(|&rail| is_stop_of(stop, self.connector(rail)))
     }
 
     /// Where [m] the point of a rail or a stop is at a time.
@@ -346,9 +369,19 @@ impl RigidSystem {
     }
 }
 
-/// True for the end of a rail.
+/// True for the end of some rail.
 pub(crate) fn is_stop(connector: &Connector) -> bool {
     matches!(connector.kind, ConnectorKind::RailStop { .. })
+}
+
+/// True for the end of a rail.
+fn is_stop_of(stop: &Connector, rail: &Connector) -> bool {
+    match (&stop.kind, &rail.kind) {
+        (ConnectorKind::RailStop { a: end, path: ends, .. }, ConnectorKind::Rail { a, path }) => {
+            end == a && (Arc::ptr_eq(ends, path) || ends == path)
+        }
+        _ => false,
+    }
 }
 
 /// About the time [s] in which the ends of a rope, as they move now, go as far as it is long.

@@ -15,8 +15,7 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::step::rows::RowSource;
 use crate::rigid::system::RigidSystem;
 use glam::DVec2;
-use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector, RailHint};
-use std::sync::Arc;
+use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
 
 /// A corner of a rail in which its point is, in a region.
 #[derive(Clone, Copy, Debug)]
@@ -143,23 +142,7 @@ impl RigidSystem {
     pub(super) fn go_along(&mut self, id: ConnectorId, side: usize) {
         let state = &mut self.connector_states[id.index()];
         let Some(sides) = state.corner.take() else { return };
-        state.hint = Some(sides[side].facing_left());
-        self.lead_stops(id, &sides[side]);
-    }
-
-    /// Stops of a rail look for its point where it goes on: beyond a sharp corner the piece before it seems as near.
-    fn lead_stops(&mut self, id: ConnectorId, hint: &RailHint) {
-        let ConnectorKind::Rail { a, path } = self.connector(id).kind.clone() else { return };
-        let hint = path.hint_near(self.point_on_rail(id, self.now), Some(hint));
-        for index in 0..self.connectors_of.of(a.body).len() {
-            let stop = self.connectors_of.of(a.body)[index];
-            let ConnectorKind::RailStop { a: end, path: ends, .. } = &self.connector(stop).kind else {
-                continue;
-            };
-            if *end == a && Arc::ptr_eq(ends, &path) {
-                self.connector_states[stop.index()].hint = Some(hint);
-            }
-        }
+        self.set_hint(id, sides[side].facing_left());
     }
 }
 

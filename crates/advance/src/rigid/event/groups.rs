@@ -480,7 +480,7 @@ impl RigidSystem {
             if let (RowSource::Connector(id, _), Some(hint)) = (row.source, row.hint)
                 && !self.mechanism().is_in_corner(row)
             {
-                self.connector_states[id.index()].hint = Some(hint);
+                self.set_hint(id, hint);
             }
         }
     }
