@@ -343,8 +343,8 @@ impl Dynamics<'_> {
                     break;
                 }
                 let limit = earliest.limit().unwrap_or(self.group.span);
-                // What rounding makes of a place at the end of a piece is no way beyond it.
-                let margin = self.physics.mechanism.change_margin();
+                // What rounding makes of a place at the end of a piece is no way beyond it, nor is where it sets out from.
+                let margin = 2.0 * self.physics.mechanism.change_margin().max(-rooms[0]);
                 let mut room_at = |offset: f64| {
                     self.put_row_at(row, offset);
                     self.way_to_end(row) + margin
