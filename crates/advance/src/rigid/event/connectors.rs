@@ -337,9 +337,11 @@ impl RigidSystem {
         let hint = self.connector_states[id.index()].hint;
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
-        // What fires again without time going by lies beyond by more than it sets out by: it fires once it has sunk on.
+        // A rail's end that fires again without time going by lies beyond by more than its point sets out by: it
+        // fires once that has sunk on.
         let repeats = f64::from(self.connector_states[id.index()].repeats_at(self.now));
-        let slack = if repeats > 0.0 { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
+        let lies_beyond = is_stop(connector) && repeats > 0.0;
+        let slack = if lies_beyond { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
         Stop { id, hint, slack: slack.max(self.slack_of(&sample)) }
     }
 

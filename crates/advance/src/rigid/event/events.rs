@@ -1,6 +1,7 @@
 //! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
 
 use super::cause::{Cause, EventWork};
+use super::connectors::is_stop;
 use super::impacts::{ImpactReport, Manner};
 use super::region::{Region, Touch, sorted};
 use crate::rigid::error::AdvanceError;
@@ -136,7 +137,9 @@ impl RigidSystem {
             }
             SegmentEnd::Stop(id) => {
                 work.region.cause = Cause::Taut(id);
-                self.connector_states[id.index()].note_taut(self.now);
+                if is_stop(self.connector(id)) {
+                    self.connector_states[id.index()].note_taut(self.now);
+                }
                 self.handle_impact(work)
             }
             SegmentEnd::Switch => self.handle_change(work),
