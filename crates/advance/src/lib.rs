@@ -7,6 +7,36 @@
 //! an [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as
 //! its caller wants. Outputs are read from segments and change nothing.
 //!
+//! ```
+//! use halfgap_advance::{EventDriven, EventQueue, SourceId, Time, advance_until};
+//! use std::convert::Infallible;
+//!
+//! /// A clock that strikes each second.
+//! struct Clock(EventQueue);
+//!
+//! impl EventDriven for Clock {
+//!     type Report = Time;
+//!     type Error = Infallible;
+//!
+//!     fn next_event(&self) -> Option<Time> {
+//!         self.0.first().map(|event| event.time)
+//!     }
+//!
+//!     fn handle_next(&mut self) -> Result<Option<Time>, Infallible> {
+//!         let Some(event) = self.0.first() else { return Ok(None) };
+//!         self.0.set(event.source, event.time.plus(1.0));
+//!         Ok(Some(event.time))
+//!     }
+//! }
+//!
+//! let mut clock = Clock(EventQueue::new());
+//! clock.0.set(SourceId(0), Time::from_seconds(1.0));
+//! let mut strikes = 0;
+//! advance_until(&mut clock, Time::from_seconds(12.5), |_, _| strikes += 1)?;
+//! assert_eq!(strikes, 12);
+//! # Ok::<(), Infallible>(())
+//! ```
+//!
 //! # Code map
 //!
 //! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; [`ode`]

@@ -2,6 +2,30 @@
 //!
 //! *Invariant*: this crate knows bodies, motions and thresholds, but no forces and no solvers.
 //!
+//! ```
+//! use glam::DVec2;
+//! use halfgap_collision::geometry::Shape;
+//! use halfgap_collision::{
+//!     BodyState, Flight, MovingShape, Search, SearchSettings, Tolerances, first_contact,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A disc falls onto a fixed one right below it, half a metre away.
+//! let disc = Shape::disc(0.5)?;
+//! let start = BodyState { position: DVec2::new(0.0, 1.5), ..BodyState::default() };
+//! let (fall, rest) = (Flight::new(start, DVec2::new(0.0, -9.81), 0.0, 0.0), Flight::fixed(DVec2::ZERO, 0.0));
+//! let [falling, fixed] = [&fall, &rest].map(|motion| MovingShape { shape: &disc, motion, offset: 0.0 });
+//! let tolerances = Tolerances { target_gap: 1e-9, accuracy: 6e-10, velocity_tol: 1e-9 };
+//! let Search::Contact(contact) =
+//!     first_contact(&falling, &fixed, 5.0, &tolerances, &SearchSettings::default())
+//! else {
+//!     panic!("they meet");
+//! };
+//! assert!((contact.time - (2.0 * 0.5f64 / 9.81).sqrt()).abs() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Conventions
 //!
 //! SI units, radians, counter-clockwise positive. Every contact is a gap between a *primary* body and a *normal* body;

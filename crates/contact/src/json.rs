@@ -23,6 +23,9 @@ pub enum FileError {
     /// A field is missing.
     #[error("field `{0}` is missing")]
     Missing(&'static str),
+    /// Two fields that exclude each other.
+    #[error("the fields `A` and `J` exclude each other: which of them is the problem?")]
+    Both,
     /// The numbers are wrong.
     #[error("{0}")]
     Problem(#[from] ProblemError),
@@ -168,7 +171,8 @@ impl ContactFile {
     /// [`FileError`] names the field or row that is wrong.
     pub fn problem(&self) -> Result<Problem, FileError> {
         let mut problem = match (&self.a, &self.j) {
-            (_, Some(rows)) => self.problem_of_rows(rows)?,
+            (Some(_), Some(_)) => return Err(FileError::Both),
+            (None, Some(rows)) => self.problem_of_rows(rows)?,
             (Some(matrix), None) => self.problem_of_matrix(matrix)?,
             (None, None) => return Err(FileError::Missing("A or J")),
         };

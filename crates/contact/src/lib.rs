@@ -4,6 +4,24 @@
 //! and a = 0 on bilateral ones (connectors). [`Problem`] holds the rows, [`Solution`] the forces with the evidence that
 //! they are right, [`Auto`] chooses a method; each method is also a [`Solver`] of its own, and so can yours be.
 //!
+//! ```
+//! use halfgap_contact::{Auto, InverseInertia, Problem, Row, Settings, Solution, Solver};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A box of 2 kg on a support to the left of its centre of mass and on another, twice as far, to the right.
+//! let mut problem = Problem::new();
+//! let block = problem.add_body(InverseInertia { inverse_mass: 0.5, inverse_moment: 3.0 })?;
+//! for arm in [-0.25, 0.5] {
+//!     problem.add_row(&Row::new(block, [0.0, 1.0, arm], -9.81))?;
+//! }
+//! let mut solution = Solution::new();
+//! Auto::new(Settings::default())?.solve(&problem, &mut solution)?;
+//! assert!((solution.force[0] - 13.08).abs() < 1e-12 && (solution.force[1] - 6.54).abs() < 1e-12);
+//! assert!(solution.residuals.natural < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the
 //! original data before it is returned; every iteration has a cap; the same input gives a new solver the same
 //! bits, and one that has solved other problems before the same answer but for rounding; a warm solve of a

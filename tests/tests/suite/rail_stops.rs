@@ -1,5 +1,6 @@
 //! Stops of rails, whatever lies between them and their point.
 
+use halfgap::geometry::DVec2;
 use halfgap::scene::{Scene, SceneError, SceneFormat};
 use halfgap::{Event, World};
 use halfgap_tests::world_of;
@@ -278,5 +279,94 @@ rope = {{ {point}, b = {{ body = "bob", point = [0.0, 0.0] }}, length = 1.018715
             "{integrator}, {stabilization}: at {} s",
             world.time()
         );
+    }
+}
+
+/// A bead on a rail of two lines, from (0, 0) to (1, 0) and on to an end, half a metre before or after the corner.
+fn bead_before_corner(end: [f64; 2], comes_forward: bool, stop: &str, pull: f64) -> World {
+    let side = DVec2::from(end) - DVec2::X;
+    let away = if comes_forward { -DVec2::X } else { side.normalize() };
+    let (place, velocity, pull) = (DVec2::X + 0.5 * away, -away, -pull * away);
+    let rail = format!(
+        "a = {{ body = \"bead\", point = [0.0, 0.0] }}, path = {{ start = [0.0, 0.0], edges = [{{ line = [1.0, 0.0] }}, \
+         {{ line = [{:?}, {:?}] }}] }}",
+        end[0], end[1]
+    );
+    world_of(&format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 10.0 }}\n\
+         force = [{{ gravity = {{ acceleration = [{:?}, {:?}] }} }}]\n\n\
+         [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+         position = [{:?}, {:?}]\nvelocity = [{:?}, {:?}]\n\n\
+         [[connector]]\nrail = {{ {rail} }}\n\n[[connector]]\nrail_stop = {{ {rail}, {stop} }}\n",
+        pull.x, pull.y, place.x, place.y, velocity.x, velocity.y
+    ))
+}
+
+/// Ends of the second line, which turns by 10, 45, -45, 90 and 135 degrees.
+const ENDS: [[f64; 2]; 5] = [[2.0, 0.17], [2.0, 1.0], [2.0, -1.0], [1.0, 1.0], [0.2, 0.8]];
+
+#[test]
+fn what_bounces_off_a_stop_in_a_corner_does_not_turn() {
+    for end in ENDS {
+        for (upper, off) in [(true, 0.0), (false, 0.0), (true, 1e-12), (false, -1e-12)] {
+            let stop = format!("at = {:?}, upper = {upper}, elasticity = 0.5", 1.0 + off);
+            let mut world = bead_before_corner(end, upper, &stop, 0.0);
+            let bead = world.find("bead").expect("the bead");
+            let before = world.state(bead);
+            world.advance_to(1.5, &mut |_| ()).expect("it goes on");
+            let (state, expected) = (world.state(bead), -0.5 * before.velocity);
+            assert!(state.velocity.distance(expected) < 1e-9, "{end:?}, {stop}: {state:?}");
+            assert!(state.position.distance(before.position) < 1e-9, "{end:?}, {stop}: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn what_bounces_ever_lower_comes_to_rest_at_a_stop_near_a_corner() {
+    for end in ENDS {
+        for (upper, at) in [(true, 0.99_f64), (true, 1.0), (false, 1.01), (false, 1.000001), (false, 1.0)] {
+            let stop = format!("at = {at:?}, upper = {upper}, elasticity = 0.5");
+            let mut world = bead_before_corner(end, upper, &stop, 3.0);
+            let bead = world.find("bead").expect("the bead");
+            let away = (world.state(bead).position - DVec2::X).normalize();
+            world.advance_to(5.0, &mut |_| ()).expect("it goes on");
+            let (state, expected) = (world.state(bead), DVec2::X + (at - 1.0).abs() * away);
+            assert!(state.position.distance(expected) < 1e-9, "{end:?}, {stop}: {state:?}");
+            assert!(state.velocity.length() < 1e-9, "{end:?}, {stop}: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn a_stop_whose_rail_is_not_there_is_met_round_a_bend_of_its_path_and_somebody_is_told() {
+    // A spring leads the bead about along the path, not on it.
+    let world = |at: f64| {
+        world_of(&format!(
+            r#"
+format = "halfgap-scene-1"
+title = "A stop alone"
+run = {{ duration = 4.0, tolerance = 1e-9 }}
+force = [{{ spring = {{ a = {{ body = "world", point = [1.0, 1.0] }}, b = {{ body = "bead", point = [0.0, 0.0] }}, rest_length = 0.6, stiffness = 2.5 }} }}]
+body = [{{ name = "bead", shape = {{ disc = {{ radius = 0.1 }} }}, mass = 1.0, position = [0.3, 0.02], velocity = [1.0, 0.0] }}]
+
+[[connector]]
+rail_stop = {{ a = {{ body = "bead", point = [0.0, 0.0] }}, at = {at:?}, upper = true, path = {{ start = [0.0, 0.0], edges = [
+    {{ line = [1.0, 0.0] }}, {{ arc = {{ to = [2.0, 1.0], center = [1.0, 1.0] }} }}, {{ line = [2.0, 3.0] }}] }} }}
+"#
+        ))
+    };
+    // By an adaptive integration (order 5, 1e-11) with the arc length of the nearest place as event.
+    for (at, expected) in [(1.3, 0.77576524), (1.8, 1.04249456), (2.2, 1.31344453), (3.0, 2.28725136)] {
+        let mut world = world(at);
+        let [warning] = world.warnings() else { panic!("{:?}", world.warnings()) };
+        assert!(warning.contains("ends no rail"), "{warning}");
+        let mut hits = Vec::new();
+        let mut note = |event: &Event| {
+            if let Event::Impact(impact) = event {
+                hits.push(impact.time);
+            }
+        };
+        world.advance_to(expected + 0.05, &mut note).expect("it goes on");
+        assert!(matches!(hits[..], [time] if (time - expected).abs() < 2e-8), "{hits:?}, not {expected}");
     }
 }

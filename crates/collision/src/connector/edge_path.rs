@@ -178,7 +178,8 @@ impl EdgePath {
         self.pieces[piece].foot(piece, point).gap.abs()
     }
 
-    /// Follows the path from the hint to the first piece on which the point has a foot, or to a corner between two.
+    /// Follows the path from the hint to the first piece on which the point has a foot, or to a corner between two: a
+    /// point beyond both has its place there, although either piece goes on straight.
     fn walk(&self, point: DVec2, hint: &RailHint) -> (usize, f64) {
         let mut piece = self.hinted_piece(hint);
         let mut along = self.pieces[piece].along(point, hint.parameter);
@@ -186,7 +187,11 @@ impl EdgePath {
         for _ in 0..=self.pieces.len() {
             let [first, last] = self.pieces[piece].range;
             let step = i32::from(along > last) - i32::from(along < first);
-            if step == 0 || step == -last_step {
+            if step == 0 {
+                break;
+            }
+            if step == -last_step {
+                along = along.clamp(first, last);
                 break;
             }
             piece = self.neighbor(piece, step > 0);

@@ -226,6 +226,23 @@ impl Connector {
         !matches!(self.kind, ConnectorKind::Rope { .. } | ConnectorKind::RailStop { .. })
     }
 
+    /// True for the end of some rail.
+    #[must_use]
+    pub fn is_stop(&self) -> bool {
+        matches!(self.kind, ConnectorKind::RailStop { .. })
+    }
+
+    /// True for the end of a given rail: of the same point, and on the same path.
+    #[must_use]
+    pub fn is_stop_of(&self, rail: &Self) -> bool {
+        match (&self.kind, &rail.kind) {
+            (ConnectorKind::RailStop { a: end, path: ends, .. }, ConnectorKind::Rail { a, path }) => {
+                end == a && (Arc::ptr_eq(ends, path) || ends == path)
+            }
+            _ => false,
+        }
+    }
+
     /// The rail's path, if it has one.
     #[must_use]
     pub fn path(&self) -> Option<&Arc<RailPath>> {

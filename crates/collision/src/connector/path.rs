@@ -192,6 +192,18 @@ impl RailPath {
         corners.find(|knot| is_near(knot)).map(|knot| self.corner_sides(knot))
     }
 
+    /// True if the piece of a hint ends at a corner, forward or backward, that lies within a distance [m] of an arc
+    /// length [m].
+    #[must_use]
+    pub fn ends_in_corner(&self, hint: &RailHint, forward: bool, arc_length: f64, within: f64) -> bool {
+        let is_near = |knot: &RailKnot| {
+            let way = (knot.arc_length - arc_length).abs();
+            way.min(if self.is_closed() { (self.length() - way).abs() } else { way }) <= within
+        };
+        let ends = |knot: &RailKnot| hint.piece == if forward { knot.before } else { knot.after };
+        self.knots().iter().any(|knot| knot.turn != 0.0 && ends(knot) && is_near(knot))
+    }
+
     /// The place nearest to a point [m]: of the whole path without a hint, else the first found along the path from the
     /// hint, or on the hint's piece if it stays there. Beyond an open end, that on the straight continuation.
     #[must_use]

@@ -145,7 +145,7 @@ impl WorldBuilder {
         Ok(())
     }
 
-    fn connector_name(&self, index: usize) -> ConnectorName {
+    pub(super) fn connector_name(&self, index: usize) -> ConnectorName {
         let name = |body: BodyId| self.bodies.get(body.index()).map(|body| body.name.as_str());
         ConnectorName::new(index, &self.connectors[index].connector, name)
     }

@@ -177,7 +177,8 @@ impl WorldBuilder {
         self.check_resolution(&scales)?;
         let tolerances = tolerances(&self.settings, &scales);
         self.check_accuracy(&tolerances)?;
-        let warnings = [self.gap_warning(&scales), self.step_warning(), self.fixed_warning()];
+        let warnings =
+            [self.gap_warning(&scales), self.step_warning(), self.fixed_warning(), self.stop_warning()];
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
@@ -285,6 +286,17 @@ impl WorldBuilder {
         let moves = |state: &BodyState| state.velocity != DVec2::ZERO || state.angular_velocity != 0.0;
         let body = self.bodies.iter().find(|body| body.inertia.is_none() && moves(&body.state))?;
         Some(format!("body \"{}\" is fixed: its velocity is left out of account", body.name))
+    }
+
+    /// What to say of a stop without the rail that it ends.
+    fn stop_warning(&self) -> Option<String> {
+        let connectors = || self.connectors.iter().map(|spec| &spec.connector);
+        let is_lone = |stop: &Connector| stop.is_stop() && !connectors().any(|rail| stop.is_stop_of(rail));
+        let index = connectors().position(is_lone)?;
+        let name = self.connector_name(index);
+        Some(format!(
+            "{name} ends no rail: none has the same point and path, so that nothing keeps the point on it"
+        ))
     }
 
     /// Stops what moves at speeds whose squares are no numbers any more.

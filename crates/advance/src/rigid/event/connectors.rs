@@ -15,7 +15,6 @@ use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Detector, Flight, Motion,
     MotionBounds, Moving, RailHint, Rope, RopeSearch, rope_contact,
 };
-use std::sync::Arc;
 
 /// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
 const LOOKS: u32 = 8;
@@ -167,7 +166,7 @@ impl RigidSystem {
                 let point = self.point_on_rail(id, time);
                 let hint = path.hint_near(point, state.hint.as_ref());
                 // A stop lies on whatever piece: it must see its point pass the joints before it.
-                if !is_stop(self.connector(id)) {
+                if !self.connector(id).is_stop() {
                     self.set_hint(id, hint.staying());
                 } else if !self.is_led(id) {
                     self.connector_states[id.index()].hint = Some(hint);
@@ -182,17 +181,17 @@ impl RigidSystem {
         self.connector_states[id.index()].hint = Some(hint);
         for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
             let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
-            if is_stop_of(self.connector(stop), self.connector(id)) {
+            if self.connector(stop).is_stop_of(self.connector(id)) {
                 self.connector_states[stop.index()].hint = Some(hint.moving_on());
             }
         }
     }
 
     /// True for a stop whose rail is there, too.
-    fn is_led(&self, id: ConnectorId) -> bool {
+    pub(super) fn is_led(&self, id: ConnectorId) -> bool {
         let stop = self.connector(id);
         let beside = self.connectors_of.of(stop.bodies()[0]);
-        beside.iter().any(|&rail| is_stop_of(stop, self.connector(rail)))
+        beside.iter().any(|&rail| stop.is_stop_of(self.connector(rail)))
     }
 
     /// Where [m] the point of a rail or a stop is at a time.
@@ -340,7 +339,7 @@ impl RigidSystem {
         // A rail's end that fires again without time going by lies beyond by more than its point sets out by: it
         // fires once that has sunk on.
         let repeats = f64::from(self.connector_states[id.index()].repeats_at(self.now));
-        let lies_beyond = is_stop(connector) && repeats > 0.0;
+        let lies_beyond = connector.is_stop() && repeats > 0.0;
         let slack = if lies_beyond { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
         Stop { id, hint, slack: slack.max(self.slack_of(&sample)) }
     }
@@ -368,21 +367,6 @@ impl RigidSystem {
             self.predict_rope(id, &rope);
         }
         false
-    }
-}
-
-/// True for the end of some rail.
-pub(crate) fn is_stop(connector: &Connector) -> bool {
-    matches!(connector.kind, ConnectorKind::RailStop { .. })
-}
-
-/// True for the end of a rail.
-fn is_stop_of(stop: &Connector, rail: &Connector) -> bool {
-    match (&stop.kind, &rail.kind) {
-        (ConnectorKind::RailStop { a: end, path: ends, .. }, ConnectorKind::Rail { a, path }) => {
-            end == a && (Arc::ptr_eq(ends, path) || ends == path)
-        }
-        _ => false,
     }
 }
 

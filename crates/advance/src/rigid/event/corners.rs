@@ -5,9 +5,10 @@
 //! two rows that only push keep to, but that they would let the point go from both. So the point of a rail has
 //! two unilateral rows from when it comes to a corner until one of them opens, or carries no force; the other
 //! goes on as the bilateral row of its piece. Where both would open, the point is kept on one of the sides: the force,
-//! or the impulse, then is one that holds it back.
+//! or the impulse, then is one that holds it back. A stop that lies in a corner is at the end of the piece along which
+//! the point comes: what bounces off it does not turn.
 
-use super::cause::EventWork;
+use super::cause::{Cause, EventWork};
 use super::events::Booking;
 use super::impacts::Manner;
 use super::region::Region;
@@ -15,7 +16,7 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::step::rows::RowSource;
 use crate::rigid::system::RigidSystem;
 use glam::DVec2;
-use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
+use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector, Tolerances};
 
 /// A corner of a rail in which its point is, in a region.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +45,47 @@ impl RigidSystem {
                 self.go_along(id, usize::from(after < before));
             }
         }
+    }
+
+    /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
+    pub(super) fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
+        if let Some(stop) = self.stop_in_corner(id) {
+            return self.meet_stop(work, stop);
+        }
+        let is_corner = self.pass_knot(id, self.now);
+        work.region.cause = if is_corner { Cause::Other } else { Cause::SmoothJoint };
+        self.handle_impact(work)
+    }
+
+    /// A rope goes taut, or a point comes to the stop of its rail.
+    pub(super) fn meet_stop(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
+        work.region.cause = Cause::Taut(id);
+        if self.connector(id).is_stop() {
+            self.connector_states[id.index()].note_taut(self.now);
+            let mut beside = self.connectors_of.of(self.connector(id).bodies()[0]).iter();
+            if let Some(&rail) = beside.find(|&&rail| self.stop_in_corner(rail) == Some(id)) {
+                self.connector_states[id.index()].hint = self.connector_states[rail.index()].hint;
+            }
+        }
+        self.handle_impact(work)
+    }
+
+    /// The stop from which the point of a rail bounces off where the piece along which it comes ends in a corner.
+    fn stop_in_corner(&self, rail: ConnectorId) -> Option<ConnectorId> {
+        let hint = self.connector_states[rail.index()].hint?;
+        let moving = self.connector(rail).bodies().map(|body| self.moving_at(body, self.now));
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        let mut beside = self.connectors_of.of(self.connector(rail).bodies()[0]).iter().copied();
+        beside.find(|&id| {
+            let stop = self.connector(id);
+            let ConnectorKind::RailStop { path, at, upper, .. } = &stop.kind else { return false };
+            if !stop.is_stop_of(self.connector(rail)) || !path.ends_in_corner(&hint, *upper, *at, accuracy) {
+                return false;
+            }
+            let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint));
+            let is_fast = sample.kinematics.rate < -velocity_tol;
+            stop.elasticity > 0.0 && is_fast && sample.gap.abs() <= accuracy
+        })
     }
 
     /// Takes a point that an impact drives out of its corner, from both sides at once, along one of them: which

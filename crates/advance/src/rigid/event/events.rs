@@ -1,7 +1,6 @@
 //! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
 
 use super::cause::{Cause, EventWork};
-use super::connectors::is_stop;
 use super::impacts::{ImpactReport, Manner};
 use super::region::{Region, Touch, sorted};
 use crate::rigid::error::AdvanceError;
@@ -135,13 +134,7 @@ impl RigidSystem {
                 work.region.cause = Cause::Fired(touch);
                 self.handle_impact(work)
             }
-            SegmentEnd::Stop(id) => {
-                work.region.cause = Cause::Taut(id);
-                if is_stop(self.connector(id)) {
-                    self.connector_states[id.index()].note_taut(self.now);
-                }
-                self.handle_impact(work)
-            }
+            SegmentEnd::Stop(id) => self.meet_stop(work, id),
             SegmentEnd::Switch => self.handle_change(work),
         }
     }
@@ -150,13 +143,6 @@ impl RigidSystem {
     fn leaves(&self, Touch { bodies, features }: Touch) -> bool {
         let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
         self.mechanism().has_left(bodies, features, [&moving[0], &moving[1]])
-    }
-
-    /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
-    fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
-        let is_corner = self.pass_knot(id, self.now);
-        work.region.cause = if is_corner { Cause::Other } else { Cause::SmoothJoint };
-        self.handle_impact(work)
     }
 
     fn extend_naturally(&mut self, leader: BodyId) -> Result<(), AdvanceError> {

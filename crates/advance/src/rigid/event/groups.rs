@@ -1,6 +1,6 @@
 //! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
 
-use super::connectors::{is_rope, is_stop};
+use super::connectors::is_rope;
 use super::members::Members;
 use super::region::{Region, Touch};
 use crate::rigid::error::AdvanceError;
@@ -201,7 +201,7 @@ impl RigidSystem {
         }
         for place in 0..count {
             let mut connectors = self.connectors_of.of(region.bodies[place]).iter();
-            self.groups.integrated[place] |= connectors.any(|&id| is_stop(self.connector(id)));
+            self.groups.integrated[place] |= connectors.any(|&id| self.connector(id).is_stop());
         }
         self.couple_touching(region, settling);
         // What is integrated is a matter of the whole class.
@@ -349,7 +349,7 @@ impl RigidSystem {
                 let source = RowSource::Connector(id, 0);
                 let is_held = group.rows.iter().any(|row| row.source == source);
                 let is_known = || group.stops.iter().any(|stop| stop.id == id);
-                if (is_stop(self.connector(id)) || self.is_idly_taut(group, id)) && !is_held && !is_known() {
+                if (self.connector(id).is_stop() || self.is_idly_taut(group, id)) && !is_held && !is_known() {
                     group.stops.push(self.stop(id));
                 }
             }
@@ -452,23 +452,23 @@ impl RigidSystem {
     fn renew_hints(&mut self, group: &mut Group) {
         let count = group.bodies.len();
         let Group { bodies, state, rows, stops, .. } = group;
-        let renew = |id: ConnectorId, hint: &mut Option<RailHint>, is_followed: bool| {
+        let found = |id: ConnectorId, hint: Option<&RailHint>| -> Option<RailHint> {
             let connector = self.connector(id);
             let (anchor, _) = connector.anchors();
-            let (Some(path), Ok(place)) = (connector.path(), bodies.binary_search(&anchor.body)) else {
-                return;
-            };
-            if is_followed && path.knots().is_empty() {
-                return;
-            }
+            let (path, place) = (connector.path()?, bodies.binary_search(&anchor.body).ok()?);
             let point = body_state(state, count, place).pose().point_to_world(anchor.point);
-            *hint = Some(path.hint_near(point, hint.as_ref()).staying());
+            Some(path.hint_near(point, hint))
         };
-        stops.iter_mut().for_each(|stop| renew(stop.id, &mut stop.hint, false));
+        for stop in stops {
+            let hint = found(stop.id, stop.hint.as_ref());
+            stop.hint = if self.is_led(stop.id) { hint.map(RailHint::staying) } else { hint };
+        }
         let mechanism = self.mechanism();
         for row in rows.iter_mut().filter(|row| !mechanism.is_in_corner(row)) {
-            if let RowSource::Connector(id, _) = row.source {
-                renew(id, &mut row.hint, true);
+            if let RowSource::Connector(id, _) = row.source
+                && self.connector(id).path().is_some_and(|path| !path.knots().is_empty())
+            {
+                row.hint = found(id, row.hint.as_ref()).map(RailHint::staying);
             }
         }
         self.note_hints(rows);

@@ -30,6 +30,8 @@ fn wrong_files_are_explained() {
     let error = |text: &str| ContactFile::parse(text).and_then(|file| file.problem()).unwrap_err();
     assert!(matches!(error(r#"{"format":"other","b":[]}"#), FileError::Format(_)));
     assert!(matches!(error(r#"{"format":"halfgap-contact-1","b":[1]}"#), FileError::Missing("A or J")));
+    let both = r#"{"format":"halfgap-contact-1","b":[1],"A":[[1]],"J":{"rows":1,"columns":1,"triplets":[]},"inverse_mass":[1]}"#;
+    assert!(matches!(error(both), FileError::Both));
     let unsymmetric = error(r#"{"format":"halfgap-contact-1","A":[[1,2],[0,1]],"b":[0,0]}"#);
     assert!(unsymmetric.to_string().starts_with("row 0: A is not symmetric"), "{unsymmetric}");
 }
