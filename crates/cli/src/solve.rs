@@ -83,6 +83,12 @@ pub(crate) fn run(args: &SolveArgs) -> Result<End, Failure> {
 fn read(args: &SolveArgs) -> Result<(ContactFile, Problem, Option<Problem>), String> {
     let text = std::fs::read_to_string(&args.problem).map_err(|error| error.to_string())?;
     let file = ContactFile::parse(&text).map_err(|error| error.to_string())?;
+    for field in ContactFile::unknown_fields(&text) {
+        eprintln!(
+            "warning: {}: there is no field `{field}`: it is left out of account",
+            args.problem.display()
+        );
+    }
     let problem = file.problem().map_err(|error| error.to_string())?;
     let next = match &file.b_next {
         Some(b) => {

@@ -9,6 +9,7 @@
 use crate::closed_rows::ClosedRows;
 use crate::error::Infeasibility;
 use crate::problem::Problem;
+use crate::twofold::Number;
 
 /// What came of a null direction.
 pub(crate) enum Reconciled {
@@ -128,10 +129,10 @@ impl Shift {
 }
 
 /// Takes the parts out of a direction that it has in orthogonal others; twice is enough (Kahan and Parlett).
-fn make_orthogonal(direction: &mut [f64], basis: &[Vec<f64>]) {
+pub(crate) fn make_orthogonal<T: Number>(direction: &mut [T], basis: &[Vec<T>]) {
     for other in basis.iter().chain(basis) {
         let overlap = dot(direction, other) / dot(other, other);
-        direction.iter_mut().zip(other).for_each(|(d, o)| *d -= overlap * o);
+        direction.iter_mut().zip(other).for_each(|(d, o)| *d = *d - overlap * *o);
     }
 }
 
@@ -160,6 +161,6 @@ fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize, size: f64
     Infeasibility { row, direction: unscaled, contradiction: size / scale, leakage }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+pub(crate) fn dot<T: Number>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::default(), |sum, (x, y)| sum + *x * *y)
 }

@@ -3,24 +3,30 @@
 //! Variables are w_i (index i), z_i (index n + i) and the artificial z_0 (index 2n), starting from w = q + M z + d z_0.
 //! Ties are broken as if q were q + (ε, ε², ..., εⁿ), which cannot tie: R. Cottle, J.-S. Pang, R. Stone, "The Linear
 //! Complementarity Problem", 1992, section 4.9. Row i of B⁻¹, which that needs, is in the columns of the nonbasic w.
+//! Entries are `f64`, or have twice as many digits.
 
-/// Part of the largest entry of a column below which an entry is no pivot.
-const PIVOT: f64 = 1e-9;
+use crate::twofold::Number;
+
+/// Roundings below which, in parts of the largest entry of a column, an entry is no pivot.
+const PIVOT: f64 = 4.5e6;
 
 /// Largest entry of a column below which all of it is rounding, in units of the scaled matrix.
 const COLUMN: f64 = 1e-3;
 
-/// Ratios within this part of each other (or of 1) tie.
-const TIE: f64 = 1e-11;
+/// Ratios within so many roundings of each other (or of 1) tie.
+const TIE: f64 = 4.5e4;
+
+/// What is left of an entry is nothing, where it is no more than so many roundings of what made it.
+const LEFT: f64 = 64.0;
 
 const NONE: u32 = u32::MAX;
 
 /// Basic variables as affine functions of the nonbasic ones.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Dictionary {
+pub(crate) struct Dictionary<T> {
     n: usize,
     /// Rows of n + 1 coefficients and the constant.
-    entries: Vec<f64>,
+    entries: Vec<T>,
     /// Variable of each row and of each column.
     basic: Vec<usize>,
     nonbasic: Vec<usize>,
@@ -28,20 +34,20 @@ pub(crate) struct Dictionary {
     column_of_w: Vec<u32>,
     /// Rows that may take any sign: they never block.
     free: Vec<bool>,
-    pivot_row: Vec<f64>,
+    pivot_row: Vec<T>,
     candidates: Vec<usize>,
 }
 
-impl Dictionary {
+impl<T: Number> Dictionary<T> {
     /// Starts from w = q + M z + d z_0, with d = 1 on unilateral and 0 on bilateral rows; M is to be filled in.
-    pub(crate) fn reset(&mut self, q: &[f64], bilateral: &[bool]) {
+    pub(crate) fn reset(&mut self, q: &[T], bilateral: &[bool]) {
         let n = q.len();
         self.n = n;
         let width = n + 2;
         self.entries.clear();
-        self.entries.resize(n * width, 0.0);
+        self.entries.resize(n * width, T::default());
         for i in 0..n {
-            self.entries[i * width + n] = f64::from(u8::from(!bilateral[i]));
+            self.entries[i * width + n] = T::from(f64::from(u8::from(!bilateral[i])));
             self.entries[i * width + n + 1] = q[i];
         }
         self.basic.clear();
@@ -54,9 +60,10 @@ impl Dictionary {
         self.free.extend_from_slice(bilateral);
     }
 
-    /// Sets the coefficient M_ij of the start.
-    pub(crate) fn set(&mut self, i: usize, j: usize, value: f64) {
-        self.entries[i * (self.n + 2) + j] = value;
+    /// Adds to the coefficient M_ij of the start.
+    pub(crate) fn add(&mut self, i: usize, j: usize, value: T) {
+        let entry = &mut self.entries[i * (self.n + 2) + j];
+        *entry = *entry + value;
     }
 
     /// The artificial variable.
@@ -69,12 +76,12 @@ impl Dictionary {
         if variable < self.n { variable + self.n } else { variable - self.n }
     }
 
-    fn at(&self, row: usize, column: usize) -> f64 {
+    fn at(&self, row: usize, column: usize) -> T {
         self.entries[row * (self.n + 2) + column]
     }
 
     /// The constant of a row: the value of its variable.
-    fn constant(&self, row: usize) -> f64 {
+    fn constant(&self, row: usize) -> T {
         self.at(row, self.n + 1)
     }
 
@@ -88,7 +95,7 @@ impl Dictionary {
     }
 
     /// Basic variables and their values.
-    pub(crate) fn basic_rows(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(crate) fn basic_rows(&self) -> impl Iterator<Item = (usize, T)> + '_ {
         self.basic.iter().enumerate().map(|(row, &variable)| (variable, self.constant(row)))
     }
 
@@ -98,10 +105,15 @@ impl Dictionary {
     }
 
     /// Makes the z of bilateral rows basic, largest pivots first, and bars their w from entering. Rows that depend on
-    /// others stay as they are.
+    /// others stay as they are. What then is left of an entry by rounding only is taken for nothing: a contact of which
+    /// connectors hold all, by which a ray would seem to go.
     pub(crate) fn eliminate_bilateral(&mut self) {
+        if !self.free.contains(&true) {
+            return;
+        }
+        let mut sizes: Vec<f64> = self.entries.iter().map(|entry| entry.abs().nearest()).collect();
         loop {
-            let mut best = (0.0, 0, 0);
+            let mut best = (T::default(), 0, 0);
             for row in (0..self.n).filter(|&row| self.free[row] && self.basic[row] < self.n) {
                 for column in 0..self.n {
                     let variable = self.nonbasic[column];
@@ -111,11 +123,50 @@ impl Dictionary {
                     }
                 }
             }
-            if best.0 <= PIVOT {
-                return;
+            let (size, row, column) = best;
+            if size <= T::from(PIVOT * T::ROUNDING) {
+                break;
             }
-            self.pivot(best.1, best.2);
+            self.add_sizes(&mut sizes, row, column);
+            self.pivot(row, column);
         }
+        for (entry, size) in self.entries.iter_mut().zip(&sizes) {
+            if entry.abs().nearest() <= LEFT * T::ROUNDING * size {
+                *entry = T::default();
+            }
+        }
+    }
+
+    /// The directions in which bilateral rows that depend on others cancel these, if they depend on no more: combinations of
+    /// the w that are constant.
+    pub(crate) fn null_directions(&self) -> Vec<Vec<T>> {
+        let dependent = (0..self.n).filter(|&row| self.free[row] && self.basic[row] < self.n);
+        let direction = |row: usize| {
+            let mut direction = vec![T::default(); self.n];
+            direction[self.basic[row]] = T::from(1.0);
+            for (column, &variable) in self.nonbasic.iter().enumerate().filter(|(_, v)| **v < self.n) {
+                direction[variable] = -self.at(row, column);
+            }
+            direction
+        };
+        dependent.map(direction).collect()
+    }
+
+    /// Adds to the sizes of the terms that entries are made of those which a pivot adds.
+    fn add_sizes(&self, sizes: &mut [f64], row: usize, column: usize) {
+        let width = self.n + 2;
+        let pivot = self.at(row, column).abs().nearest();
+        let mut pivot_row: Vec<f64> =
+            sizes[row * width..(row + 1) * width].iter().map(|v| v / pivot).collect();
+        pivot_row[column] = 1.0 / pivot;
+        for (i, sizes) in sizes.chunks_exact_mut(width).enumerate().filter(|(i, _)| *i != row) {
+            let factor = self.at(i, column).abs().nearest();
+            if factor > 0.0 {
+                sizes[column] = 0.0;
+                sizes.iter_mut().zip(&pivot_row).for_each(|(out, p)| *out += factor * p);
+            }
+        }
+        sizes[row * width..(row + 1) * width].copy_from_slice(&pivot_row);
     }
 
     /// The row that becomes infeasible first when the artificial variable decreases from far: the most negative
@@ -123,8 +174,7 @@ impl Dictionary {
     pub(crate) fn most_negative(&mut self) -> Option<usize> {
         self.candidates.clear();
         self.candidates.extend((0..self.n).filter(|&row| !self.free[row]));
-        let least = self.candidates.iter().fold(0.0, |m: f64, &row| m.min(self.constant(row)));
-        if least >= 0.0 {
+        if self.candidates.iter().all(|&row| self.constant(row) >= T::default()) {
             return None;
         }
         let column = self.n;
@@ -133,8 +183,9 @@ impl Dictionary {
 
     /// The row that blocks the entering column first. `None`: nothing does.
     pub(crate) fn blocking(&mut self, column: usize) -> Option<usize> {
-        let largest = (0..self.n).fold(0.0, |m: f64, row| m.max(self.at(row, column).abs()));
-        let least = PIVOT * largest.max(COLUMN);
+        let sizes = (0..self.n).map(|row| self.at(row, column).abs());
+        let largest = sizes.fold(T::from(COLUMN), larger);
+        let least = T::from(PIVOT * T::ROUNDING) * largest;
         self.candidates.clear();
         let blocks = |row: &usize| !self.free[*row] && self.at(*row, column) < -least;
         let rows = (0..self.n).filter(blocks).collect::<Vec<_>>();
@@ -153,8 +204,9 @@ impl Dictionary {
                 };
                 perturbed / self.at(row, column).abs()
             };
-            let least = self.candidates.iter().fold(f64::INFINITY, |m, &row| m.min(ratio(row)));
-            let limit = least + TIE * (1.0 + least.abs());
+            let ratios = self.candidates.iter().map(|&row| ratio(row));
+            let least = ratios.reduce(|p, q| if q < p { q } else { p })?;
+            let limit = least + T::from(TIE * T::ROUNDING) * (T::from(1.0) + least.abs());
             let kept: Vec<usize> =
                 self.candidates.iter().copied().filter(|&row| ratio(row) <= limit).collect();
             self.candidates = kept;
@@ -175,13 +227,13 @@ impl Dictionary {
 
     fn largest_pivot(&self, column: usize) -> Option<usize> {
         let size = |row: usize| self.at(row, column).abs();
-        self.candidates.iter().copied().max_by(|&a, &b| size(a).total_cmp(&size(b)))
+        self.candidates.iter().copied().reduce(|p, q| if size(q) >= size(p) { q } else { p })
     }
 
     /// Entry of B⁻¹ in a row and the column of w: the coefficient of its power of ε.
-    fn perturbation(&self, row: usize, w: usize) -> f64 {
+    fn perturbation(&self, row: usize, w: usize) -> T {
         match self.column_of_w[w] {
-            NONE => f64::from(u8::from(self.basic[row] == w)),
+            NONE => T::from(f64::from(u8::from(self.basic[row] == w))),
             column => -self.at(row, column as usize),
         }
     }
@@ -189,15 +241,15 @@ impl Dictionary {
     /// Exchanges the variables of a row and a column. Returns the variable that left the basis.
     pub(crate) fn pivot(&mut self, row: usize, column: usize) -> usize {
         let (n, width) = (self.n, self.n + 2);
-        let inverse = 1.0 / self.at(row, column);
+        let inverse = T::from(1.0) / self.at(row, column);
         self.pivot_row.clear();
-        self.pivot_row.extend(self.entries[row * width..(row + 1) * width].iter().map(|v| -v * inverse));
+        self.pivot_row.extend(self.entries[row * width..(row + 1) * width].iter().map(|v| -*v * inverse));
         self.pivot_row[column] = inverse;
         for (i, entries) in self.entries.chunks_exact_mut(width).enumerate() {
             let factor = entries[column];
-            if i != row && factor != 0.0 {
-                entries[column] = 0.0;
-                entries.iter_mut().zip(&self.pivot_row).for_each(|(out, p)| *out += factor * p);
+            if i != row && factor != T::default() {
+                entries[column] = T::default();
+                entries.iter_mut().zip(&self.pivot_row).for_each(|(out, p)| *out = *out + factor * *p);
             }
         }
         self.entries[row * width..(row + 1) * width].copy_from_slice(&self.pivot_row);
@@ -214,7 +266,11 @@ impl Dictionary {
     }
 
     /// Change of every basic variable per unit of the variable of a column.
-    pub(crate) fn ray(&self, column: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(crate) fn ray(&self, column: usize) -> impl Iterator<Item = (usize, T)> + '_ {
         self.basic.iter().enumerate().map(move |(row, &variable)| (variable, self.at(row, column)))
     }
+}
+
+fn larger<T: Number>(p: T, q: T) -> T {
+    if q > p { q } else { p }
 }

@@ -66,6 +66,11 @@ pub struct DualActiveSet {
     pub(crate) exchanges: Exchanges,
     pub(crate) shares: Vec<f64>,
     pub(crate) shift: Shift,
+    /// Whether connectors that contradict each other without contacts are left to these, and whether any were.
+    pub(crate) leaves_connectors: bool,
+    pub(crate) has_left_connectors: bool,
+    /// Whether the last answer is one of nearly dependent rows, with forces as large as that takes.
+    pub(crate) is_strained: bool,
     /// Whether contacts contradicted each other in the last attempt, connectors not counted.
     pub(crate) contacts_contradict: bool,
     checker: Checker,
@@ -151,16 +156,26 @@ impl DualActiveSet {
             let reason = "it needs a symmetric, positive semidefinite matrix";
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
         }
+        let attempts = self.attempts();
+        self.leaves_connectors = true;
+        let first = self.attempt(problem, warm, solution, attempts.first);
+        self.leaves_connectors = false;
+        let goes_on = self.has_left_connectors && self.handed_over.is_none();
+        let mut first = Some(first).filter(|outcome| outcome.is_ok() || !goes_on);
         let mut failure = None;
-        for attempt in self.attempts().in_order() {
-            let error = match self.attempt(problem, warm, solution, attempt) {
+        for attempt in attempts.in_order() {
+            let outcome = first.take().unwrap_or_else(|| self.attempt(problem, warm, solution, attempt));
+            let error = match outcome {
                 Ok(()) if self.owes_to_contacts(solution) => {
                     // What is within rounding of the rows as given comes before least squares.
                     return self
                         .raise(problem, warm, solution)
                         .or_else(|_| self.attempt(problem, warm, solution, attempt));
                 }
-                Ok(()) => return Ok(()),
+                Ok(()) => {
+                    self.is_strained = attempt.dependence == attempts.strict.dependence;
+                    return Ok(());
+                }
                 Err(error) if self.handed_over.is_some() => return Err(error),
                 Err(error) => error,
             };
@@ -296,6 +311,7 @@ impl DualActiveSet {
         self.closed.load(problem, attempt.dependence, attempt.doubts);
         self.shift.reset();
         self.contacts_contradict = false;
+        (self.has_left_connectors, self.is_strained) = (false, false);
         (self.pivots, self.work, self.slight_swaps) = (0, 0, 0);
         self.handed_over = None;
         self.choose_start(problem, warm);
@@ -486,7 +502,9 @@ impl DualActiveSet {
         };
         let closed = &self.closed;
         for (row, out) in solution.force.iter_mut().enumerate() {
-            *out = closed.force[row] / closed.system.row_scale[row];
+            let force = closed.force[row] / closed.system.row_scale[row];
+            // What rounding has left below zero is none.
+            *out = if closed.free[row] { force } else { force.max(0.0) };
         }
         solution.active.extend_from_slice(&closed.rows);
         solution.active.sort_unstable();

@@ -68,7 +68,7 @@ pub enum ProblemError {
     },
     /// A matrix given as symmetric is not.
     #[error(
-        "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference}"
+        "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference:e}"
     )]
     NotSymmetric {
         /// The row.
@@ -80,7 +80,7 @@ pub enum ProblemError {
     },
     /// An entry of a symmetric matrix is larger than its diagonal allows, so that it is no contact matrix.
     #[error(
-        "row {row}: A is not positive semidefinite, its entry {value} in column {column} is larger than its diagonal allows"
+        "row {row}: A is not positive semidefinite, its entry {value:e} in column {column} is larger than its diagonal allows"
     )]
     NotSemidefinite {
         /// The row.

@@ -3,11 +3,12 @@
 //! With the scaled quantities of [`System`] and the motion u of the bodies,
 //!
 //! ```text
-//! u = Ĵᵀ f,   a = Ĵ u + b̂,   f_i a_i = μ   (f_i > 0, a_i > 0),   a = -δ (f - f before)  on bilateral rows
+//! u = Ĵᵀ f,   a = Ĵ u + b̂ + δ f,   f_i a_i = μ   (f_i > 0, a_i > 0),   a = -δ (f - f before)  on bilateral rows
 //! ```
 //!
-//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = f/a: positive definite however
-//! redundant the contacts are, and as sparse as the bodies' neighbourhoods. A step predicts how far μ can
+//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = 1/(a/f + δ): positive definite however
+//! redundant the contacts are, and as sparse as the bodies' neighbourhoods. The term δ, if it is not zero, keeps the
+//! forces of jammed bodies modest, which may press each other by any amount. A step predicts how far μ can
 //! fall and corrects for what is quadratic. Which rows are closed where many contacts nearly depend on each
 //! other takes an active set a pivot each; here it takes some twenty steps whatever their number. Source: S.
 //! Mehrotra, "On the implementation of a primal-dual interior point method", SIAM Journal on Optimization 2,
@@ -50,6 +51,8 @@ pub(crate) struct InteriorPoint {
     acceleration_change: Vec<f64>,
     motion: Vec<f64>,
     motion_change: Vec<f64>,
+    /// The term δ, in units of the unit diagonal of Â.
+    pub(crate) term: f64,
     /// Steps of the last run.
     pub(crate) steps: usize,
 }
@@ -152,8 +155,12 @@ impl InteriorPoint {
         system.pull(&self.motion, &mut self.residual);
         for (row, residual) in self.residual.iter_mut().enumerate() {
             *residual += system.b[row] - self.acceleration[row];
-            let of_contact = self.force[row] / self.acceleration[row];
-            self.weight[row] = if bilateral[row] { BILATERAL_TERM.recip() } else { of_contact };
+            if bilateral[row] {
+                self.weight[row] = BILATERAL_TERM.recip();
+            } else {
+                *residual += self.term * self.force[row];
+                self.weight[row] = (self.acceleration[row] / self.force[row] + self.term).recip();
+            }
         }
     }
 
@@ -161,8 +168,13 @@ impl InteriorPoint {
     fn find_step(&mut self, system: &System, factor: &mut BodyFactor, bilateral: &[bool]) {
         // What the forces would become if the motion did not change.
         for (row, &is_bilateral) in bilateral.iter().enumerate() {
-            let kept =
-                if is_bilateral { self.force[row] } else { self.product[row] / self.acceleration[row] };
+            let force = self.force[row];
+            let kept = if is_bilateral {
+                force
+            } else {
+                let aim = self.product[row] / self.acceleration[row] - force;
+                force + aim * self.weight[row] * self.acceleration[row] / force
+            };
             self.force_change[row] = kept - self.weight[row] * self.residual[row];
         }
         system.push(&self.force_change, &mut self.motion_change);
@@ -172,7 +184,8 @@ impl InteriorPoint {
         for (row, &is_bilateral) in bilateral.iter().enumerate() {
             let change = self.acceleration_change[row];
             self.force_change[row] -= self.force[row] + self.weight[row] * change;
-            self.acceleration_change[row] = if is_bilateral { 0.0 } else { change + self.residual[row] };
+            let of_contact = change + self.residual[row] + self.term * self.force_change[row];
+            self.acceleration_change[row] = if is_bilateral { 0.0 } else { of_contact };
         }
     }
 

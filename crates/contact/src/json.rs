@@ -1,5 +1,8 @@
 //! Problems and answers as JSON: the formats `halfgap-contact-1` and `halfgap-solution-1`.
 
+use std::collections::BTreeMap;
+
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ProblemError;
@@ -10,6 +13,23 @@ use crate::solution::Solution;
 const PROBLEM_FORMAT: &str = "halfgap-contact-1";
 const SOLUTION_FORMAT: &str = "halfgap-solution-1";
 
+/// Fields of [`ContactFile`].
+const FIELDS: [&str; 13] = [
+    "format",
+    "title",
+    "family",
+    "symmetric",
+    "A",
+    "J",
+    "inverse_mass",
+    "b",
+    "b_next",
+    "bilateral",
+    "feasible",
+    "reference_force",
+    "expected",
+];
+
 /// Why a file is not a contact problem.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -17,6 +37,9 @@ pub enum FileError {
     /// Not JSON, or a field has the wrong type; the message names line and column.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
+    /// The same of a file with numbers that JSON does not have: some programs write them.
+    #[error("{0} (the file has NaN or Infinity, which JSON does not know)")]
+    NotANumber(serde_json::Error),
     /// The format field says something else.
     #[error("field `format` is \"{0}\", expected \"{PROBLEM_FORMAT}\"")]
     Format(String),
@@ -126,8 +149,24 @@ impl ContactFile {
     /// [`FileError`]; only the shape of the file is looked at here.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         // Some editors put a mark before a text.
-        let file: ContactFile = serde_json::from_str(text.strip_prefix('\u{feff}').unwrap_or(text))?;
+        let file: ContactFile =
+            serde_json::from_str(text.strip_prefix('\u{feff}').unwrap_or(text)).map_err(|error| {
+                let has_none =
+                    error.is_syntax() && ["NaN", "Infinity"].iter().any(|word| text.contains(word));
+                if has_none { FileError::NotANumber(error) } else { FileError::Json(error) }
+            })?;
         if file.format == PROBLEM_FORMAT { Ok(file) } else { Err(FileError::Format(file.format)) }
+    }
+
+    /// Fields of a file's text that a problem does not have: left out of account, or misspelt. None of what is no
+    /// object.
+    #[must_use]
+    pub fn unknown_fields(text: &str) -> Vec<String> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let Ok(fields) = serde_json::from_str::<BTreeMap<String, IgnoredAny>>(text) else {
+            return Vec::new();
+        };
+        fields.into_keys().filter(|field| !FIELDS.contains(&field.as_str())).collect()
     }
 
     /// The file that describes `problem`, to be replayed later.

@@ -5,12 +5,13 @@
 //! final basis is solved again from the original data, which undoes the perturbation and the digits that a
 //! dictionary loses with every pivot, and corrected where it is wrong by that. Ends either at a solution or
 //! on a ray; a ray that is a Farkas certificate proves that the inequalities alone have no solution, any
-//! other proves nothing.
+//! other proves nothing. What that comes to nothing with is tried again with twice as many digits, if it is not large.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, Par};
 
 use crate::check::Checker;
+use crate::dependent::{dot, make_orthogonal};
 use crate::dictionary::Dictionary;
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::matrix::{Matrix, SparseMatrix};
@@ -18,10 +19,7 @@ use crate::problem::Problem;
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
-
-/// Part of its own largest component by which a ray may violate the inequalities of Farkas' lemma: rounding of a
-/// dictionary after many pivots.
-const RAY: f64 = 1e-9;
+use crate::twofold::{Number, Twofold};
 
 /// Growth that any solution would have, by a ray that is believed: of masses as far apart as 1e8 rounding
 /// leaves rays that are none.
@@ -31,6 +29,19 @@ const SURE: f64 = 1e9;
 /// rule for ties drowns in rounding; a small perturbation separates them, and its basis mostly serves b itself.
 const PERTURBATIONS: [f64; 4] = [1e-8, 0.0, 1e-6, 1e-4];
 
+/// Rows up to which it is tried with twice as many digits.
+const TWOFOLD_ROWS: usize = 128;
+
+/// Cap on pivots that is not too low for any small problem: the worst take two to the power of their rows.
+const LEAST_CAP: usize = 2000;
+
+/// Cap on the sweeps in which rows without a diagonal are scaled to each other, and largest entries that are even enough.
+const SWEEPS: usize = 20;
+const EVEN: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+
+/// Contradiction between bilateral rows, in units of the scale, that is rounding.
+const AGREED: f64 = 1e-13;
+
 /// How many rows of a final basis are changed, one by one, where the original data say that rounding chose
 /// the wrong one.
 const CORRECTIONS: usize = 8;
@@ -39,12 +50,17 @@ const CORRECTIONS: usize = 8;
 #[derive(Clone, Debug, Default)]
 pub struct Lemke {
     settings: Settings,
-    dictionary: Dictionary,
+    dictionary: Dictionary<f64>,
+    exact: Dictionary<Twofold>,
     /// A as entries; scale of each variable.
     matrix: SparseMatrix,
     scale: Vec<f64>,
     checker: Checker,
     pivots: usize,
+    /// What was taken off the scaled b for bilateral rows that contradict each other by little; empty for nothing.
+    shift: Vec<f64>,
+    /// The last certificate was found with twice as many digits.
+    pub(crate) is_certain: bool,
 }
 
 /// How the pivoting ended.
@@ -55,6 +71,8 @@ enum End {
     Ray(usize),
     /// At the cap.
     Stopped,
+    /// At bilateral rows that contradict each other.
+    Contradiction(Box<Infeasibility>),
 }
 
 impl Lemke {
@@ -68,54 +86,73 @@ impl Lemke {
         Ok(Lemke { settings, ..Self::default() })
     }
 
-    fn load(&mut self, problem: &Problem, perturbation: f64) {
+    /// Notes the entries of A, and scales them.
+    fn prepare(&mut self, problem: &Problem) {
         self.matrix = match &problem.matrix {
             Matrix::Symmetric(matrix) | Matrix::General(matrix) => matrix.clone(),
             Matrix::Bodies(bodies) => bodies.product(),
         };
         self.find_scale();
-        let n = problem.len();
-        let mut q: Vec<f64> = problem.offset.iter().zip(&self.scale).map(|(b, s)| b * s).collect();
-        let largest = q.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        if largest > 0.0 {
-            q.iter_mut().for_each(|v| *v /= largest);
-        }
-        perturb(&mut q, perturbation);
-        self.dictionary.reset(&q, &problem.bilateral);
-        for i in 0..n {
-            let (columns, values) = self.matrix.row(i);
-            for (&j, &v) in columns.iter().zip(values) {
-                self.dictionary.set(i, j, v * self.scale[i] * self.scale[j]);
-            }
-        }
     }
 
-    /// 1/sqrt(A_ii); for a row without a diagonal, such as the cone row of a friction contact, what makes its largest
-    /// scaled entry 1.
+    /// 1/sqrt(A_ii); rows without a diagonal, such as the cone row of a friction contact, are scaled until the largest
+    /// entry in each and in its column is about 1 (D. Ruiz, "A scaling algorithm to equilibrate both rows and columns
+    /// norms in matrices", report RAL-TR-2001-034, 2001).
     fn find_scale(&mut self) {
         let n = self.matrix.rows();
-        let diagonal = (0..n).map(|i| self.matrix.entry(i, i));
+        let diagonals: Vec<f64> = (0..n).map(|i| self.matrix.entry(i, i)).collect();
         self.scale.clear();
-        self.scale.extend(diagonal.map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 }));
-        for i in 0..n {
-            if self.scale[i] == 0.0 {
+        self.scale.extend(diagonals.iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }));
+        if diagonals.iter().all(|d| *d > 0.0) {
+            return;
+        }
+        let mut largest = vec![0.0; n];
+        for _ in 0..SWEEPS {
+            largest.fill(0.0);
+            for i in 0..n {
                 let (columns, values) = self.matrix.row(i);
-                let largest =
-                    columns.iter().zip(values).fold(0.0, |m: f64, (&j, v)| m.max(v.abs() * self.scale[j]));
-                self.scale[i] = if largest > 0.0 { 1.0 / largest } else { 1.0 };
+                for (&j, &v) in columns.iter().zip(values) {
+                    let size = (v * self.scale[i] * self.scale[j]).abs();
+                    largest[i] = f64::max(largest[i], size);
+                    largest[j] = f64::max(largest[j], size);
+                }
+            }
+            let mut is_even = true;
+            let scales = self.scale.iter_mut().zip(&largest).zip(&diagonals);
+            for ((scale, &largest), _) in scales.filter(|((_, largest), d)| **d <= 0.0 && **largest > 0.0) {
+                *scale /= largest.sqrt();
+                is_even &= EVEN.contains(&largest);
+            }
+            if is_even {
+                return;
             }
         }
     }
 
-    fn pivot(&mut self) -> End {
-        let dictionary = &mut self.dictionary;
+    /// Follows the path of a problem, with the digits of a dictionary, to its end.
+    fn follow<T: Number>(
+        &mut self,
+        problem: &Problem,
+        perturbation: f64,
+        dictionary: &mut Dictionary<T>,
+    ) -> End {
+        self.shift.clear();
+        self.load(problem, perturbation, dictionary);
         dictionary.eliminate_bilateral();
+        match self.reconcile(problem, dictionary) {
+            Some(proof) => return End::Contradiction(Box::new(proof)),
+            None if self.shift.is_empty() => {}
+            None => {
+                self.load(problem, perturbation, dictionary);
+                dictionary.eliminate_bilateral();
+            }
+        }
         let Some(first) = dictionary.most_negative() else { return End::Solved };
         let artificial = dictionary.artificial();
         let mut leaving = dictionary.variable(first);
         let Some(column) = dictionary.column(artificial) else { return End::Stopped };
         dictionary.pivot(first, column);
-        for _ in 0..self.settings.pivot_cap(self.scale.len()) {
+        for _ in 0..self.settings.pivot_cap(problem.len()).max(LEAST_CAP) {
             self.pivots += 1;
             let entering = dictionary.complement(leaving);
             let Some(column) = dictionary.column(entering) else { return End::Stopped };
@@ -128,12 +165,129 @@ impl Lemke {
         End::Stopped
     }
 
+    fn load<T: Number>(&self, problem: &Problem, perturbation: f64, dictionary: &mut Dictionary<T>) {
+        let mut q = self.scaled_offset(problem);
+        let unilateral = q.iter_mut().zip(perturbations(perturbation)).zip(&problem.bilateral);
+        for ((b, more), _) in unilateral.filter(|(_, is_bilateral)| !**is_bilateral) {
+            *b = *b + T::from(more);
+        }
+        dictionary.reset(&q, &problem.bilateral);
+        self.visit(problem, |i, j, value| dictionary.add(i, j, value));
+    }
+
+    /// The scaled b, in units of the largest, without what contradicts each other.
+    fn scaled_offset<T: Number>(&self, problem: &Problem) -> Vec<T> {
+        let size = T::from(self.largest_offset(problem));
+        let scaled = problem.offset.iter().zip(&self.scale).map(|(&b, &s)| T::from(b) * T::from(s) / size);
+        let shift = self.shift.iter().copied().chain(std::iter::repeat(0.0));
+        scaled.zip(shift).map(|(b, shift)| b - T::from(shift)).collect()
+    }
+
+    /// Makes bilateral rows agree that depend on each other, in the sense of least squares; or proves that they contradict
+    /// each other by more than may be settled. What rounding leaves of them needs neither.
+    fn reconcile<T: Number>(
+        &mut self,
+        problem: &Problem,
+        dictionary: &Dictionary<T>,
+    ) -> Option<Infeasibility> {
+        let q = self.scaled_offset::<T>(problem);
+        let mut basis: Vec<Vec<T>> = Vec::new();
+        let mut shift = vec![T::default(); problem.len()];
+        for mut direction in dictionary.null_directions() {
+            make_orthogonal(&mut direction, &basis);
+            let factor = dot(&direction, &q) / dot(&direction, &direction);
+            let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs().nearest()));
+            let contradiction = factor.abs().nearest() * largest;
+            if contradiction > self.settings.inconsistency {
+                direction.iter_mut().for_each(|z| *z = -*z * factor);
+                // A row that others take part in, or that all but depends on its like, proves nothing.
+                return self.prove(problem, &direction, SURE);
+            }
+            if contradiction > AGREED {
+                shift.iter_mut().zip(&direction).for_each(|(sum, z)| *sum = *sum + factor * *z);
+            }
+            basis.push(direction);
+        }
+        if shift.iter().any(|part| *part != T::default()) {
+            self.shift.extend(shift.iter().map(|part| part.nearest()));
+        }
+        None
+    }
+
+    /// What was taken off b at most, in units of the scale.
+    fn inconsistency(&self) -> f64 {
+        self.shift.iter().fold(0.0, |most: f64, part| most.max(part.abs()))
+    }
+
+    /// The largest scaled b, or 1.
+    fn largest_offset(&self, problem: &Problem) -> f64 {
+        let scaled = problem.offset.iter().zip(&self.scale).map(|(b, s)| (b * s).abs());
+        Some(scaled.fold(0.0, f64::max)).filter(|largest| *largest > 0.0).unwrap_or(1.0)
+    }
+
+    /// Calls `act` with rows and columns and what adds up to the scaled entries there.
+    fn visit<T: Number>(&self, problem: &Problem, mut act: impl FnMut(usize, usize, T)) {
+        let scale = |i: usize, j: usize| T::from(self.scale[i]) * T::from(self.scale[j]);
+        if let Matrix::Bodies(bodies) = &problem.matrix {
+            bodies.visit_terms(|i, j, [v, mass, w]| {
+                act(i, j, T::from(v) * T::from(mass) * T::from(w) * scale(i, j));
+            });
+            return;
+        }
+        for i in 0..problem.len() {
+            let (columns, values) = self.matrix.row(i);
+            columns.iter().zip(values).for_each(|(&j, &v)| act(i, j, T::from(v) * scale(i, j)));
+        }
+    }
+
+    /// Solves a problem with twice as many digits at once; true if there is an answer, the proof if it is sure that there is none.
+    pub(crate) fn solve_twofold(
+        &mut self,
+        problem: &Problem,
+        solution: &mut Solution,
+    ) -> Result<bool, Infeasibility> {
+        self.pivots = 0;
+        self.prepare(problem);
+        let outcome = self.solve_exactly(problem, solution);
+        solution.iterations = self.pivots;
+        outcome
+    }
+
+    /// With twice as many digits, from the data as given: what a solution lacks then is the rounding of its forces.
+    fn solve_exactly(&mut self, problem: &Problem, solution: &mut Solution) -> Result<bool, Infeasibility> {
+        solution.reset(problem.len(), Method::Lemke);
+        let mut dictionary = std::mem::take(&mut self.exact);
+        let end = self.follow(problem, 0.0, &mut dictionary);
+        let outcome = match end {
+            End::Solved => {
+                let size = Twofold::from(self.largest_offset(problem));
+                let basic = dictionary
+                    .basic_rows()
+                    .filter_map(|(v, value)| Some((v.checked_sub(problem.len())?, value)));
+                for (row, value) in basic.filter(|&(row, _)| row < problem.len()) {
+                    solution.force[row] = (value * size * Twofold::from(self.scale[row])).nearest();
+                    solution.active.push(row);
+                }
+                solution.active.sort_unstable();
+                Ok(self.is_accepted(problem, solution))
+            }
+            End::Ray(column) => {
+                let proof = self.certificate(problem, &dictionary, column, self.settings.greatest_growth);
+                proof.filter(|proof| proof.contradiction > self.settings.inconsistency).map_or(Ok(false), Err)
+            }
+            End::Contradiction(proof) => Err(*proof),
+            End::Stopped => Ok(false),
+        };
+        self.exact = dictionary;
+        outcome
+    }
+
     /// Solves again with the final basis in the original data, and corrects it where that shows that a row
     /// should have been in it or not: of what is nearly zero rounding has decided. True if the answer is
     /// accepted.
     fn polish(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
         let n = problem.len();
-        let basic = self.dictionary.basic_rows().filter(|&(v, _)| v >= n && v < 2 * n).map(|(v, _)| v - n);
+        let basic = self.dictionary.basic_rows().filter(|(v, _)| (n..2 * n).contains(v)).map(|(v, _)| v - n);
         solution.active.extend(basic);
         solution.active.sort_unstable();
         for _ in 0..=CORRECTIONS {
@@ -156,8 +310,9 @@ impl Lemke {
     }
 
     fn is_accepted(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
+        solution.inconsistency = self.inconsistency();
         solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
-        solution.residuals.accepted(&self.settings, 0.0)
+        solution.residuals.accepted(&self.settings, solution.inconsistency)
     }
 
     /// The row without force that closes fastest, and how fast, as part of the largest offset.
@@ -183,8 +338,10 @@ impl Lemke {
                 basis[(at, place[j])] = v * self.scale[i] * self.scale[j];
             }
         }
-        let right =
-            Mat::from_fn(active.len(), 1, |at, _| -problem.offset[active[at]] * self.scale[active[at]]);
+        let size = self.largest_offset(problem);
+        let shift = |row: usize| self.shift.get(row).map_or(0.0, |shift| shift * size);
+        let offset = |row: usize| problem.offset[row] * self.scale[row] - shift(row);
+        let right = Mat::from_fn(active.len(), 1, |at, _| -offset(active[at]));
         let factor = PartialPivLu::new(basis.as_ref());
         let mut force = factor.solve(&right);
         for _ in 0..self.settings.refinements {
@@ -202,47 +359,63 @@ impl Lemke {
         pulling.filter(|row| row.1 > 0.0).max_by(|p, q| p.1.total_cmp(&q.1))
     }
 
-    /// The ray as a certificate, if it is one: z ≥ 0, Aᵀz ≤ 0 (= 0 on bilateral rows), bᵀz < 0.
-    fn certificate(&self, problem: &Problem, column: usize) -> Option<Infeasibility> {
+    /// The ray as a certificate, if it is one: z ≥ 0, Aᵀz ≤ 0 (= 0 on bilateral rows), bᵀz < 0, and any solution would
+    /// have at least that growth.
+    fn certificate<T: Number>(
+        &self,
+        problem: &Problem,
+        dictionary: &Dictionary<T>,
+        column: usize,
+        least_growth: f64,
+    ) -> Option<Infeasibility> {
         let n = problem.len();
-        let mut direction = vec![0.0; n];
-        for (variable, change) in self.dictionary.ray(column) {
+        let zero = T::default();
+        let mut direction = vec![zero; n];
+        for (variable, change) in dictionary.ray(column) {
             if (n..2 * n).contains(&variable) {
                 direction[variable - n] = change;
             }
         }
-        if let Some(entering) = self.dictionary.entering(column).checked_sub(n).filter(|&i| i < n) {
-            direction[entering] = 1.0;
+        if let Some(entering) = dictionary.entering(column).checked_sub(n).filter(|&i| i < n) {
+            direction[entering] = T::from(1.0);
         }
         // What rounding has made negative is nothing; if it was more, the image tells.
         for (z, _) in direction.iter_mut().zip(&problem.bilateral).filter(|(_, is_bilateral)| !**is_bilateral)
         {
-            *z = z.max(0.0);
+            *z = if *z > zero { *z } else { zero };
         }
-        let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
-        let mut image = vec![0.0; n];
-        let (mut worth, mut square, mut scale) = (0.0, 0.0, 0.0_f64);
-        for (i, &z) in direction.iter().enumerate() {
-            let (columns, values) = self.matrix.row(i);
-            for (&j, &v) in columns.iter().zip(values) {
-                image[j] += v * self.scale[i] * self.scale[j] * z;
-            }
-            let b = problem.offset[i] * self.scale[i];
-            worth += b * z;
-            square += z * z;
-            scale = scale.max(b.abs());
-        }
-        let violates = |i: usize| {
-            let outside = if problem.bilateral[i] { image[i].abs() } else { image[i] };
-            outside > RAY * largest
+        self.prove(problem, &direction, least_growth)
+    }
+
+    /// The certificate that a direction is, if any solution would have at least that growth.
+    fn prove<T: Number>(
+        &self,
+        problem: &Problem,
+        direction: &[T],
+        least_growth: f64,
+    ) -> Option<Infeasibility> {
+        let (n, zero) = (problem.len(), T::default());
+        let mut image = vec![zero; n];
+        self.visit(problem, |i, j, value: T| image[j] = image[j] + value * direction[i]);
+        let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs().nearest()));
+        let outside = |i: usize| {
+            if problem.bilateral[i] { image[i].abs().nearest() } else { image[i].nearest().max(0.0) }
         };
-        if worth >= -RAY * scale * largest || (0..n).any(violates) {
+        let leakage = (0..n).map(outside).fold(0.0, f64::max) / largest;
+        let (mut worth, mut square) = (zero, 0.0);
+        for (i, &z) in direction.iter().enumerate() {
+            worth = worth + T::from(problem.offset[i]) * T::from(self.scale[i]) * z;
+            square += z.nearest() * z.nearest();
+        }
+        let scale = self.largest_offset(problem);
+        let contradiction = -worth.nearest() * largest / square / scale;
+        if contradiction.is_nan() || contradiction < least_growth * leakage.max(T::ROUNDING) {
             return None;
         }
-        let leakage = image.iter().fold(0.0, |m: f64, v| m.max(*v)) / largest;
-        let row = (0..n).max_by(|&i, &j| direction[i].total_cmp(&direction[j]))?;
-        direction.iter_mut().zip(&self.scale).for_each(|(z, s)| *z *= s);
-        Some(Infeasibility { row, direction, contradiction: -worth * largest / square / scale, leakage })
+        let size = |&i: &usize| direction[i].abs().nearest();
+        let row = (0..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
+        let direction = direction.iter().zip(&self.scale).map(|(z, s)| z.nearest() * s).collect();
+        Some(Infeasibility { row, direction, contradiction, leakage })
     }
 }
 
@@ -254,39 +427,53 @@ impl Solver for Lemke {
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
         // One thread, so that sums keep their order.
         faer::set_global_parallelism(Par::Seq);
-        self.pivots = 0;
+        (self.pivots, self.is_certain) = (0, false);
+        self.prepare(problem);
+        let mut doubtful = None;
         for perturbation in PERTURBATIONS {
             solution.reset(problem.len(), Method::Lemke);
-            self.load(problem, perturbation);
-            let end = self.pivot();
-            if let End::Ray(column) = end
-                && let Some(proof) = self.certificate(problem, column)
-                && proof.least_growth() >= SURE
-            {
-                return Err(SolveError::Infeasible(Box::new(proof)));
+            let mut dictionary = std::mem::take(&mut self.dictionary);
+            let end = self.follow(problem, perturbation, &mut dictionary);
+            self.dictionary = dictionary;
+            match &end {
+                End::Ray(column) => doubtful = self.certificate(problem, &self.dictionary, *column, SURE),
+                End::Contradiction(proof) => doubtful = Some(proof.as_ref().clone()),
+                End::Solved | End::Stopped => {}
+            }
+            if doubtful.is_some() {
+                break;
             }
             solution.iterations = self.pivots;
             let is_solved = match end {
                 End::Solved => self.polish(problem, solution),
-                End::Ray(_) | End::Stopped => self.is_accepted(problem, solution),
+                _ => self.is_accepted(problem, solution),
             };
             if is_solved {
                 return Ok(());
             }
         }
-        Err(SolveError::Unsolved {
-            method: Method::Lemke,
-            residuals: solution.residuals,
-            iterations: self.pivots,
-        })
+        let failure = solution.residuals;
+        if problem.len() <= TWOFOLD_ROWS {
+            // What rounding may have proven is looked at with care.
+            let outcome = self.solve_exactly(problem, solution);
+            solution.iterations = self.pivots;
+            match outcome {
+                Ok(true) => return Ok(()),
+                Ok(false) => {}
+                Err(proof) => {
+                    self.is_certain = true;
+                    return Err(SolveError::Infeasible(Box::new(proof)));
+                }
+            }
+        }
+        let unsolved =
+            SolveError::Unsolved { method: Method::Lemke, residuals: failure, iterations: self.pivots };
+        Err(doubtful.map_or(unsolved, |proof| SolveError::Infeasible(Box::new(proof))))
     }
 }
 
-/// Adds to every entry a different positive amount below `size`, the fractional parts of multiples of the golden
-/// ratio.
-fn perturb(q: &mut [f64], size: f64) {
+/// A different positive amount below `size` for every entry, the fractional parts of multiples of the golden ratio.
+fn perturbations(size: f64) -> impl Iterator<Item = f64> {
     let golden = f64::midpoint(5.0_f64.sqrt(), 1.0);
-    for (i, value) in q.iter_mut().enumerate() {
-        *value += size * ((i + 1) as f64 * golden).fract();
-    }
+    (1..).map(move |i: u32| size * (f64::from(i) * golden).fract())
 }

@@ -35,7 +35,7 @@
 //! | `system`, `entries` | the problem scaled to a unit diagonal, which the symmetric methods work on |
 //! | `dual_active_set`, `start`, `descent`, `spread`, `crossover`, `exchanges`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
 //! | `proximal_newton`, `interior_point`, `body_factor`, `line_search` | [`ProximalNewton`] |
-//! | `lemke`, `dictionary` | [`Lemke`], for unsymmetric problems |
+//! | `lemke`, `dictionary`, `twofold` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
 //! | `held_rows` | [`HeldRows`]: a fixed set of rows as equations, solved again and again |
@@ -85,6 +85,7 @@ mod start;
 mod system;
 #[cfg(test)]
 mod test_problems;
+mod twofold;
 mod warm;
 
 pub use auto::Auto;

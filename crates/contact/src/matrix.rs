@@ -114,7 +114,7 @@ impl SparseMatrix {
             let (columns, values) = self.row(row);
             for (&column, &value) in columns.iter().zip(values) {
                 let difference = value - self.entry(column, row);
-                let size = (diagonal[row] * diagonal[column]).sqrt();
+                let size = diagonal[row].sqrt() * diagonal[column].sqrt();
                 if difference.abs() > SYMMETRY * size {
                     return Err(ProblemError::NotSymmetric { row, column, difference });
                 }
@@ -155,14 +155,31 @@ impl BodyRows {
         Ok(())
     }
 
-    /// A = J M⁻¹ Jᵀ, its entries.
-    pub(crate) fn product(&self) -> SparseMatrix {
-        let n = self.rows.rows();
+    /// Calls `act` with the place of each term J_ik M⁻¹_k J_jk of an entry of A = J M⁻¹ Jᵀ, and its factors, row by row.
+    pub(crate) fn visit_terms(&self, mut act: impl FnMut(usize, usize, [f64; 3])) {
+        let touching = self.touching();
+        for row in 0..self.rows.rows() {
+            let (columns, values) = self.rows.row(row);
+            for (&k, &v) in columns.iter().zip(values) {
+                touching[k].iter().for_each(|&(other, w)| act(row, other, [v, self.inverse_mass[k], w]));
+            }
+        }
+    }
+
+    /// By column the rows that have a coefficient there, and that.
+    fn touching(&self) -> Vec<Vec<(usize, f64)>> {
         let mut touching: Vec<Vec<(usize, f64)>> = vec![Vec::new(); self.inverse_mass.len()];
-        for row in 0..n {
+        for row in 0..self.rows.rows() {
             let (columns, values) = self.rows.row(row);
             columns.iter().zip(values).for_each(|(&k, &v)| touching[k].push((row, v)));
         }
+        touching
+    }
+
+    /// A = J M⁻¹ Jᵀ, its entries.
+    pub(crate) fn product(&self) -> SparseMatrix {
+        let n = self.rows.rows();
+        let touching = self.touching();
         let mut product = SparseMatrix::new();
         let mut sum = vec![0.0; n];
         for row in 0..n {

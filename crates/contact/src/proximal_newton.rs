@@ -14,7 +14,7 @@
 //! algorithm", Mathematics of Operations Research 1, 1976. The first step goes straight to the minimum for a guessed C.
 
 use crate::body_factor::BodyFactor;
-use crate::check::Checker;
+use crate::check::{Checker, Residuals};
 use crate::error::{SettingsError, SolveError};
 use crate::interior_point::InteriorPoint;
 use crate::line_search::PiecewiseLinear;
@@ -49,6 +49,9 @@ const INNER_STEPS: usize = 200;
 /// Deviation of a step length from 1 that is rounding.
 const FULL_STEP: f64 = 1e-9;
 
+/// Term by which the interior-point method keeps forces modest, once others went beyond all bounds.
+const JAMMED_TERM: f64 = 1e-9;
+
 /// Newton steps after which an interior-point method is likely to end sooner.
 const PATIENCE: usize = 15;
 
@@ -80,6 +83,7 @@ pub struct ProximalNewton {
     change: Vec<f64>,
     multiplier: Vec<f64>,
     force: Vec<f64>,
+    unscaled: Vec<f64>,
     derivative: PiecewiseLinear,
     checker: Checker,
     interior: InteriorPoint,
@@ -133,22 +137,59 @@ impl ProximalNewton {
         }
         self.load(problem, warm);
         let columns = self.motion.len();
-        if self.factor.prepare(&self.system, columns) {
+        let is_ready = self.factor.prepare(&self.system, columns);
+        self.interior_steps = 0;
+        if is_ready {
             self.approach(problem, warm, begin);
         }
-        for (row, out) in solution.force.iter_mut().enumerate() {
-            *out = self.force[row] / self.system.row_scale[row];
-            if *out != 0.0 {
-                solution.active.push(row);
-            }
+        self.answer(problem, solution);
+        let Settings { natural_residual, least_growth, .. } = self.settings;
+        let Residuals { natural, growth, .. } = solution.residuals;
+        if self.interior_steps > 0 && natural > natural_residual && growth >= least_growth {
+            self.approach_modestly(problem);
+            self.answer(problem, solution);
         }
-        let steps = self.steps + self.interior_steps;
-        solution.iterations = steps;
-        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
         if solution.residuals.accepted(&self.settings, 0.0) {
             return Ok(());
         }
-        Err(SolveError::Unsolved { method, residuals: solution.residuals, iterations: steps })
+        let Solution { residuals, iterations, .. } = *solution;
+        Err(SolveError::Unsolved { method, residuals, iterations })
+    }
+
+    /// Makes an answer of the forces, unless the one that is there is better.
+    fn answer(&mut self, problem: &Problem, solution: &mut Solution) {
+        let steps = self.steps + self.interior_steps;
+        let is_first = solution.iterations == 0;
+        solution.iterations = steps;
+        let before = solution.residuals.natural;
+        self.unscaled.clear();
+        let scaled = self.force.iter().zip(&self.system.row_scale);
+        self.unscaled.extend(scaled.map(|(force, scale)| force / scale));
+        let residuals = self.checker.check(problem, &self.unscaled, &mut self.change);
+        if !is_first && residuals.natural >= before {
+            return;
+        }
+        solution.residuals = residuals;
+        solution.force.copy_from_slice(&self.unscaled);
+        solution.acceleration.copy_from_slice(&self.change);
+        solution.active.clear();
+        solution.active.extend((0..problem.len()).filter(|&row| solution.force[row] != 0.0));
+    }
+
+    /// Begins again inside, where the forces of bodies that are jammed went beyond all bounds: with a term that keeps
+    /// them modest. (It is not without cost: contacts that contradict each other by little end in worse forces.)
+    fn approach_modestly(&mut self, problem: &Problem) {
+        let before = self.steps + self.interior_steps;
+        self.load(problem, None);
+        self.interior.term = JAMMED_TERM;
+        let is_near = self.interior.run(&self.system, &mut self.factor, &problem.bilateral, None);
+        self.interior.term = 0.0;
+        self.interior_steps = before + self.interior.steps;
+        self.factored = None;
+        if is_near {
+            self.begin_inside(problem);
+            self.iterate(problem);
+        }
     }
 
     fn load(&mut self, problem: &Problem, warm: Option<&WarmStart>) {
@@ -187,7 +228,6 @@ impl ProximalNewton {
     /// Iterates from where it is to begin, or from inside where that does not end soon. Where nothing is
     /// found inside, a guess is gone on with after all.
     fn approach(&mut self, problem: &Problem, warm: Option<&WarmStart>, begin: Begin) {
-        self.interior_steps = 0;
         if begin == Begin::Guess {
             self.most_steps = PATIENCE.min(self.settings.newton_steps);
             self.iterate(problem);

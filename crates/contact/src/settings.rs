@@ -1,6 +1,7 @@
 //! The numbers every solver decides by, in one place.
 
 use crate::error::{SettingsError, SolveError};
+use crate::matrix::Matrix;
 use crate::problem::Problem;
 
 /// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the
@@ -173,7 +174,9 @@ impl Settings {
     pub(crate) fn is_proven(&self, error: &SolveError, problem: &Problem) -> bool {
         let SolveError::Infeasible(proof) = error else { return false };
         let is_bilateral = || proof.direction.iter().zip(problem.bilateral()).all(|(z, is)| *is || *z == 0.0);
-        let is_exact = proof.leakage <= SAME && proof.contradiction > self.inconsistency;
+        let is_exact = proof.leakage <= SAME
+            && proof.contradiction > self.inconsistency
+            && cancels(problem, &proof.direction);
         proof.least_growth() >= self.greatest_growth || (is_exact && is_bilateral())
     }
 
@@ -181,6 +184,22 @@ impl Settings {
     pub(crate) fn pivot_cap(&self, rows: usize) -> usize {
         self.pivots_per_row.saturating_mul(rows + 5)
     }
+}
+
+/// True if a combination of rows moves no body, to the last digit; where bodies are not known, that is for A to say. A z
+/// is of second order in what it moves, and may be rounding where that is not.
+fn cancels(problem: &Problem, direction: &[f64]) -> bool {
+    let Matrix::Bodies(bodies) = &problem.matrix else { return true };
+    let mut moved = vec![[0.0; 2]; bodies.inverse_mass.len()];
+    for (i, &z) in direction.iter().enumerate().filter(|(_, z)| **z != 0.0) {
+        let (columns, values) = bodies.rows.row(i);
+        for (&k, &v) in columns.iter().zip(values) {
+            let [sum, terms] = &mut moved[k];
+            (*sum, *terms) = (*sum + z * v, *terms + (z * v).abs());
+        }
+    }
+    let movable = moved.iter().zip(&bodies.inverse_mass).filter(|(_, mass)| **mass > 0.0);
+    movable.into_iter().all(|([sum, terms], _)| sum.abs() <= SAME * terms)
 }
 
 #[cfg(test)]

@@ -60,7 +60,8 @@ impl DualActiveSet {
         certificate
     }
 
-    /// Closes the bilateral rows; those that depend on others must agree with them.
+    /// Closes the bilateral rows; those that depend on others must agree with them, if that is not left to contacts:
+    /// which may hold a body still that two pins nearly at one place would hold but by huge forces.
     pub(crate) fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
         let independent = self.closed.close_bilateral();
         self.closed.kept = self.closed.len();
@@ -71,6 +72,14 @@ impl DualActiveSet {
         self.closed.accelerate();
         let noise = self.noise();
         let limit = self.settings.inconsistency * self.closed.system.scale;
+        if self.leaves_connectors {
+            let least = noise.max(self.settings.natural_residual * self.closed.system.scale);
+            let moves = |row: usize| problem.bilateral[row] && self.closed.acceleration[row].abs() > least;
+            self.has_left_connectors = (0..problem.len()).any(moves);
+            if self.has_left_connectors {
+                return None;
+            }
+        }
         self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
     }
 

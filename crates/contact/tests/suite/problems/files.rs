@@ -32,6 +32,10 @@ fn wrong_files_are_explained() {
     assert!(matches!(error(r#"{"format":"halfgap-contact-1","b":[1]}"#), FileError::Missing("A or J")));
     let both = r#"{"format":"halfgap-contact-1","b":[1],"A":[[1]],"J":{"rows":1,"columns":1,"triplets":[]},"inverse_mass":[1]}"#;
     assert!(matches!(error(both), FileError::Both));
+    let not_a_number = error(r#"{"format":"halfgap-contact-1","b":[NaN],"A":[[1]]}"#);
+    assert!(not_a_number.to_string().contains("NaN"), "{not_a_number}");
+    let misspelt = r#"{"format":"halfgap-contact-1","bilatral":[true],"b":[1],"A":[[1]]}"#;
+    assert_eq!(ContactFile::unknown_fields(misspelt), ["bilatral"]);
     let unsymmetric = error(r#"{"format":"halfgap-contact-1","A":[[1,2],[0,1]],"b":[0,0]}"#);
     assert!(unsymmetric.to_string().starts_with("row 0: A is not symmetric"), "{unsymmetric}");
 }
