@@ -269,12 +269,13 @@ impl World {
     /// If there is no such connector.
     #[must_use]
     pub fn connector_error(&self, connector: ConnectorId) -> f64 {
-        let (hint, connector) = (self.system.rail_hint(connector), &self.connectors[connector.index()]);
+        let hint = self.system.rail_hint(connector, self.now);
+        let connector = &self.connectors[connector.index()];
         let moving = |body: BodyId| {
             if body.is_world() { Moving::BACKGROUND } else { Moving::from(&self.state(body)) }
         };
         let [a, b] = connector.bodies().map(moving);
-        connector.error(&a, &b, hint)
+        connector.error(&a, &b, hint.as_ref())
     }
 
     /// The thresholds of touching, as derived from the tolerance or given.

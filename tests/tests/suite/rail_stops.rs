@@ -370,3 +370,53 @@ rail_stop = {{ a = {{ body = "bead", point = [0.0, 0.0] }}, at = {at:?}, upper =
         assert!(matches!(hits[..], [time] if (time - expected).abs() < 2e-8), "{hits:?}, not {expected}");
     }
 }
+
+#[test]
+fn what_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
+    // At every tenth of a second it is looked at, also where it lies just behind the stop.
+    for at in [2.0, 2.7995, 2.9, 2.9999, 3.0001, 6.0] {
+        let mut world = bead_on_arc(std::f64::consts::TAU, &format!("at = {at}, upper = false"));
+        let bead = world.find("bead").expect("the bead");
+        for tenth in 1..=70 {
+            let time = 0.1 * f64::from(tenth);
+            world.advance_to(time, &mut |_| ()).expect("it goes on");
+            let place = world.state(bead).position;
+            let (sin, cos) = (1.0 + time).sin_cos();
+            assert!((place.x - cos).hypot(place.y - sin) < 1e-7, "{at} m, {time} s: {place} m");
+        }
+    }
+}
+
+#[test]
+fn what_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
+    // At the bottom of the ring, and never on the stopped side, whatever the tolerance: it goes on as without the stop.
+    let scene = |tolerance: f64, stop: &str| {
+        let path =
+            "path = { start = [1.0, 0.0], edges = [{ arc = { to = [1.0, 0.0], center = [0.0, 0.0] } }] }";
+        let bead = format!("a = {{ body = \"bead\", point = [0.0, 0.0] }}, {path}");
+        let stop = if stop.is_empty() {
+            String::new()
+        } else {
+            format!("[[connector]]\nrail_stop = {{ {bead}, {stop} }}")
+        };
+        let (sin, cos) = 4.003_f64.sin_cos();
+        world_of(&format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 6.0, tolerance = {tolerance:e} }}\n\
+             force = [{{ gravity = {{ acceleration = [0.0, -9.81] }} }}]\n\n\
+             [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.1 }} }}\nmass = 1.0\n\
+             position = [{cos}, {sin}]\n\n[[connector]]\nrail = {{ {bead} }}\n\n{stop}\n"
+        ))
+    };
+    for tolerance in [1e-3, 1e-5, 1e-8] {
+        let mut worlds = ["", "at = 4.0, upper = true"].map(|stop| scene(tolerance, stop));
+        let mut blows = 0;
+        let states = worlds.each_mut().map(|world| {
+            let mut note = |event: &Event| blows += u32::from(matches!(event, Event::Impact(_)));
+            world.advance_to(6.0, &mut note).expect("it goes on");
+            world.state(world.find("bead").expect("the bead"))
+        });
+        assert_eq!(blows, 0, "{tolerance}");
+        let off = states[0].position.distance(states[1].position);
+        assert!(off < 10.0 * tolerance, "{tolerance}: {off} m");
+    }
+}

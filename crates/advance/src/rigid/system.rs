@@ -331,10 +331,11 @@ impl RigidSystem {
         &self.laws
     }
 
-    /// Where on its path the point of a rail or of a rail's stop was seen last; `None` for other connectors.
+    /// Where on its path the point of a rail or of a rail's stop is looked for at a time, not before that of the last event;
+    /// `None` for other connectors.
     #[must_use]
-    pub fn rail_hint(&self, connector: ConnectorId) -> Option<&RailHint> {
-        self.connector_states.get(connector.index())?.hint.as_ref()
+    pub fn rail_hint(&self, connector: ConnectorId, time: Time) -> Option<RailHint> {
+        self.hint_at(connector, 0, time)
     }
 
     /// Pairs of bodies that pass through each other, the lesser id first, sorted.

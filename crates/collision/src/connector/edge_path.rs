@@ -191,7 +191,10 @@ impl EdgePath {
                 break;
             }
             if step == -last_step {
-                along = along.clamp(first, last);
+                // Of an arc it may have gone round more than half of.
+                if self.is_corner(piece, step > 0) {
+                    along = along.clamp(first, last);
+                }
                 break;
             }
             piece = self.neighbor(piece, step > 0);
@@ -206,6 +209,12 @@ impl EdgePath {
     fn neighbor(&self, piece: usize, forward: bool) -> usize {
         let count = self.pieces.len();
         if forward { (piece + 1) % count } else { (piece + count - 1) % count }
+    }
+
+    /// True if a piece ends in a corner, forward or backward.
+    fn is_corner(&self, piece: usize, forward: bool) -> bool {
+        let ends = |knot: &RailKnot| piece == if forward { knot.before } else { knot.after } as usize;
+        self.knots.iter().any(|knot| knot.turn != 0.0 && ends(knot))
     }
 
     fn hinted_piece(&self, hint: &RailHint) -> usize {

@@ -58,6 +58,8 @@ pub struct RailHint {
     pub(super) stays: bool,
     /// The row's normal points to the right of the path, not to the left.
     pub(super) faces_right: bool,
+    /// How far before a stop the point was [m]: tells laps of a closed path apart.
+    pub(super) left: Option<f64>,
 }
 
 /// A joint of two pieces of a path, at which its curvature, or even its direction, may jump.
@@ -170,7 +172,7 @@ impl RailPath {
             Curve::Edges(path) => path.place_at_knot(piece as usize, forward),
             Curve::Spline(_) => 0.0,
         };
-        RailHint { piece, parameter, stays: false, faces_right: false }
+        RailHint { piece, parameter, stays: false, faces_right: false, left: None }
     }
 
     /// The two sides of a corner, before and after a knot: hints to stay on its pieces, whose rows face into the
@@ -321,7 +323,8 @@ impl RailPlace {
 
 impl Foot {
     fn hint(&self) -> RailHint {
-        RailHint { piece: self.piece, parameter: self.parameter, stays: false, faces_right: false }
+        let (piece, parameter) = (self.piece, self.parameter);
+        RailHint { piece, parameter, stays: false, faces_right: false, left: None }
     }
 }
 
@@ -338,6 +341,19 @@ impl RailHint {
     #[must_use]
     pub fn moving_on(self) -> Self {
         Self { stays: false, ..self }
+    }
+
+    /// The same place, for a stop before which the point was so far [m]: on a closed path it is what it is nearest to
+    /// then, a lap more or less. `None` if that is not known: the point then is before the stop, or just at it.
+    #[must_use]
+    pub fn with_left(self, left: Option<f64>) -> Self {
+        Self { left, ..self }
+    }
+
+    /// How far before a stop the point was [m], if that is known.
+    #[must_use]
+    pub fn left(&self) -> Option<f64> {
+        self.left
     }
 
     /// The same place, where the row of a rail faces left again, as everywhere but in a corner.

@@ -11,8 +11,9 @@ use super::row::{ConnectorSample, Ends};
 use crate::motion::Moving;
 use glam::DVec2;
 
-/// On a closed rail a stop may be overrun by up to this part of a lap; whatever is farther beyond it has come round.
-const OVERRUN_SHARE: f64 = 1e-3;
+/// On a closed rail a point that is no farther beyond a stop than this part of a lap is just at it, where nobody knows from
+/// which side it came.
+const AT_STOP: f64 = 1e-6;
 
 /// The row across the path, positive to the left of it, or where the hint faces.
 #[inline]
@@ -53,7 +54,8 @@ pub(super) fn stop_row(
     let bend = along * (2.0 * foot.curvature * across + foot.curvature_rate * along * foot.gap);
     let gamma = (normal.dot(ends.turning) + sign * bend) * stretch;
     let normal_rate = foot.normal * (sign * foot.curvature * along);
-    let gap = distance_to_stop(path, place.arc_length, at, sign);
+    let near = hint.and_then(RailHint::left);
+    let gap = distance_to_stop(path, place.arc_length, (at, sign), near);
     let mut row = ends.row(gap, normal, normal_rate, gamma);
     // Beside the rail its foot moves faster or slower than the point itself.
     row.kinematics.rate = sign * along;
@@ -61,14 +63,17 @@ pub(super) fn stop_row(
     row
 }
 
-/// Arc length [m] left before the stop.
-fn distance_to_stop(path: &RailPath, arc_length: f64, at: f64, sign: f64) -> f64 {
+/// Arc length [m] left before the stop; on a closed path nearest to what it was before.
+fn distance_to_stop(path: &RailPath, arc_length: f64, (at, sign): (f64, f64), near: Option<f64>) -> f64 {
     let left = sign * (arc_length - at);
     if !path.is_closed() {
         return left;
     }
     let lap = path.length();
-    (left + OVERRUN_SHARE * lap).rem_euclid(lap) - OVERRUN_SHARE * lap
+    match near {
+        Some(near) => left + lap * ((near - left) / lap).round(),
+        None => (left + AT_STOP * lap).rem_euclid(lap) - AT_STOP * lap,
+    }
 }
 
 impl Foot {

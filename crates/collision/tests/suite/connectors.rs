@@ -110,15 +110,27 @@ fn a_stop_counts_what_is_left_of_the_rail() {
     assert!((gap(&arch(), 3.0, true, &top) - (3.0 - quarter)).abs() < 1e-15);
     // Beyond the end the rail goes on straight down.
     assert!((gap(&arch(), 0.0, false, &still(2.0, -0.3, 0.0)) + 0.3).abs() < 1e-15);
-    // On a closed rail what lies by next to nothing beyond the seam is beyond it, else it is before it.
+    // On a closed rail what lies by next to nothing beyond the stop is at it; else it has come round, unless it is known that
+    // it was nearer.
     let start = DVec2::new(2.0, 0.0);
     let circle = [EdgeSpec::Arc { to: start, center: DVec2::ZERO, clockwise: false }];
     let circle = Arc::new(RailPath::from_edges(start, &circle).expect("a fine circle"));
     let at_angle = |angle: f64| still(2.0 * angle.cos(), 2.0 * angle.sin(), 0.0);
-    assert!((gap(&circle, 0.0, false, &at_angle(-0.001)) + 0.002).abs() < 1e-14);
-    assert!((gap(&circle, 0.0, false, &at_angle(-0.1)) - (4.0 * quarter - 0.2)).abs() < 1e-14);
-    assert!((gap(&circle, 4.0 * quarter, true, &at_angle(0.001)) + 0.002).abs() < 1e-14);
+    let lap = 4.0 * quarter;
+    assert!((gap(&circle, 0.0, false, &at_angle(-1e-6)) + 2e-6).abs() < 1e-14);
+    assert!((gap(&circle, 0.0, false, &at_angle(-0.001)) - (lap - 0.002)).abs() < 1e-14);
+    assert!((gap(&circle, 0.0, false, &at_angle(-0.1)) - (lap - 0.2)).abs() < 1e-14);
+    assert!((gap(&circle, lap, true, &at_angle(1e-6)) + 2e-6).abs() < 1e-14);
     assert!((gap(&circle, 6.0, true, &at_angle(1.0)) - 4.0).abs() < 1e-14);
+    let stop = fine(ConnectorKind::RailStop { a, path: circle.clone(), at: lap, upper: true });
+    for (left, expected) in
+        [(0.0, -0.002), (0.5 * lap - 0.1, -0.002), (lap, lap - 0.002), (2.0 * lap, 2.0 * lap - 0.002)]
+    {
+        let body = at_angle(0.001);
+        let hint = circle.hint_near(body.pose.position, None).with_left(Some(left));
+        let gap = stop.measure_near(0, &body, &Moving::BACKGROUND, Some(&hint)).gap;
+        assert!((gap - expected).abs() < 1e-14, "{left}: {gap}");
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Connectors among the events: their rows in a region, the pieces of rails, ropes that go taut.
+//! Connectors among the events: their rows in a region, ropes that go taut.
 
 use super::region::Region;
 use crate::rigid::held::settling::Settling;
@@ -7,10 +7,9 @@ use crate::rigid::motion::path::Path;
 use crate::rigid::search::predictions::LONGEST_SPAN;
 use crate::rigid::sources::Source;
 use crate::rigid::step::group::Stop;
-use crate::rigid::step::rows::{RowSource, knot_rooms};
+use crate::rigid::step::rows::RowSource;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
-use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Detector, Flight, Motion,
     MotionBounds, Moving, RailHint, Rope, RopeSearch, rope_contact,
@@ -118,7 +117,8 @@ impl RigidSystem {
         time: Time,
     ) -> Collision {
         let (connector, state) = (self.connector(id), &self.connector_states[id.index()]);
-        let sample = connector.measure_near(row, &moving[0], &moving[1], state.hint_of(row));
+        let hint = self.hint_at(id, row, time);
+        let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
         let row = u32::try_from(row).unwrap_or(u32::MAX);
         let (bodies, tolerances) = ([&moving[0], &moving[1]], &self.settings.tolerances);
         let mut record =
@@ -142,7 +142,7 @@ impl RigidSystem {
     pub(super) fn measure_connector(&self, id: ConnectorId, row: usize, time: Time) -> ConnectorSample {
         let connector = self.connector(id);
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, time));
-        connector.measure_near(row, &a, &b, self.connector_states[id.index()].hint_of(row))
+        connector.measure_near(row, &a, &b, self.hint_at(id, row, time).as_ref())
     }
 
     /// What makes the row of a record.
@@ -151,72 +151,6 @@ impl RigidSystem {
             return Some(RowSource::Connector(id, row as usize));
         }
         Some(RowSource::Contact([record.parties.primary.feature()?, record.parties.normal.feature()?]))
-    }
-
-    /// Notes where on their rails the points of a region's connectors are.
-    pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
-        for &body in &region.bodies {
-            for index in 0..self.connectors_of.of(body).len() {
-                let id = self.connectors_of.of(body)[index];
-                let Some(path) = self.connector(id).path() else { continue };
-                let state = &self.connector_states[id.index()];
-                if state.corner.is_some() {
-                    continue;
-                }
-                let point = self.point_on_rail(id, time);
-                let hint = path.hint_near(point, state.hint.as_ref());
-                // A stop lies on whatever piece: it must see its point pass the joints before it.
-                if !self.connector(id).is_stop() {
-                    self.set_hint(id, hint.staying());
-                } else if !self.is_led(id) {
-                    self.connector_states[id.index()].hint = Some(hint);
-                }
-            }
-        }
-    }
-
-    /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
-    /// seems as near to them.
-    pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
-        self.connector_states[id.index()].hint = Some(hint);
-        for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
-            let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
-            if self.connector(stop).is_stop_of(self.connector(id)) {
-                self.connector_states[stop.index()].hint = Some(hint.moving_on());
-            }
-        }
-    }
-
-    /// True for a stop whose rail is there, too.
-    pub(super) fn is_led(&self, id: ConnectorId) -> bool {
-        let stop = self.connector(id);
-        let beside = self.connectors_of.of(stop.bodies()[0]);
-        beside.iter().any(|&rail| stop.is_stop_of(self.connector(rail)))
-    }
-
-    /// Where [m] the point of a rail or a stop is at a time.
-    pub(super) fn point_on_rail(&self, id: ConnectorId, time: Time) -> DVec2 {
-        let (anchor, _) = self.connector(id).anchors();
-        self.moving_at(anchor.body, time).pose.point_to_world(anchor.point)
-    }
-
-    /// The point of a rail comes to a joint of the path: it goes on along the next piece, unless the joint is a
-    /// corner, where it is for now. True if it is one.
-    pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
-        let Some(path) = self.connector(id).path() else { return false };
-        let place =
-            path.nearest(self.point_on_rail(id, time), self.connector_states[id.index()].hint.as_ref());
-        let ends = path.knots().iter().flat_map(|knot| {
-            let [before, after] = knot_rooms(path, knot, &place);
-            [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
-        });
-        let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
-        let Some((_, knot, forward)) = nearest else { return false };
-        let hint = path.hint_past(knot, forward).staying();
-        let corner = (knot.turn != 0.0).then(|| path.corner_sides(knot));
-        let state = &mut self.connector_states[id.index()];
-        (state.hint, state.corner) = (Some(hint), corner);
-        corner.is_some()
     }
 
     /// Notes which ropes and stops of a region are held from now on.
@@ -333,7 +267,7 @@ impl RigidSystem {
     /// A stop as it is watched along a segment that starts now.
     pub(crate) fn stop(&self, id: ConnectorId) -> Stop {
         let connector = self.connector(id);
-        let hint = self.connector_states[id.index()].hint;
+        let hint = self.hint_at(id, 0, self.now);
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
         // A rail's end that fires again without time going by lies beyond by more than its point sets out by: it
@@ -341,7 +275,7 @@ impl RigidSystem {
         let repeats = f64::from(self.connector_states[id.index()].repeats_at(self.now));
         let lies_beyond = connector.is_stop() && repeats > 0.0;
         let slack = if lies_beyond { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
-        Stop { id, hint, slack: slack.max(self.slack_of(&sample)) }
+        Stop { id, hint, slack: slack.max(self.slack_of(&sample)), way: None }
     }
 
     /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than

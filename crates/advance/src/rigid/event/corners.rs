@@ -64,7 +64,9 @@ impl RigidSystem {
             self.connector_states[id.index()].note_taut(self.now);
             let mut beside = self.connectors_of.of(self.connector(id).bodies()[0]).iter();
             if let Some(&rail) = beside.find(|&&rail| self.stop_in_corner(rail) == Some(id)) {
-                self.connector_states[id.index()].hint = self.connector_states[rail.index()].hint;
+                let left = self.hint_at(id, 0, self.now).and_then(|hint| hint.left());
+                let hint = self.connector_states[rail.index()].hint;
+                self.connector_states[id.index()].hint = hint.map(|hint| hint.with_left(left));
             }
         }
         self.handle_impact(work)
@@ -82,7 +84,8 @@ impl RigidSystem {
             if !stop.is_stop_of(self.connector(rail)) || !path.ends_in_corner(&hint, *upper, *at, accuracy) {
                 return false;
             }
-            let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint));
+            let left = self.hint_at(id, 0, self.now).and_then(|hint| hint.left());
+            let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint.with_left(left)));
             let is_fast = sample.kinematics.rate < -velocity_tol;
             stop.elasticity > 0.0 && is_fast && sample.gap.abs() <= accuracy
         })

@@ -15,7 +15,7 @@ use crate::rigid::step::rows::{HeldRow, RowSource};
 use crate::rigid::step::segment::StepFailure;
 use crate::rigid::system::RigidSystem;
 
-use halfgap_collision::{BodyId, ConnectorId, RailHint};
+use halfgap_collision::{BodyId, ConnectorId};
 use halfgap_contact::InverseInertia;
 
 /// Where a contact has sunk, others of the same bodies may lie so many times as deep.
@@ -115,6 +115,7 @@ impl RigidSystem {
 
     /// Ends a group, whose bodies fly on; its works are booked.
     pub(crate) fn dissolve(&mut self, leader: BodyId) {
+        self.note_ways(leader);
         let Some(mut group) = self.groups.take(leader) else { return };
         self.book_works(&group);
         if group.rows.iter().any(|row| !row.bilateral) {
@@ -445,44 +446,6 @@ impl RigidSystem {
         group_mut.state[first_work..].fill(0.0);
         self.renew_hints(&mut group);
         self.extend_group(group)
-    }
-
-    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by
-    /// what is near. Rows on splines were followed to it.
-    fn renew_hints(&mut self, group: &mut Group) {
-        let count = group.bodies.len();
-        let Group { bodies, state, rows, stops, .. } = group;
-        let found = |id: ConnectorId, hint: Option<&RailHint>| -> Option<RailHint> {
-            let connector = self.connector(id);
-            let (anchor, _) = connector.anchors();
-            let (path, place) = (connector.path()?, bodies.binary_search(&anchor.body).ok()?);
-            let point = body_state(state, count, place).pose().point_to_world(anchor.point);
-            Some(path.hint_near(point, hint))
-        };
-        for stop in stops {
-            let hint = found(stop.id, stop.hint.as_ref());
-            stop.hint = if self.is_led(stop.id) { hint.map(RailHint::staying) } else { hint };
-        }
-        let mechanism = self.mechanism();
-        for row in rows.iter_mut().filter(|row| !mechanism.is_in_corner(row)) {
-            if let RowSource::Connector(id, _) = row.source
-                && self.connector(id).path().is_some_and(|path| !path.knots().is_empty())
-            {
-                row.hint = found(id, row.hint.as_ref()).map(RailHint::staying);
-            }
-        }
-        self.note_hints(rows);
-    }
-
-    /// Notes where on their rails the points of rows are, but for those that rest in a corner.
-    fn note_hints(&mut self, rows: &[HeldRow]) {
-        for row in rows {
-            if let (RowSource::Connector(id, _), Some(hint)) = (row.source, row.hint)
-                && !self.mechanism().is_in_corner(row)
-            {
-                self.set_hint(id, hint);
-            }
-        }
     }
 
     /// Extends a group by a segment and puts it back.

@@ -1,0 +1,171 @@
+//! Where on their rails the points of rails and stops are: pieces, joints and laps.
+//!
+//! A row on a path of pieces stays on the piece on which its point is until an event at a joint is handled, so that nothing
+//! jumps. On a closed path a point just behind a stop and one that has gone a lap since lie at the same place: which it
+//! is, is known by how far it was before the stop.
+
+use super::region::Region;
+use crate::rigid::ending::crossing::{NODES, between_nodes};
+use crate::rigid::step::dynamics::body_state;
+use crate::rigid::step::group::Group;
+use crate::rigid::step::rows::{HeldRow, RowSource, knot_rooms};
+use crate::rigid::system::RigidSystem;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, ConnectorId, RailHint};
+
+impl RigidSystem {
+    /// Where a row of a connector looks for its rail at a time: with how far the point is before a stop, as the segment of
+    /// its body tells, for it may go round by more than half in it.
+    pub(crate) fn hint_at(&self, id: ConnectorId, row: usize, time: Time) -> Option<RailHint> {
+        let hint = self.connector_states.get(id.index())?.hint_of(row).copied()?;
+        Some(hint.with_left(self.way_left(id, time).or(hint.left())))
+    }
+
+    /// How far [m] the point is before a stop of a closed rail at a time of the segment of its body, if that watches it.
+    fn way_left(&self, id: ConnectorId, time: Time) -> Option<f64> {
+        let stop = self.connector(id);
+        if !stop.is_stop() {
+            return None;
+        }
+        let group = self.group_of(stop.bodies()[0])?;
+        let way = group.stops.iter().find(|stop| stop.id == id)?.way?;
+        Some(between_nodes(&way, group.span, time.since(group.start)))
+    }
+
+    /// Notes how far the point is before a stop of a closed rail at a time.
+    fn note_left(&mut self, id: ConnectorId, time: Time) {
+        let stop = self.connector(id);
+        if !(stop.is_stop() && stop.path().is_some_and(|path| path.is_closed())) {
+            return;
+        }
+        let left = self.within_lap(id, self.measure_connector(id, 0, time).gap);
+        let state = &mut self.connector_states[id.index()];
+        state.hint = state.hint.map(|hint| hint.with_left(Some(left)));
+    }
+
+    /// The same for all stops that a group watches, which is to end now.
+    pub(super) fn note_ways(&mut self, leader: BodyId) {
+        for place in 0..self.group_of(leader).map_or(0, |group| group.stops.len()) {
+            if let Some(id) = self.group_of(leader).map(|group| group.stops[place].id) {
+                self.note_left(id, self.now);
+            }
+        }
+    }
+
+    /// The way [m] to a stop that is a lap or more: its point has passed it from behind, where it does not hold it.
+    fn within_lap(&self, id: ConnectorId, left: f64) -> f64 {
+        let lap = self.connector(id).path().map_or(f64::INFINITY, |path| path.length());
+        if left >= lap { left - lap } else { left }
+    }
+
+    /// Notes where on their rails the points of a region's connectors are.
+    pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
+        for &body in &region.bodies {
+            for index in 0..self.connectors_of.of(body).len() {
+                let id = self.connectors_of.of(body)[index];
+                let Some(path) = self.connector(id).path() else { continue };
+                let state = &self.connector_states[id.index()];
+                if state.corner.is_some() {
+                    continue;
+                }
+                let point = self.point_on_rail(id, time);
+                let hint = path.hint_near(point, state.hint.as_ref());
+                // A stop lies on whatever piece: it must see its point pass the joints before it.
+                if !self.connector(id).is_stop() {
+                    self.set_hint(id, hint.staying());
+                } else if !self.is_led(id) {
+                    let left = self.connector_states[id.index()].hint.and_then(|hint| hint.left());
+                    self.connector_states[id.index()].hint = Some(hint.with_left(left));
+                }
+            }
+            for index in 0..self.connectors_of.of(body).len() {
+                self.note_left(self.connectors_of.of(body)[index], time);
+            }
+        }
+    }
+
+    /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
+    /// seems as near to them.
+    pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
+        self.connector_states[id.index()].hint = Some(hint);
+        for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
+            let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
+            if self.connector(stop).is_stop_of(self.connector(id)) {
+                let left = self.connector_states[stop.index()].hint.and_then(|hint| hint.left());
+                self.connector_states[stop.index()].hint = Some(hint.moving_on().with_left(left));
+            }
+        }
+    }
+
+    /// True for a stop whose rail is there, too.
+    fn is_led(&self, id: ConnectorId) -> bool {
+        let stop = self.connector(id);
+        let beside = self.connectors_of.of(stop.bodies()[0]);
+        beside.iter().any(|&rail| stop.is_stop_of(self.connector(rail)))
+    }
+
+    /// Where [m] the point of a rail or a stop is at a time.
+    pub(super) fn point_on_rail(&self, id: ConnectorId, time: Time) -> DVec2 {
+        let (anchor, _) = self.connector(id).anchors();
+        self.moving_at(anchor.body, time).pose.point_to_world(anchor.point)
+    }
+
+    /// The point of a rail comes to a joint of the path: it goes on along the next piece, unless the joint is a
+    /// corner, where it is for now. True if it is one.
+    pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
+        let Some(path) = self.connector(id).path() else { return false };
+        let place =
+            path.nearest(self.point_on_rail(id, time), self.connector_states[id.index()].hint.as_ref());
+        let ends = path.knots().iter().flat_map(|knot| {
+            let [before, after] = knot_rooms(path, knot, &place);
+            [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
+        });
+        let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
+        let Some((_, knot, forward)) = nearest else { return false };
+        let hint = path.hint_past(knot, forward).staying();
+        let corner = (knot.turn != 0.0).then(|| path.corner_sides(knot));
+        let state = &mut self.connector_states[id.index()];
+        (state.hint, state.corner) = (Some(hint), corner);
+        corner.is_some()
+    }
+
+    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by
+    /// what is near. Rows on splines were followed to it.
+    pub(super) fn renew_hints(&mut self, group: &mut Group) {
+        let count = group.bodies.len();
+        let Group { bodies, state, rows, stops, .. } = group;
+        let found = |id: ConnectorId, hint: Option<&RailHint>| -> Option<RailHint> {
+            let connector = self.connector(id);
+            let (anchor, _) = connector.anchors();
+            let (path, place) = (connector.path()?, bodies.binary_search(&anchor.body).ok()?);
+            let point = body_state(state, count, place).pose().point_to_world(anchor.point);
+            Some(path.hint_near(point, hint))
+        };
+        for stop in stops {
+            let left = stop.way.take().map(|way| self.within_lap(stop.id, way[NODES - 1]));
+            let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_left(left));
+            stop.hint = if self.is_led(stop.id) { hint.map(RailHint::staying) } else { hint };
+        }
+        let mechanism = self.mechanism();
+        for row in rows.iter_mut().filter(|row| !mechanism.is_in_corner(row)) {
+            if let RowSource::Connector(id, _) = row.source
+                && self.connector(id).path().is_some_and(|path| !path.knots().is_empty())
+            {
+                row.hint = found(id, row.hint.as_ref()).map(RailHint::staying);
+            }
+        }
+        self.note_hints(rows);
+    }
+
+    /// Notes where on their rails the points of rows are, but for those that rest in a corner.
+    pub(super) fn note_hints(&mut self, rows: &[HeldRow]) {
+        for row in rows {
+            if let (RowSource::Connector(id, _), Some(hint)) = (row.source, row.hint)
+                && !self.mechanism().is_in_corner(row)
+            {
+                self.set_hint(id, hint);
+            }
+        }
+    }
+}
