@@ -280,7 +280,7 @@ impl RigidSystem {
         let (rest, at_joint) = (self.rest_speed(), work.region.cause == Cause::SmoothJoint);
         let mut rows = self.last_impact.rows.iter();
         let happened = rows.any(|row| match row.collision.parties.bilateral {
-            true => !at_joint,
+            true => !at_joint && row.rate_before.abs() > rest,
             false => row.rate_before < -rest,
         });
         if happened {

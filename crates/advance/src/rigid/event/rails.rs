@@ -144,8 +144,9 @@ impl RigidSystem {
         };
         for stop in stops {
             let left = stop.way.take().map(|way| self.within_lap(stop.id, way[NODES - 1]));
+            // Ropes that are watched like stops have no hints.
             let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_left(left));
-            stop.hint = if self.is_led(stop.id) { hint.map(RailHint::staying) } else { hint };
+            stop.hint = hint.map(|hint| if self.is_led(stop.id) { hint.staying() } else { hint });
         }
         let mechanism = self.mechanism();
         for row in rows.iter_mut().filter(|row| !mechanism.is_in_corner(row)) {
