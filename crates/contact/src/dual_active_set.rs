@@ -37,10 +37,11 @@ pub(crate) const REFINED: f64 = 0.125;
 const LARGER: f64 = 2.0;
 
 /// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of
-/// one of them for little. So many times it may: of rows that all but depend on each other now this, now that
-/// one closes by more than noise, for ever.
+/// one of them for little. So many times it may, and oftener where no other attempt is as exact: of rows that all but
+/// depend on each other now this, now that one closes by more than noise, for ever.
 const SLIGHT: f64 = 100.0;
 const MOST_SLIGHT: usize = 10;
+const MOST_SLIGHT_AT_LAST: usize = 100;
 
 /// Passes over all rows that a pivot takes beside those of the factor.
 const ROW_PASSES: usize = 5;
@@ -105,6 +106,8 @@ pub(crate) struct Attempt {
     pub(crate) doubts: bool,
     /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
     pub(crate) contradiction: f64,
+    /// How often a dependent row may take the place of a closed one for little.
+    pub(crate) slight_swaps: usize,
     /// Whether what is left of bilateral rows that nearly depend on others counts as a contradiction, too.
     pub(crate) is_last: bool,
 }
@@ -199,7 +202,8 @@ impl DualActiveSet {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let Settings { dependence, inconsistency, .. } = self.settings;
-        let attempt = Attempt { dependence, doubts: true, contradiction: inconsistency, is_last: false };
+        let first = self.attempts().first;
+        let attempt = Attempt { dependence, doubts: true, contradiction: inconsistency, ..first };
         self.attempt(problem, start, solution, attempt)
     }
 
@@ -255,8 +259,14 @@ impl DualActiveSet {
     pub(crate) fn attempts(&self) -> Attempts {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
-        let usual = Attempt { dependence, doubts: false, contradiction: as_given, is_last: false };
-        let strict = Attempt { dependence: least_dependence, ..usual };
+        let usual = Attempt {
+            dependence,
+            doubts: false,
+            contradiction: as_given,
+            slight_swaps: MOST_SLIGHT,
+            is_last: false,
+        };
+        let strict = Attempt { dependence: least_dependence, slight_swaps: MOST_SLIGHT_AT_LAST, ..usual };
         let least_squares = Attempt { contradiction: inconsistency, ..usual };
         let last = Attempt { is_last: true, ..least_squares };
         let first = match self.settings.contradiction {
@@ -406,7 +416,7 @@ impl DualActiveSet {
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
             match self.blocking(full, rounding) {
-                Some(_) if relation.dependent && self.swaps_in_circles(row) => return End::Stopped,
+                Some(_) if relation.dependent && self.swaps_in_circles(row, attempt) => return End::Stopped,
                 Some((at, length)) => {
                     self.advance(row, length);
                     self.closed.acceleration[row] += length * relation.complement.max(0.0);
@@ -424,10 +434,10 @@ impl DualActiveSet {
     }
 
     /// Counts that a dependent row takes the place of a closed one, if that is for little; true if it was so too often.
-    fn swaps_in_circles(&mut self, row: usize) -> bool {
+    fn swaps_in_circles(&mut self, row: usize, attempt: Attempt) -> bool {
         let is_slight = self.closed.acceleration[row] > -SLIGHT * self.noise();
         self.slight_swaps += usize::from(is_slight);
-        self.slight_swaps > MOST_SLIGHT
+        self.slight_swaps > attempt.slight_swaps
     }
 
     /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on

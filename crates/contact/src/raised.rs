@@ -40,7 +40,7 @@ impl DualActiveSet {
             dependence: LOST * raise,
             doubts: false,
             contradiction: self.settings.natural_residual / 2.0,
-            is_last: false,
+            ..self.attempts().first
         };
         self.prepare(problem, warm, solution, attempt);
         self.closed.proximal = raise;

@@ -60,6 +60,15 @@ fn a_contact_holds_what_two_pins_at_one_place_would_hold_by_huge_forces() {
 }
 
 #[test]
+fn rows_that_take_each_others_place_for_little_are_left_at_it_for_a_while() {
+    let case = Case::found("brick_wall_off_by_1e-9");
+    let mut solution = Solution::new();
+    DualActiveSet::default().solve(&case.problem, &mut solution).unwrap();
+    let judged = judge(&case.problem, &solution.force);
+    assert!(judged.good() && judged.growth < 100.0, "{judged:?}");
+}
+
+#[test]
 fn what_takes_more_digits_than_usual_is_solved() {
     for name in ["truss_of_9_rods", "ropes_nearly_parallel", "block_jammed_in_a_pit"] {
         let case = Case::found(name);
