@@ -36,9 +36,11 @@ pub struct Flight {
 
 impl Flight {
     /// The flight from a state with the given acceleration [m/s^2] and rates [1/s] at which damping takes the
-    /// linear and the angular velocity.
+    /// linear and the angular velocity. A rate that is negative, or not a number, counts as none: nothing here feeds
+    /// motions.
     #[must_use]
     pub fn new(start: BodyState, acceleration: DVec2, linear_rate: f64, angular_rate: f64) -> Self {
+        let [linear_rate, angular_rate] = [linear_rate, angular_rate].map(|rate| rate.max(0.0));
         let start_rotation = Rotation::from_angle(start.angle);
         Self { start, start_rotation, acceleration, linear_rate, angular_rate }
     }

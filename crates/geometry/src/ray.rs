@@ -42,8 +42,8 @@ pub struct RayHit {
 impl Shape {
     /// Finds the first point within `max_distance` [m] at which a ray meets the outline, from outside or inside.
     ///
-    /// None is met in a direction that is zero or no number. Whether a ray that starts on the outline meets it at once, and whether one that only touches an arc meets it, is
-    /// for rounding to say.
+    /// None is met in a direction that is zero or no number. Whether a ray that starts on the outline meets it at
+    /// once, and whether one that only touches an arc meets it, is for rounding to say.
     ///
     /// # Examples
     ///
@@ -81,7 +81,10 @@ impl Ray {
 
     /// The ray with a unit vector as its direction, if it has one.
     fn of_unit_direction(&self) -> Option<Self> {
-        Some(Self { direction: self.direction.try_normalize()?, ..*self })
+        // Squares of what is very long, or short, are no numbers.
+        let size = self.direction.abs().max_element();
+        let direction = (self.direction / size).try_normalize()?;
+        Some(Self { direction, ..*self })
     }
 
     /// The same for a direction that is a unit vector.

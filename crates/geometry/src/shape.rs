@@ -17,6 +17,8 @@ use std::sync::Arc as Shared;
 
 /// A corner whose edges' directions differ by less than this angle [rad] is smooth: the edges carry all contacts there.
 const SMOOTH_CORNER: f64 = 1e-9;
+/// A line reaches beyond a smooth joint with another, for bodies that are so many times as large as its shape.
+const LARGEST_NEIGHBOUR: f64 = 64.0;
 
 /// A flat, rigid shape with holes, in body coordinates. Clones share what lies in memory.
 #[derive(Clone, Debug)]
@@ -236,7 +238,9 @@ impl Shape {
         let boxes = paths.iter().map(Path::bounds);
         let bounds = boxes.reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
         let mass = MassProperties::of_paths(&paths, bounds.center());
-        let (features, sources): (Vec<_>, Vec<_>) = paths.iter().enumerate().flat_map(path_features).unzip();
+        let size = bounds.size().length();
+        let all = paths.iter().enumerate().flat_map(|path| path_features(path, size));
+        let (features, sources): (Vec<_>, Vec<_>) = all.unzip();
         let boxes: Vec<Aabb> = sources.iter().map(|source| feature_box(&paths, source)).collect();
         let tree = FeatureTree::build(&features, &boxes);
         let reach = features.iter().map(|feature| feature.farthest(DVec2::ZERO)).fold(0.0, f64::max);
@@ -284,7 +288,7 @@ fn feature_extent(feature: &Feature, direction: DVec2) -> f64 {
 }
 
 /// The features of a path, each edge after the vertex at which it starts.
-fn path_features((index, path): (usize, &Path)) -> Vec<(Feature, FeatureSource)> {
+fn path_features((index, path): (usize, &Path), size: f64) -> Vec<(Feature, FeatureSource)> {
     let edges = path.edges();
     let mut found = Vec::with_capacity(2 * edges.len());
     for (place, edge) in edges.iter().enumerate() {
@@ -298,7 +302,9 @@ fn path_features((index, path): (usize, &Path)) -> Vec<(Feature, FeatureSource)>
         if let Some(vertex) = corner(before, edge) {
             found.push((Feature::Round(vertex), source(FeatureKind::Vertex)));
         }
-        let feature = edge_feature(edge, [is_smooth(before, edge), is_smooth(edge, after)]);
+        let joints = [(before, corner_turn(before, edge)), (after, corner_turn(edge, after))];
+        let smooth = joints.map(|(other, turn)| (turn.abs() <= SMOOTH_CORNER).then_some((other, turn.abs())));
+        let feature = edge_feature(edge, smooth, size);
         found.push((feature, source(feature.kind())));
     }
     found
@@ -329,20 +335,30 @@ fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
     (turn > SMOOTH_CORNER).then_some(RoundFeature { center: after.from(), radius: 0.0, range })
 }
 
-/// The feature of an edge, which is told at which of its two ends the outline goes on smoothly.
-fn edge_feature(edge: &Edge, smooth: [bool; 2]) -> Feature {
+/// The feature of an edge of a shape of a size [m], which is told with which neighbour, and by what turn [rad], the outline
+/// goes on smoothly at its two ends.
+///
+/// No vertex stands at a smooth joint, so features take in what their neighbours could leave open: the surface there
+/// differs from them by the square of such turns.
+fn edge_feature(edge: &Edge, smooth: [Option<(&Edge, f64)>; 2], size: f64) -> Feature {
     match edge {
         Edge::Line(line) => {
             let (normal, direction) = (line.normal(), line.direction());
+            let [before, after] = smooth.map(|joint| match joint {
+                Some((Edge::Line(other), turn)) => (turn * LARGEST_NEIGHBOUR * size).min(other.length()),
+                _ => 0.0,
+            });
             let start = direction.dot(line.from());
             // Both ends lie on the line to rounding; the middle is as far from either as can be.
             let offset = normal.dot(0.5 * (line.from() + line.to()));
-            Feature::Line(LineFeature { normal, direction, offset, start, end: start + line.length() })
+            let (start, end) = (start - before, start + line.length() + after);
+            Feature::Line(LineFeature { normal, direction, offset, start, end })
         }
         Edge::Arc(arc) => {
-            // No vertex stands at a smooth joint, so the arc's range takes in what its neighbour could leave open: the
-            // surface there differs from the arc by the square of that angle.
-            let [first, last] = smooth.map(|smooth| if smooth { SMOOTH_CORNER } else { 0.0 });
+            // What a flat arc reaches beyond its end is no longer than of an arc as large as its shape.
+            let flatness = (size / arc.radius()).min(1.0);
+            let [first, last] =
+                smooth.map(|joint| joint.map_or(0.0, |(_, turn)| turn.max(SMOOTH_CORNER * flatness)));
             let (radius, grown) =
                 if arc.is_convex() { (arc.radius(), [first, last]) } else { (-arc.radius(), [last, first]) };
             let range = arc.directions().grown(grown[0], grown[1], arc.sweep_angle().abs());

@@ -311,6 +311,70 @@ fn a_speck_far_above_a_floor_is_searched_in_one_call() {
     assert!((found.time - 0.4f64.sqrt()).abs() < 1e-9, "{found:?}");
 }
 
+/// The time [s] at which a disc of a radius [m] that falls from half a metre above a height [m] first touches a shape.
+fn falls_onto(shape: &Shape, radius: f64, place: DVec2) -> Option<f64> {
+    let disc = Shape::disc(radius).expect("a fine radius");
+    let rest = Flight::fixed(DVec2::ZERO, 0.0);
+    let position = place + DVec2::new(0.0, radius + 0.5);
+    let state = BodyState { position, velocity: DVec2::NEG_Y, ..BodyState::default() };
+    let fall = Flight::new(state, DVec2::ZERO, 0.0, 0.0);
+    let side_a = MovingShape { shape: &disc, motion: &fall, offset: 0.0 };
+    let side_b = MovingShape { shape, motion: &rest, offset: 0.0 };
+    let tolerances = Tolerances { target_gap: 1e-8, accuracy: 6e-9, velocity_tol: 1e-9 };
+    match first_contact(&side_a, &side_b, 1.0, &tolerances, &SearchSettings::default()) {
+        Search::Contact(contact) => Some(contact.time),
+        Search::NoneBefore(_) => None,
+    }
+}
+
+#[test]
+fn a_disc_does_not_fall_through_a_joint_of_two_lines_that_all_but_lie_on_one() {
+    for turn in [1e-15, 1e-12, 1e-10, 5e-10, 9e-10, 1.1e-9, 1e-8] {
+        let low = -0.5 * turn;
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, low], [0.0, 0.0], [-1.0, low]].map(DVec2::from);
+        let roof = Shape::polygon(&corners).expect("a fine polygon");
+        for radius in [1e-3, 0.5, 20.0] {
+            let time = falls_onto(&roof, radius, DVec2::ZERO);
+            assert!(time.is_some_and(|time| (time - 0.5).abs() < 2e-8), "{turn} {radius}: {time:?}");
+        }
+    }
+}
+
+#[test]
+fn a_flat_arc_does_not_reach_beyond_the_round_corner_to_which_it_is_joined() {
+    // A block a metre wide with crowned top and bottom; its round corners end at x = 0.5 + the corner's radius.
+    for (crown, corner) in [(1e3, 1e-3), (1e5, 1e-3), (1e6, 1e-4), (1e4, 1e-6)] {
+        let half = (0.5_f64 / crown).asin();
+        let top = DVec2::new(0.5, 0.1);
+        let center = top - corner * DVec2::new(half.sin(), half.cos());
+        let side = center + DVec2::new(corner, 0.0);
+        let bulges = [0.0, ((0.5 * std::f64::consts::PI - half) / 4.0).tan(), (half / 2.0).tan()];
+        let ends = [(side, 0), (top, 1), (DVec2::new(-top.x, top.y), 2), (DVec2::new(-side.x, side.y), 1)];
+        let edges = ends.iter().chain(&ends).enumerate().map(|(place, &(to, kind))| {
+            let to = if place < ends.len() { to } else { -to };
+            EdgeSpec::Bulge { to, bulge: bulges[kind] }
+        });
+        let spec = PathSpec { start: DVec2::new(side.x, -side.y), edges: edges.collect() };
+        let block = Shape::from_paths(&[spec]).expect("a fine outline");
+        let widest = block.bounds_at(&Pose::IDENTITY).max.x;
+        assert!((widest - side.x).abs() < 1e-8, "{crown} {corner}: {widest} m, not {}", side.x);
+        // Just beside it a small disc falls past.
+        let beside = DVec2::new(side.x + 1e-4 + 2e-8, 0.1);
+        assert_eq!(falls_onto(&block, 1e-4, beside), None, "{crown} {corner}");
+        let above = falls_onto(&block, 1e-4, DVec2::new(0.45, 0.1));
+        assert!(above.is_some_and(|time| time < 0.5), "{crown} {corner}: {above:?}");
+    }
+}
+
+#[test]
+fn a_rate_that_feeds_a_motion_counts_as_none() {
+    let state = BodyState { velocity: DVec2::X, angular_velocity: 1.0, ..BodyState::default() };
+    for rate in [-1.0, f64::NAN] {
+        let moved = Flight::new(state, DVec2::ZERO, rate, rate).state_at(2.0);
+        assert_eq!((moved.position, moved.angle), (DVec2::new(2.0, 0.0), 2.0));
+    }
+}
+
 #[test]
 fn a_rule_with_a_wider_gap_than_all_others_fires() {
     // A block 5 mm over a cradle hops by 1 mm/s: it turns back after 0.1 ms, above the gap at which other

@@ -378,3 +378,17 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn rays_go_in_directions_of_any_length() {
+    let block = Shape::block(1.0, 1.0).expect("a fine block");
+    for length in [1e-320, 1e-200, 1e-160, 1.0, 1e160, 1e300] {
+        let ray = Ray { origin: DVec2::new(-2.0, 0.1), direction: DVec2::new(length, 0.0) };
+        let hit = block.cast_ray(&ray, f64::INFINITY).expect("it meets the block");
+        assert_eq!(hit.distance, 1.5, "{length}");
+    }
+    for direction in [DVec2::ZERO, DVec2::new(f64::NAN, 1.0), DVec2::new(f64::INFINITY, 1.0)] {
+        let ray = Ray { origin: DVec2::new(-2.0, 0.1), direction };
+        assert_eq!(block.cast_ray(&ray, f64::INFINITY), None, "{direction}");
+    }
+}
