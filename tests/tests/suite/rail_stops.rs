@@ -420,3 +420,37 @@ fn what_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
         assert!(off < 10.0 * tolerance, "{tolerance}: {off} m");
     }
 }
+
+#[test]
+fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
+    // Along its straight pieces a step goes on far beyond the corners, where other places are nearer.
+    let corner = |k: usize| {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_3 * k as f64 + std::f64::consts::FRAC_PI_2).sin_cos();
+        [cos, sin]
+    };
+    let edges: String =
+        (1..=6).map(|k| corner(k % 6)).map(|[x, y]| format!("{{ line = [{x:?}, {y:?}] }}, ")).collect();
+    let [x, y] = corner(0);
+    let rail = format!(
+        "a = {{ body = \"bead\", point = [0.0, 0.0] }}, path = {{ start = [{x:?}, {y:?}], edges = [{edges}] }}"
+    );
+    for (start, at) in [(0.44, 5.13), (0.7, 4.6), (0.2, 5.7)] {
+        for tolerance in [1e-5, 1e-8, 1e-9, 1e-10] {
+            let place = DVec2::from(corner(0)).lerp(DVec2::from(corner(1)), start);
+            let mut world = world_of(&format!(
+                "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 4.0, tolerance = {tolerance:e} }}\n\
+                 force = [{{ gravity = {{ acceleration = [0.0, -9.81] }} }}]\n\n\
+                 [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+                 position = [{:?}, {:?}]\n\n[[connector]]\nrail = {{ {rail} }}\n\n\
+                 [[connector]]\nrail_stop = {{ {rail}, at = {at:?}, upper = false }}\n",
+                place.x, place.y
+            ));
+            let bead = world.find("bead").expect("the bead");
+            world.advance_to(4.0, &mut |_| ()).expect("it goes on");
+            // It slides down three sides, to the lowest corner and over it, and comes to rest there.
+            let state = world.state(bead);
+            let off = state.position.distance(DVec2::NEG_Y);
+            assert!(off < 1e-6, "{start} m, {at} m, {tolerance}: {state:?}");
+        }
+    }
+}

@@ -350,6 +350,12 @@ impl RailHint {
         Self { left, ..self }
     }
 
+    /// True if it stays on the piece.
+    #[must_use]
+    pub fn is_staying(&self) -> bool {
+        self.stays
+    }
+
     /// How far before a stop the point was [m], if that is known.
     #[must_use]
     pub fn left(&self) -> Option<f64> {

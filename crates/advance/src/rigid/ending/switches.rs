@@ -17,8 +17,7 @@ impl Dynamics<'_> {
     /// When a stop that is not held closes. One from which its point has just set out is touched at the
     /// start: the search then begins with a part of the segment so short that the point is off. On a closed
     /// rail what has gone by a stop seems to have come round: laps are told apart by what is read before.
-    pub(super) fn find_stop(&mut self, place: usize) -> Option<f64> {
-        let stop = self.group.stops[place];
+    pub(super) fn find_stop(&mut self, stop: Stop) -> Option<f64> {
         let path = self.physics.mechanism.connectors[stop.id.index()].path();
         let lap = path.filter(|path| path.is_closed()).map(|path| path.length());
         let mut reach = self.group.span;
@@ -28,9 +27,6 @@ impl Dynamics<'_> {
                 let before = values[index.saturating_sub(1)];
                 let value = self.stop_at(stop, node(index, reach));
                 values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
-            }
-            if lap.is_some() && reach == self.group.span {
-                self.group.stops[place].way = Some(values.map(|value| value - stop.slack));
             }
             let touches = values[0] <= 0.0;
             values[0] = values[0].max(0.0);

@@ -163,8 +163,8 @@ impl Dynamics<'_> {
         self.find_first(&mut earliest, &samples.heights, &SINKINGS);
         self.stage.samples = samples;
         for place in 0..self.group.stops.len() {
-            let id = self.group.stops[place].id;
-            earliest.offer(self.find_stop(place), SegmentEnd::Stop(id));
+            let stop = self.group.stops[place];
+            earliest.offer(self.find_stop(stop), SegmentEnd::Stop(stop.id));
         }
         for place in 0..self.group.laws.len() {
             let law = self.group.laws[place];

@@ -275,7 +275,7 @@ impl RigidSystem {
         let repeats = f64::from(self.connector_states[id.index()].repeats_at(self.now));
         let lies_beyond = connector.is_stop() && repeats > 0.0;
         let slack = if lies_beyond { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
-        Stop { id, hint, slack: slack.max(self.slack_of(&sample)), way: None }
+        Stop { id, hint, slack: slack.max(self.slack_of(&sample)), is_noted: false }
     }
 
     /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than

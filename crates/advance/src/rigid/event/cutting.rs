@@ -38,6 +38,7 @@ impl RigidSystem {
     /// Cuts the groups of a region at the present time, or a little off, and ends them: their bodies fly on from there.
     pub(crate) fn cut_groups(&mut self, region: &mut Region) {
         self.complete_dense();
+        region.groups.iter().for_each(|&leader| self.note_ways(leader));
         let seen = self.now;
         self.measure_touches(region);
         let gap = self.gap_of_cause(region.cause, seen).map(|(gap, _)| gap);

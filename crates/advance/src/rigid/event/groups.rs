@@ -433,6 +433,7 @@ impl RigidSystem {
 
     /// Goes on with a group whose segment has come to its natural end.
     pub(crate) fn continue_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
+        self.note_ways(leader);
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
         self.book_works(&group);
         group.start = group.end();

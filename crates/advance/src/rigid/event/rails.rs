@@ -5,7 +5,6 @@
 //! is, is known by how far it was before the stop.
 
 use super::region::Region;
-use crate::rigid::ending::crossing::{NODES, between_nodes};
 use crate::rigid::step::dynamics::body_state;
 use crate::rigid::step::group::Group;
 use crate::rigid::step::rows::{HeldRow, RowSource, knot_rooms};
@@ -14,23 +13,34 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 
+/// Number of times at which a point is looked for along a segment: it goes round by less than half in between.
+const LOOKS: u32 = 8;
+
 impl RigidSystem {
-    /// Where a row of a connector looks for its rail at a time: with how far the point is before a stop, as the segment of
-    /// its body tells, for it may go round by more than half in it.
+    /// Where a row of a connector looks for its rail at a time: with how far the point is before a stop, for it may go round
+    /// by more than half within the segment of its body.
     pub(crate) fn hint_at(&self, id: ConnectorId, row: usize, time: Time) -> Option<RailHint> {
         let hint = self.connector_states.get(id.index())?.hint_of(row).copied()?;
-        Some(hint.with_left(self.way_left(id, time).or(hint.left())))
+        Some(hint.with_left(self.followed(id, time).or(hint.left())))
     }
 
-    /// How far [m] the point is before a stop of a closed rail at a time of the segment of its body, if that watches it.
-    fn way_left(&self, id: ConnectorId, time: Time) -> Option<f64> {
-        let stop = self.connector(id);
-        if !stop.is_stop() {
-            return None;
+    /// How far [m] the point is before a stop of a closed rail at a time, followed along the segment of its body, which
+    /// watches the stop.
+    fn followed(&self, id: ConnectorId, time: Time) -> Option<f64> {
+        let connector = self.connector(id);
+        let path = connector.path().filter(|path| connector.is_stop() && path.is_closed())?;
+        let (anchor, _) = connector.anchors();
+        let group = self.group_of(anchor.body)?;
+        let stop = group.stops.iter().find(|stop| stop.id == id && !stop.is_noted)?;
+        let (mut hint, span) = (stop.hint?, time.since(group.start));
+        for look in 1..=LOOKS {
+            let at = group.start.plus(span * f64::from(look) / f64::from(LOOKS));
+            let [a, b] = connector.bodies().map(|body| self.moving_at(body, at));
+            let left = connector.measure_near(0, &a, &b, Some(&hint)).gap;
+            let next = path.hint_near(a.pose.point_to_world(anchor.point), Some(&hint));
+            hint = if hint.is_staying() { next.staying() } else { next }.with_left(Some(left));
         }
-        let group = self.group_of(stop.bodies()[0])?;
-        let way = group.stops.iter().find(|stop| stop.id == id)?.way?;
-        Some(between_nodes(&way, group.span, time.since(group.start)))
+        hint.left()
     }
 
     /// Notes how far the point is before a stop of a closed rail at a time.
@@ -44,11 +54,13 @@ impl RigidSystem {
         state.hint = state.hint.map(|hint| hint.with_left(Some(left)));
     }
 
-    /// The same for all stops that a group watches, which is to end now.
+    /// The same for all stops that a group watches, the segment of which ends now.
     pub(super) fn note_ways(&mut self, leader: BodyId) {
         for place in 0..self.group_of(leader).map_or(0, |group| group.stops.len()) {
-            if let Some(id) = self.group_of(leader).map(|group| group.stops[place].id) {
-                self.note_left(id, self.now);
+            let Some(group) = self.groups.by_leader[leader.index()].as_deref() else { return };
+            self.note_left(group.stops[place].id, self.now);
+            if let Some(group) = self.groups.by_leader[leader.index()].as_deref_mut() {
+                group.stops[place].is_noted = true;
             }
         }
     }
@@ -143,7 +155,8 @@ impl RigidSystem {
             Some(path.hint_near(point, hint))
         };
         for stop in stops {
-            let left = stop.way.take().map(|way| self.within_lap(stop.id, way[NODES - 1]));
+            stop.is_noted = false;
+            let left = self.connector_states[stop.id.index()].hint.and_then(|hint| hint.left());
             // Ropes that are watched like stops have no hints.
             let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_left(left));
             stop.hint = hint.map(|hint| if self.is_led(stop.id) { hint.staying() } else { hint });

@@ -5,7 +5,6 @@ use super::singular::Kept;
 use super::stiff::Stiffness;
 use super::tree::JointTree;
 use crate::ode::{Accepted, SegmentPolynomial};
-use crate::rigid::ending::crossing::NODES;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::HeldRows;
@@ -42,8 +41,8 @@ pub(crate) struct Stop {
     pub(crate) hint: Option<RailHint>,
     /// How far [m] it may sink before it fires: more than nothing where it is touched without force.
     pub(crate) slack: f64,
-    /// How far [m] the point is before it at the nodes of the segment, if the path is closed.
-    pub(crate) way: Option<[f64; NODES]>,
+    /// Where its point has come to has been noted: its body is about to leave the segment.
+    pub(crate) is_noted: bool,
 }
 
 /// Bodies with a common segment.
