@@ -111,14 +111,21 @@ impl PathSpec {
         if self.start.is_finite() { edge } else { Some(0) }
     }
 
-    /// Box around all end points and the circles of all arcs of half a turn or more: what "the size of the outline" is
-    /// measured on.
+    /// Box around all end points and the circles of all arcs of half a turn or more, and of one that is all of the path:
+    /// what "the size of the outline" is measured on.
     fn rough_bounds(&self) -> Aabb {
         let mut from = self.start;
         let mut bounds = Aabb::around(from);
         for edge in &self.edges {
             bounds = bounds.including(edge.to());
-            if let Some((center, radius)) = edge.major_circle(from) {
+            let circle = match *edge {
+                // It closes, whichever side of its start rounding has its end.
+                EdgeSpec::Arc { center, .. } if self.edges.len() == 1 => {
+                    Some((center, (from - center).length()))
+                }
+                _ => edge.major_circle(from),
+            };
+            if let Some((center, radius)) = circle {
                 bounds = bounds.union(Aabb::around_disc(center, radius));
             }
             from = edge.to();

@@ -314,11 +314,12 @@ fn path_features((index, path): (usize, &Path), size: f64) -> Vec<(Feature, Feat
 fn corner_turn(before: &Edge, after: &Edge) -> f64 {
     let (arriving, leaving) = (before.end_direction(), after.start_direction());
     let turn = libm::atan2(arriving.perp_dot(leaving), arriving.dot(leaving));
-    if PI - turn.abs() >= SMOOTH_CORNER {
+    let bend = before.curvature() + after.curvature();
+    if PI - turn.abs() >= SMOOTH_CORNER || bend == 0.0 {
         return turn;
     }
     // At a cusp the directions are opposite to rounding: which edge lies on the left is for the curvatures to say.
-    let solid_between = before.curvature() + after.curvature() < 0.0;
+    let solid_between = bend < 0.0;
     if solid_between { PI } else { -PI }
 }
 

@@ -180,3 +180,39 @@ fn a_gear_is_found_by_its_tree() {
     assert!((wheel.edge(found.edge_a).nearest(on_wheel) - on_wheel).length() < 1e-15 * 4.0);
     assert!(wheel.contains(v(0.0, 0.999)) && !wheel.contains(v(0.0, 1.1)));
 }
+
+#[test]
+fn an_arc_that_is_all_of_a_path_is_a_circle_however_its_end_is_rounded() {
+    for step in 0..200 {
+        let angle = 0.031 * f64::from(step);
+        let start = v(angle.cos(), angle.sin());
+        for off in [0.0, 1e-7, -1e-7] {
+            let (sin, cos) = (angle + TAU + off).sin_cos();
+            for clockwise in [false, true] {
+                let arc = EdgeSpec::Arc { to: v(cos, sin), center: DVec2::ZERO, clockwise };
+                let disc = Shape::from_paths(&[PathSpec { start, edges: vec![arc] }]);
+                let area = disc.expect("a circle").mass_properties().area;
+                assert!((area - PI).abs() < 1e-12, "{angle} {off}: {area}");
+            }
+        }
+    }
+    let half = EdgeSpec::Arc { to: v(-1.0, 0.0), center: DVec2::ZERO, clockwise: false };
+    assert!(Shape::from_paths(&[PathSpec { start: DVec2::X, edges: vec![half] }]).is_err());
+}
+
+#[test]
+fn the_tip_of_a_needle_is_a_vertex_however_sharp() {
+    let (along, aside) = (v(0.6, 0.8), v(-0.8, 0.6));
+    for width in [0.9e-9, 1.1e-9, 1e-6] {
+        let tip = DVec2::ZERO;
+        let ends = [along - 0.5 * width * aside, along + 0.5 * width * aside];
+        match Shape::polygon(&[tip, ends[0], ends[1]]) {
+            Ok(needle) => {
+                let vertices = kinds(&needle).iter().filter(|kind| **kind == FeatureKind::Vertex).count();
+                assert_eq!(vertices, 3, "{width}");
+            }
+            // As wide as what counts as one point, it may be refused, but not taken without its tip.
+            Err(error) => assert!(width < 1e-8, "{width}: {error}"),
+        }
+    }
+}
