@@ -49,7 +49,7 @@ impl ConnectorState {
 
     /// How often before a rope has gone taut, or a stop was met, at the present time: a rope lies nearer to its
     /// length than the search can tell.
-    fn repeats_at(&self, now: Time) -> u32 {
+    pub(super) fn repeats_at(&self, now: Time) -> u32 {
         if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
     }
 

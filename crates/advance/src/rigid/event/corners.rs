@@ -16,7 +16,10 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::step::rows::RowSource;
 use crate::rigid::system::RigidSystem;
 use glam::DVec2;
-use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector, Tolerances};
+use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
+
+/// How often without time going by a stop in a corner is met.
+const MOST_AGAIN: u32 = 2;
 
 /// A corner of a rail in which its point is, in a region.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +52,10 @@ impl RigidSystem {
 
     /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
     pub(super) fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
-        if let Some(stop) = self.stop_in_corner(id) {
+        // What is met again at once rests there: in the corner, which holds it as well.
+        if let Some(stop) = self.stop_in_corner(id)
+            && self.connector_states[stop.index()].repeats_at(self.now) < MOST_AGAIN
+        {
             return self.meet_stop(work, stop);
         }
         let is_corner = self.pass_knot(id, self.now);
@@ -62,32 +68,24 @@ impl RigidSystem {
         work.region.cause = Cause::Taut(id);
         if self.connector(id).is_stop() {
             self.connector_states[id.index()].note_taut(self.now);
-            let mut beside = self.connectors_of.of(self.connector(id).bodies()[0]).iter();
-            if let Some(&rail) = beside.find(|&&rail| self.stop_in_corner(rail) == Some(id)) {
-                let left = self.hint_at(id, 0, self.now).and_then(|hint| hint.left());
-                let hint = self.connector_states[rail.index()].hint;
-                self.connector_states[id.index()].hint = hint.map(|hint| hint.with_left(left));
-            }
         }
         self.handle_impact(work)
     }
 
-    /// The stop from which the point of a rail bounces off where the piece along which it comes ends in a corner.
+    /// The stop that keeps the point of a rail on the piece along which it comes, where that ends in a corner.
     fn stop_in_corner(&self, rail: ConnectorId) -> Option<ConnectorId> {
         let hint = self.connector_states[rail.index()].hint?;
         let moving = self.connector(rail).bodies().map(|body| self.moving_at(body, self.now));
-        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        let (accuracy, rest) = (self.settings.tolerances.accuracy, self.rest_speed());
         let mut beside = self.connectors_of.of(self.connector(rail).bodies()[0]).iter().copied();
         beside.find(|&id| {
             let stop = self.connector(id);
-            let ConnectorKind::RailStop { path, at, upper, .. } = &stop.kind else { return false };
-            if !stop.is_stop_of(self.connector(rail)) || !path.ends_in_corner(&hint, *upper, *at, accuracy) {
+            if !stop.is_stop_of(self.connector(rail)) || !self.is_at_end(id, &hint) {
                 return false;
             }
             let left = self.hint_at(id, 0, self.now).and_then(|hint| hint.left());
             let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint.with_left(left)));
-            let is_fast = sample.kinematics.rate < -velocity_tol;
-            stop.elasticity > 0.0 && is_fast && sample.gap.abs() <= accuracy
+            sample.kinematics.rate <= rest && sample.gap.abs() <= accuracy
         })
     }
 

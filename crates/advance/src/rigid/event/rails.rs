@@ -11,7 +11,7 @@ use crate::rigid::step::rows::{HeldRow, RowSource, knot_rooms};
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, ConnectorId, RailHint};
+use halfgap_collision::{BodyId, ConnectorId, ConnectorKind, RailHint};
 
 /// Number of times at which a point is looked for along a segment: it goes round by less than half in between.
 const LOOKS: u32 = 8;
@@ -98,16 +98,26 @@ impl RigidSystem {
     }
 
     /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
-    /// seems as near to them.
+    /// seems as near to them. Those at the end of the piece are seen along it.
     pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
         self.connector_states[id.index()].hint = Some(hint);
         for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
             let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
             if self.connector(stop).is_stop_of(self.connector(id)) {
                 let left = self.connector_states[stop.index()].hint.and_then(|hint| hint.left());
-                self.connector_states[stop.index()].hint = Some(hint.moving_on().with_left(left));
+                let is_end = self.is_at_end(stop, &hint);
+                let hint = if is_end { hint.staying() } else { hint.moving_on() };
+                self.connector_states[stop.index()].hint = Some(hint.with_left(left));
             }
         }
+    }
+
+    /// True for a stop that holds its point on the piece of a hint, which ends there in a corner.
+    pub(super) fn is_at_end(&self, stop: ConnectorId, hint: &RailHint) -> bool {
+        let ConnectorKind::RailStop { path, at, upper, .. } = &self.connector(stop).kind else {
+            return false;
+        };
+        path.ends_in_corner(hint, *upper, *at, self.settings.tolerances.accuracy)
     }
 
     /// True for a stop whose rail is there, too.
