@@ -454,3 +454,89 @@ fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
         }
     }
 }
+
+#[test]
+fn what_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
+    // Thrown up through the stop, a bead comes down on it, within one step or several.
+    for (speed, behind) in [(1.0, 1e-3), (1.0, 0.02), (0.2, 1e-4), (2.0, 1e-6)] {
+        for tolerance in [1e-3, 1e-6, 1e-9] {
+            // At the right of the ring, where gravity points along it; the stop holds what comes down.
+            let stop = 2.0 * std::f64::consts::PI - 0.5;
+            let start = stop - behind;
+            let (sin, cos) = start.sin_cos();
+            let rail = "a = { body = \"bead\", point = [0.0, 0.0] }, \
+                        path = { start = [1.0, 0.0], edges = [{ arc = { to = [1.0, 0.0], center = [0.0, 0.0] } }] }";
+            let mut world = world_of(&format!(
+                "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 3.0, tolerance = {tolerance:e} }}\n\
+                 force = [{{ gravity = {{ acceleration = [0.0, -9.81] }} }}]\n\n\
+                 [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+                 position = [{cos:?}, {sin:?}]\nvelocity = [{:?}, {:?}]\n\n\
+                 [[connector]]\nrail = {{ {rail} }}\n\n\
+                 [[connector]]\nrail_stop = {{ {rail}, at = {stop:?}, upper = false, elasticity = 0.5 }}\n",
+                -speed * sin,
+                speed * cos
+            ));
+            let bead = world.find("bead").expect("the bead");
+            let mut blows = 0;
+            let mut note = |event: &Event| blows += u32::from(matches!(event, Event::Impact(_)));
+            world.advance_to(3.0, &mut note).expect("it goes on");
+            let (state, (sin, cos)) = (world.state(bead), stop.sin_cos());
+            let off = state.position.distance(DVec2::new(cos, sin));
+            assert!(blows > 1 && off < 10.0 * tolerance, "{speed} {behind} {tolerance}: {blows}, {state:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_stopped_in_a_corner_without_bounce_slides_back_where_its_piece_leads_down() {
+    for end in [[2.0, 0.17], [1.0, 1.0], [0.2, 0.8], [0.0, 0.01]] {
+        for upper in [true, false] {
+            let mut world =
+                bead_before_corner(end, upper, &format!("at = 1.0, upper = {upper}, elasticity = 0.0"), -1.0);
+            let bead = world.find("bead").expect("the bead");
+            let away = (world.state(bead).position - DVec2::X).normalize();
+            // It comes with 1 m/s against 1 m/s^2, so that it is stopped just before or at rest there, and goes back.
+            let comes = world.state(bead).velocity.length();
+            assert!((comes - 1.0).abs() < 1e-12);
+            world.advance_to(2.0, &mut |_| ()).expect("it goes on");
+            // Half a metre at 1 m/s, slower by 1 m/s^2, takes a second: it arrives with nothing.
+            let (state, expected) = (world.state(bead), DVec2::X + 0.5 * away);
+            assert!(state.position.distance(expected) < 1e-6, "{end:?} {upper}: {state:?}");
+        }
+    }
+}
+
+#[test]
+fn stops_between_hairpins_hold() {
+    // Three pieces that lie nearly on each other; the bead bounces to and fro on the middle one.
+    for turn in [179.0_f64, 178.0, 150.0] {
+        let (sin, cos) = turn.to_radians().sin_cos();
+        let corner = DVec2::X + DVec2::new(cos, sin);
+        let rail = format!(
+            "a = {{ body = \"bead\", point = [0.0, 0.0] }}, path = {{ start = [0.0, 0.0], edges = [{{ line = [1.0, 0.0] }}, \
+             {{ line = [{:?}, {:?}] }}, {{ line = [1.0, {:?}] }}] }}",
+            corner.x,
+            corner.y,
+            2.0 * corner.y
+        );
+        for (low, high) in [(1.1, 1.98), (1.01, 1.5), (1.001, 1.999)] {
+            let along = (corner - DVec2::X).normalize();
+            let place = DVec2::X + 0.5 * (low + high - 2.0) * along;
+            let mut world = world_of(&format!(
+                "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 10.0 }}\n\n\
+                 [[body]]\nname = \"bead\"\nshape = {{ disc = {{ radius = 0.05 }} }}\nmass = 1.0\n\
+                 position = [{:?}, {:?}]\nvelocity = [{:?}, {:?}]\n\n[[connector]]\nrail = {{ {rail} }}\n\n\
+                 [[connector]]\nrail_stop = {{ {rail}, at = {low:?}, upper = false, elasticity = 1.0 }}\n\n\
+                 [[connector]]\nrail_stop = {{ {rail}, at = {high:?}, upper = true, elasticity = 1.0 }}\n",
+                place.x, place.y, along.x, along.y
+            ));
+            let bead = world.find("bead").expect("the bead");
+            world.advance_to(7.3, &mut |_| ()).expect("it goes on");
+            let width = high - low;
+            let unfolded = (0.5 * width + 7.3).rem_euclid(2.0 * width);
+            let arc = low + unfolded.min(2.0 * width - unfolded);
+            let (place, expected) = (world.state(bead).position, DVec2::X + (arc - 1.0) * along);
+            assert!(place.distance(expected) < 1e-7, "{turn} {low} {high}: {place}, not {expected}");
+        }
+    }
+}

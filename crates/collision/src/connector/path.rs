@@ -9,6 +9,9 @@ use super::spline::Spline;
 use glam::DVec2;
 use halfgap_geometry::{Aabb, EdgeSpec};
 
+/// Arc lengths that differ by no more than this part of the path's are those of one place.
+const SAME_PLACE: f64 = 1e-12;
+
 /// The path of a rail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RailPath {
@@ -194,16 +197,16 @@ impl RailPath {
         corners.find(|knot| is_near(knot)).map(|knot| self.corner_sides(knot))
     }
 
-    /// True if the piece of a hint ends at a corner, forward or backward, that lies within a distance [m] of an arc
-    /// length [m].
+    /// True if the piece of a hint ends in a corner, forward or backward, that lies at an arc length [m], but for rounding.
     #[must_use]
-    pub fn ends_in_corner(&self, hint: &RailHint, forward: bool, arc_length: f64, within: f64) -> bool {
-        let is_near = |knot: &RailKnot| {
+    pub fn ends_in_corner(&self, hint: &RailHint, forward: bool, arc_length: f64) -> bool {
+        let is_there = |knot: &RailKnot| {
             let way = (knot.arc_length - arc_length).abs();
-            way.min(if self.is_closed() { (self.length() - way).abs() } else { way }) <= within
+            let way = way.min(if self.is_closed() { (self.length() - way).abs() } else { way });
+            way <= SAME_PLACE * self.length()
         };
         let ends = |knot: &RailKnot| hint.piece == if forward { knot.before } else { knot.after };
-        self.knots().iter().any(|knot| knot.turn != 0.0 && ends(knot) && is_near(knot))
+        self.knots().iter().any(|knot| knot.turn != 0.0 && ends(knot) && is_there(knot))
     }
 
     /// The place nearest to a point [m]: of the whole path without a hint, else the first found along the path from the
@@ -335,12 +338,6 @@ impl RailHint {
     #[must_use]
     pub fn staying(self) -> Self {
         Self { stays: true, ..self }
-    }
-
-    /// The hint to look near the place, on whatever piece.
-    #[must_use]
-    pub fn moving_on(self) -> Self {
-        Self { stays: false, ..self }
     }
 
     /// The same place, for a stop before which the point was so far [m]: on a closed path it is what it is nearest to

@@ -13,7 +13,7 @@ use glam::DVec2;
 
 /// On a closed rail a point that is no farther beyond a stop than this part of a lap is just at it, where nobody knows from
 /// which side it came.
-const AT_STOP: f64 = 1e-6;
+const AT_STOP: f64 = 1e-9;
 
 /// The row across the path, positive to the left of it, or where the hint faces.
 #[inline]

@@ -117,10 +117,10 @@ fn a_stop_counts_what_is_left_of_the_rail() {
     let circle = Arc::new(RailPath::from_edges(start, &circle).expect("a fine circle"));
     let at_angle = |angle: f64| still(2.0 * angle.cos(), 2.0 * angle.sin(), 0.0);
     let lap = 4.0 * quarter;
-    assert!((gap(&circle, 0.0, false, &at_angle(-1e-6)) + 2e-6).abs() < 1e-14);
+    assert!((gap(&circle, 0.0, false, &at_angle(-1e-10)) + 2e-10).abs() < 1e-14);
     assert!((gap(&circle, 0.0, false, &at_angle(-0.001)) - (lap - 0.002)).abs() < 1e-14);
     assert!((gap(&circle, 0.0, false, &at_angle(-0.1)) - (lap - 0.2)).abs() < 1e-14);
-    assert!((gap(&circle, lap, true, &at_angle(1e-6)) + 2e-6).abs() < 1e-14);
+    assert!((gap(&circle, lap, true, &at_angle(1e-10)) + 2e-10).abs() < 1e-14);
     assert!((gap(&circle, 6.0, true, &at_angle(1.0)) - 4.0).abs() < 1e-14);
     let stop = fine(ConnectorKind::RailStop { a, path: circle.clone(), at: lap, upper: true });
     for (left, expected) in

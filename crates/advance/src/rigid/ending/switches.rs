@@ -40,6 +40,23 @@ impl Dynamics<'_> {
         Some(reach)
     }
 
+    /// When the point of a stop on a closed rail passes it from behind, where it does not hold it: from then on it does.
+    pub(super) fn find_passing(&mut self, stop: Stop) -> Option<f64> {
+        let path = self.physics.mechanism.connectors[stop.id.index()].path();
+        let lap = path.filter(|path| path.is_closed())?.length();
+        let span = self.group.span;
+        let mut values = [0.0; NODES];
+        for index in 0..NODES {
+            let before = values[index.saturating_sub(1)];
+            let value = lap + stop.slack - self.stop_at(stop, node(index, span));
+            values[index] = if index == 0 { value } else { in_lap(value, before, Some(lap)) };
+        }
+        first_fall(&values, span, |offset| {
+            let value = lap + stop.slack - self.stop_at(stop, offset);
+            in_lap(value, between_nodes(&values, span, offset), Some(lap))
+        })
+    }
+
     /// Gap of a stop [m], with what it may sink by.
     fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
         self.place_at(offset);

@@ -165,6 +165,7 @@ impl Dynamics<'_> {
         for place in 0..self.group.stops.len() {
             let stop = self.group.stops[place];
             earliest.offer(self.find_stop(stop), SegmentEnd::Stop(stop.id));
+            earliest.offer(self.find_passing(stop), SegmentEnd::Switch);
         }
         for place in 0..self.group.laws.len() {
             let law = self.group.laws[place];

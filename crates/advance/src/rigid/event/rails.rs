@@ -13,6 +13,8 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId, ConnectorKind, RailHint};
 
+/// Part of a lap by which a point may seem to lie behind a stop that it has just passed: rounding.
+const PASSED: f64 = 1e-12;
 /// Number of times at which a point is looked for along a segment: it goes round by less than half in between.
 const LOOKS: u32 = 8;
 
@@ -68,7 +70,7 @@ impl RigidSystem {
     /// The way [m] to a stop that is a lap or more: its point has passed it from behind, where it does not hold it.
     fn within_lap(&self, id: ConnectorId, left: f64) -> f64 {
         let lap = self.connector(id).path().map_or(f64::INFINITY, |path| path.length());
-        if left >= lap { left - lap } else { left }
+        if left >= (1.0 - PASSED) * lap { left - lap } else { left }
     }
 
     /// Notes where on their rails the points of a region's connectors are.
@@ -98,15 +100,13 @@ impl RigidSystem {
     }
 
     /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
-    /// seems as near to them. Those at the end of the piece are seen along it.
+    /// seems as near to them. They are seen along the piece, as if it went on: its end is an event.
     pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
         self.connector_states[id.index()].hint = Some(hint);
         for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
             let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
             if self.connector(stop).is_stop_of(self.connector(id)) {
                 let left = self.connector_states[stop.index()].hint.and_then(|hint| hint.left());
-                let is_end = self.is_at_end(stop, &hint);
-                let hint = if is_end { hint.staying() } else { hint.moving_on() };
                 self.connector_states[stop.index()].hint = Some(hint.with_left(left));
             }
         }
@@ -117,7 +117,7 @@ impl RigidSystem {
         let ConnectorKind::RailStop { path, at, upper, .. } = &self.connector(stop).kind else {
             return false;
         };
-        path.ends_in_corner(hint, *upper, *at, self.settings.tolerances.accuracy)
+        path.ends_in_corner(hint, *upper, *at)
     }
 
     /// True for a stop whose rail is there, too.
