@@ -147,8 +147,8 @@ impl RigidSystem {
         let Some((_, knot, forward)) = nearest else { return false };
         let hint = path.hint_past(knot, forward).staying();
         let corner = (knot.turn != 0.0).then(|| path.corner_sides(knot));
-        let state = &mut self.connector_states[id.index()];
-        (state.hint, state.corner) = (Some(hint), corner);
+        self.set_hint(id, hint);
+        self.connector_states[id.index()].corner = corner;
         corner.is_some()
     }
 
