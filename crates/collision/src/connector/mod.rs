@@ -24,6 +24,7 @@ mod spline_nearest;
 
 pub use align::Alignment;
 pub use error::{ConnectorError, RailError};
+use path::SAME_PLACE;
 pub use path::{RailHint, RailKnot, RailPath, RailPlace, SplineJoint};
 pub use rope::{Rope, RopeSearch, rope_contact};
 pub use row::ConnectorSample;
@@ -185,8 +186,9 @@ impl Connector {
                 if fine { Ok(()) } else { Err(ConnectorError::BadNormal(normal.x, normal.y)) }
             }
             ConnectorKind::RailStop { at, path, .. } => {
+                // The length is a sum, and so is where a stop is at its end.
                 let length = path.length();
-                let fine = (0.0..=length).contains(at);
+                let fine = (0.0..=(1.0 + SAME_PLACE) * length).contains(at);
                 if fine { Ok(()) } else { Err(ConnectorError::BadStop { at: *at, length }) }
             }
             _ => Ok(()),

@@ -10,7 +10,7 @@ use glam::DVec2;
 use halfgap_geometry::{Aabb, EdgeSpec};
 
 /// Arc lengths that differ by no more than this part of the path's are those of one place.
-const SAME_PLACE: f64 = 1e-12;
+pub(super) const SAME_PLACE: f64 = 1e-12;
 
 /// The path of a rail.
 #[derive(Clone, Debug, PartialEq)]

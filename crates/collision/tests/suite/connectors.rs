@@ -134,6 +134,18 @@ fn a_stop_counts_what_is_left_of_the_rail() {
 }
 
 #[test]
+fn a_stop_at_the_end_of_its_rail_is_there_however_that_is_rounded() {
+    let edges = [EdgeSpec::Line { to: DVec2::new(0.1, 0.0) }, EdgeSpec::Line { to: DVec2::new(0.1, 0.2) }];
+    let path = Arc::new(RailPath::from_edges(DVec2::ZERO, &edges).expect("a fine path"));
+    let stop =
+        |at: f64| ConnectorKind::RailStop { a: anchor(0, 0.0, 0.0), path: path.clone(), at, upper: true };
+    for at in [path.length(), path.length().next_up(), path.length().next_down()] {
+        assert!(Connector::new(stop(at), 0.0).is_ok(), "{at}");
+    }
+    assert!(Connector::new(stop(0.3 + 1e-9), 0.0).is_err());
+}
+
+#[test]
 fn where_a_rail_crosses_itself_a_stop_goes_by_where_its_point_was_seen() {
     let edges = [
         EdgeSpec::Line { to: DVec2::new(1.0, 0.0) },
