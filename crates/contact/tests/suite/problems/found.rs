@@ -4,7 +4,16 @@ use halfgap_contact::{
     Auto, DualActiveSet, InverseInertia, Lemke, Problem, Row, Solution, SolveError, Solver,
 };
 
-use super::data::{Case, disproof, judge};
+use super::data::{Case, Judged, disproof, judge};
+
+/// The answer of a solver to a problem, and how good it is.
+fn solved(solver: &mut dyn Solver, name: &str) -> (Solution, Judged) {
+    let case = Case::found(name);
+    let mut solution = Solution::new();
+    solver.solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let judged = judge(&case.problem, &solution.force);
+    (solution, judged)
+}
 
 #[test]
 fn solvable_problems_that_were_called_infeasible_are_solved() {
@@ -19,20 +28,14 @@ fn solvable_problems_that_were_called_infeasible_are_solved() {
         "truss_of_9_rods_kicked",
         "linear_program_of_rows_far_apart",
     ] {
-        let case = Case::found(name);
-        let mut solution = Solution::new();
-        Auto::default().solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let judged = judge(&case.problem, &solution.force);
+        let (_, judged) = solved(&mut Auto::default(), name);
         assert!(judged.good(), "{name}: {judged:?}");
     }
 }
 
 /// Solves a problem by the automatic choice, and requires that the answer is exact to rounding, with modest forces.
 fn require_modest(name: &str) {
-    let case = Case::found(name);
-    let mut solution = Solution::new();
-    Auto::default().solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let judged = judge(&case.problem, &solution.force);
+    let (solution, judged) = solved(&mut Auto::default(), name);
     assert!(judged.growth < 1e3 && judged.natural <= 1e-12, "{name}: {judged:?}");
     assert_eq!(solution.inconsistency, 0.0, "{name}");
 }
@@ -50,9 +53,7 @@ fn a_contact_holds_what_two_pins_at_one_place_would_hold_by_huge_forces() {
     // The block turns by no force that the pins can make, and rests on its other end.
     for name in ["two_pins_3e-8_apart", "two_pins_1e-8_apart"] {
         require_modest(name);
-        let case = Case::found(name);
-        let mut solution = Solution::new();
-        DualActiveSet::default().solve(&case.problem, &mut solution).unwrap();
+        let (solution, _) = solved(&mut DualActiveSet::default(), name);
         let resting = solution.force[4];
         assert!((resting - 4.905).abs() < 1e-6, "{name}: {resting} N");
         assert!(solution.acceleration.iter().all(|a| a.abs() < 1e-10), "{:?}", solution.acceleration);
@@ -61,20 +62,14 @@ fn a_contact_holds_what_two_pins_at_one_place_would_hold_by_huge_forces() {
 
 #[test]
 fn rows_that_take_each_others_place_for_little_are_left_at_it_for_a_while() {
-    let case = Case::found("brick_wall_off_by_1e-9");
-    let mut solution = Solution::new();
-    DualActiveSet::default().solve(&case.problem, &mut solution).unwrap();
-    let judged = judge(&case.problem, &solution.force);
+    let (_, judged) = solved(&mut DualActiveSet::default(), "brick_wall_off_by_1e-9");
     assert!(judged.good() && judged.growth < 100.0, "{judged:?}");
 }
 
 #[test]
 fn what_takes_more_digits_than_usual_is_solved() {
     for name in ["truss_of_9_rods", "ropes_nearly_parallel", "block_jammed_in_a_pit"] {
-        let case = Case::found(name);
-        let mut solution = Solution::new();
-        Auto::default().solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let judged = judge(&case.problem, &solution.force);
+        let (_, judged) = solved(&mut Auto::default(), name);
         assert!(judged.growth < 1e9 && judged.backward <= 1e-14, "{name}: {judged:?}");
     }
 }
@@ -88,22 +83,14 @@ fn unsymmetric_problems_are_solved_whatever_their_units_and_growth() {
         "skew_matrix_of_1e12",
         "csizmadia_32",
     ] {
-        let case = Case::found(name);
-        let mut solution = Solution::new();
-        Lemke::default()
-            .solve(&case.problem, &mut solution)
-            .unwrap_or_else(|error| panic!("{name}: {error}"));
-        let judged = judge(&case.problem, &solution.force);
+        let (_, judged) = solved(&mut Lemke::default(), name);
         assert!(judged.good(), "{name}: {judged:?}");
     }
 }
 
 #[test]
 fn doubled_joints_of_unsymmetric_problems_are_solved_by_least_squares() {
-    let case = Case::found("unsymmetric_doubled_joint_off_by_1e-9");
-    let mut solution = Solution::new();
-    Auto::default().solve(&case.problem, &mut solution).unwrap();
-    let judged = judge(&case.problem, &solution.force);
+    let (solution, judged) = solved(&mut Auto::default(), "unsymmetric_doubled_joint_off_by_1e-9");
     assert!((solution.inconsistency - 5e-10).abs() < 1e-12, "{:e}", solution.inconsistency);
     assert!(judged.natural - solution.inconsistency <= 1e-12, "{judged:?}");
 }
@@ -111,10 +98,7 @@ fn doubled_joints_of_unsymmetric_problems_are_solved_by_least_squares() {
 #[test]
 fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
     for name in ["contact_on_contradicting_joints", "nearly_dependent_truss", "nearly_dependent_bridge"] {
-        let case = Case::found(name);
-        let mut solution = Solution::new();
-        Auto::default().solve(&case.problem, &mut solution).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let judged = judge(&case.problem, &solution.force);
+        let (solution, judged) = solved(&mut Auto::default(), name);
         assert!(solution.inconsistency <= 1e-8, "{name}: {:e}", solution.inconsistency);
         assert!(
             judged.growth < 1e3 && judged.natural - solution.inconsistency <= 1e-12,
@@ -149,10 +133,7 @@ fn what_rounding_makes_of_a_ray_is_no_proof() -> Result<(), Box<dyn std::error::
 
 #[test]
 fn a_row_that_rounding_left_out_of_the_basis_is_taken_in() {
-    let case = Case::found("parallel_rows_at_a_tie");
-    let mut solution = Solution::new();
-    Lemke::default().solve(&case.problem, &mut solution).unwrap();
-    let judged = judge(&case.problem, &solution.force);
+    let (_, judged) = solved(&mut Lemke::default(), "parallel_rows_at_a_tie");
     assert!(judged.good(), "{judged:?}");
 }
 
