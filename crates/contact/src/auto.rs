@@ -3,8 +3,8 @@
 //! Unsymmetric problems go to Lemke's method. Of the others, independent islands are solved one by one, each by the
 //! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight, or were made:
 //! then by the proximal method, which begins from an interior point in the second case. If the first choice fails its
-//! check, the others are tried, at last Lemke's with twice as many digits. The reasons and the measurements are in the project's
-//! `docs/contact.md`.
+//! check, the others are tried, at last Lemke's with twice as many digits. The reasons and the measurements are in the
+//! project's `docs/contact.md`.
 
 use crate::check::Checker;
 use crate::dual_active_set::{DualActiveSet, HandOver};
@@ -27,11 +27,10 @@ const SPLIT_ROWS: usize = 48;
 /// Rows up to which Lemke's method is worth a last try on a symmetric problem.
 const LAST_RESORT_ROWS: usize = 400;
 
-/// Rows up to which forces that are large because rows nearly depend on each other are compared with those found with
-/// twice as many digits: beyond, that takes milliseconds.
+/// Rows up to which large forces are compared with those found with twice as many digits: beyond, that takes milliseconds.
 const RELAXED_ROWS: usize = 32;
 
-/// Growth from which forces of nearly dependent rows are, and from which any are.
+/// Growth from which they are compared: forces that are large because rows nearly depend on each other, and any.
 const STRAINED: f64 = 1e6;
 const MUCH_STRAINED: f64 = 1e9;
 

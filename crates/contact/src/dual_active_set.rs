@@ -160,6 +160,8 @@ impl DualActiveSet {
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
         }
         let attempts = self.attempts();
+        // Connectors that contradict each other are left to contacts. Where that comes to nothing, it is as if nothing had
+        // been tried.
         self.leaves_connectors = true;
         let first = self.attempt(problem, warm, solution, attempts.first);
         self.leaves_connectors = false;

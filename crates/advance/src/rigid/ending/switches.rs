@@ -18,16 +18,10 @@ impl Dynamics<'_> {
     /// start: the search then begins with a part of the segment so short that the point is off. On a closed
     /// rail what has gone by a stop seems to have come round: laps are told apart by what is read before.
     pub(super) fn find_stop(&mut self, stop: Stop) -> Option<f64> {
-        let path = self.physics.mechanism.connectors[stop.id.index()].path();
-        let lap = path.filter(|path| path.is_closed()).map(|path| path.length());
+        let lap = self.lap_of(stop);
         let mut reach = self.group.span;
         for _ in 0..MOST_SHORTER {
-            let mut values = [0.0; NODES];
-            for index in 0..NODES {
-                let before = values[index.saturating_sub(1)];
-                let value = self.stop_at(stop, node(index, reach));
-                values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
-            }
+            let mut values = self.sample_stop(stop, reach, lap);
             let touches = values[0] <= 0.0;
             values[0] = values[0].max(0.0);
             if !touches || values[1] >= 0.0 {
@@ -42,19 +36,29 @@ impl Dynamics<'_> {
 
     /// When the point of a stop on a closed rail passes it from behind, where it does not hold it: from then on it does.
     pub(super) fn find_passing(&mut self, stop: Stop) -> Option<f64> {
+        let (lap, span) = (self.lap_of(stop)?, self.group.span);
+        let values = self.sample_stop(stop, span, Some(lap));
+        let room = |value: f64| lap + stop.slack - value;
+        first_fall(&values.map(room), span, |offset| {
+            room(in_lap(self.stop_at(stop, offset), between_nodes(&values, span, offset), Some(lap)))
+        })
+    }
+
+    /// Length [m] of the rail of a stop, if that is closed.
+    fn lap_of(&self, stop: Stop) -> Option<f64> {
         let path = self.physics.mechanism.connectors[stop.id.index()].path();
-        let lap = path.filter(|path| path.is_closed())?.length();
-        let span = self.group.span;
+        path.filter(|path| path.is_closed()).map(|path| path.length())
+    }
+
+    /// Gaps of a stop [m], with what it may sink by, at the nodes of a part of the segment [s].
+    fn sample_stop(&mut self, stop: Stop, reach: f64, lap: Option<f64>) -> [f64; NODES] {
         let mut values = [0.0; NODES];
         for index in 0..NODES {
             let before = values[index.saturating_sub(1)];
-            let value = lap + stop.slack - self.stop_at(stop, node(index, span));
-            values[index] = if index == 0 { value } else { in_lap(value, before, Some(lap)) };
+            let value = self.stop_at(stop, node(index, reach));
+            values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
         }
-        first_fall(&values, span, |offset| {
-            let value = lap + stop.slack - self.stop_at(stop, offset);
-            in_lap(value, between_nodes(&values, span, offset), Some(lap))
-        })
+        values
     }
 
     /// Gap of a stop [m], with what it may sink by.

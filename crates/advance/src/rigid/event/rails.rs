@@ -58,9 +58,13 @@ impl RigidSystem {
 
     /// The same for all stops that a group watches, the segment of which ends now.
     pub(super) fn note_ways(&mut self, leader: BodyId) {
-        for place in 0..self.group_of(leader).map_or(0, |group| group.stops.len()) {
-            let Some(group) = self.groups.by_leader[leader.index()].as_deref() else { return };
-            self.note_left(group.stops[place].id, self.now);
+        let watched = |system: &Self, place: usize| {
+            let group = system.groups.by_leader[leader.index()].as_deref()?;
+            group.stops.get(place).map(|stop| stop.id)
+        };
+        for place in 0.. {
+            let Some(id) = watched(self, place) else { break };
+            self.note_left(id, self.now);
             if let Some(group) = self.groups.by_leader[leader.index()].as_deref_mut() {
                 group.stops[place].is_noted = true;
             }
