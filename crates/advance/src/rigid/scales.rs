@@ -21,7 +21,7 @@ const SPEED_ROUNDINGS: f64 = 1024.0;
 const SLOWEST: f64 = 1e-3;
 /// Part of `velocity_tol`, and of the scene's speed, up to which a rate is none.
 const REST_OF_SLOW: f64 = 1e-3;
-const REST: f64 = 1e-5;
+const REST: f64 = 1e-8;
 /// Part of the tolerance that the error of one step may be, at the finest tolerance.
 const LOCAL_SHARE: f64 = 0.25;
 /// Tolerances finer than this ask for more than rounding leaves.

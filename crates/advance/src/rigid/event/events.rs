@@ -60,10 +60,18 @@ impl RigidSystem {
         (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
     }
 
+    /// The same for one contact: what slides faster than that has not come to rest, and would be stopped where normals
+    /// differ.
+    pub(crate) fn start_rest_of(&self, record: &Collision) -> f64 {
+        let rest = self.start_rest();
+        if record.motion.lateral_velocity.abs() <= rest { rest } else { self.rest_speed() }
+    }
+
     /// True if any contact of a region closes so slowly that it is to be caught, and is not at rest yet.
     fn closes_slowly(&self, region: &Region) -> bool {
-        let rest = self.start_rest();
-        let closes = |record: &Collision| record.motion.normal_velocity < -rest && !closes_fast(record);
+        let closes = |record: &Collision| {
+            record.motion.normal_velocity < -self.start_rest_of(record) && !closes_fast(record)
+        };
         let mut records = region.records.iter().filter(|record| !record.parties.bilateral);
         self.settings.impulse_step.is_none() && records.any(closes)
     }
@@ -191,7 +199,7 @@ impl RigidSystem {
     }
 
     /// True if two corners pass each other before they come to where their bodies fire.
-    fn passes_by(&self, record: &Collision) -> bool {
+    pub(super) fn passes_by(&self, record: &Collision) -> bool {
         if record.parties.detector != Detector::CornerCorner {
             return false;
         }

@@ -240,9 +240,11 @@ impl RigidSystem {
         if record.zone() == Zone::OutOfRange {
             return false;
         }
+        // Corners that pass each other before they come to their target do not meet.
+        let passes = rate < -rest && self.passes_by(record);
         record.distance_to_target() <= self.sink()
-            || (record.zone() >= Zone::Target && rate < -rest)
-            || at_start
+            || (record.zone() >= Zone::Target && rate < -rest && !passes)
+            || (at_start && !passes)
             || (rate.abs() <= rest && (takes_over || self.is_held_contact(record, bodies)))
             || self.is_carried(record)
     }

@@ -67,15 +67,17 @@ impl RigidSystem {
         settling.touches.clear();
         settling.passing.clear();
         settling.candidates.clear();
-        settling.is_start = region.cause == Cause::Start;
+        let is_start = region.cause == Cause::Start;
+        settling.is_start = is_start;
         let rest = match region {
-            Region { cause: Cause::Start, .. } => self.start_rest(),
+            _ if is_start => self.start_rest(),
             Region { in_storm: true, .. } => self.storm_rest(),
             _ => self.rest_speed(),
         };
-        let most = if region.is_hasty { HASTY_SHARE * rest } else { rest };
+        let share = if region.is_hasty { HASTY_SHARE } else { 1.0 };
         let is_candidate = |record: &Collision| {
-            let is_slow = (-rest..=most).contains(&record.motion.normal_velocity);
+            let rest = if is_start { self.start_rest_of(record) } else { rest };
+            let is_slow = (-rest..=share * rest).contains(&record.motion.normal_velocity);
             record.parties.bilateral || (self.holds(record) && is_slow)
         };
         let records = || region.records.iter().enumerate();

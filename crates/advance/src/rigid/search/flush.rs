@@ -12,11 +12,12 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
 use halfgap_geometry::{Edge, Feature, FeatureId};
 
-/// Angle [rad] between edges that are flush.
+/// Angle [rad] between edges that are flush; more where the shorter of them is off by no more than the width of
+/// the target zone at its other end, as what rests may be.
 const PARALLEL: f64 = 1e-6;
 /// Corners that meet are no farther from each other than so many target gaps.
 const NEAR: f64 = 4.0;
-/// What passes rises or sinks by less than this part of its way.
+/// What passes rises or sinks by less than this part of its way; more along edges at a larger angle.
 const LEVEL: f64 = 1e-3;
 
 /// Pairs of features, of the lesser body first.
@@ -28,10 +29,19 @@ struct Corner {
     id: FeatureId,
     /// The edges that end and start there.
     sides: [FeatureId; 2],
-    /// Their directions at the corner, along the outline, if they are straight.
-    directions: [Option<DVec2>; 2],
+    /// How they lead away from it, if they are straight.
+    straight: [Option<Straight>; 2],
     place: DVec2,
     velocity: DVec2,
+}
+
+/// A straight edge.
+#[derive(Clone, Copy, Debug)]
+struct Straight {
+    /// Its direction along the outline.
+    direction: DVec2,
+    /// Its length [m].
+    length: f64,
 }
 
 impl RigidSystem {
@@ -95,11 +105,14 @@ impl RigidSystem {
             let Feature::Round(round) = shape.feature(id) else { return None };
             let place = moving.pose.point_to_world(round.center);
             let velocity = moving.velocity_at(place - moving.pose.position);
-            let direction = |side: FeatureId| match shape.edge_of(side) {
-                Edge::Line(line) => Some(moving.pose.vector_to_world(line.direction())),
+            let straight = |side: FeatureId| match shape.edge_of(side) {
+                Edge::Line(line) => {
+                    let direction = moving.pose.vector_to_world(line.direction());
+                    Some(Straight { direction, length: line.length() })
+                }
                 Edge::Arc(_) => None,
             };
-            Some(Corner { id, sides, directions: sides.map(direction), place, velocity })
+            Some(Corner { id, sides, straight: sides.map(straight), place, velocity })
         };
         match corner(feature) {
             Some(corner) => [Some(corner), None],
@@ -117,13 +130,15 @@ impl RigidSystem {
         }
         let sides = [[0, 0], [1, 1], [0, 1], [1, 0]];
         sides.into_iter().find(|&[of_first, of_second]| {
-            let [Some(along_first), Some(along_second)] =
-                [first.directions[of_first], second.directions[of_second]]
+            let [Some(edge_first), Some(edge_second)] =
+                [first.straight[of_first], second.straight[of_second]]
             else {
                 return false;
             };
+            let [along_first, along_second] = [edge_first, edge_second].map(|edge| edge.direction);
+            let tilt = PARALLEL.max(2.0 * accuracy / edge_first.length.min(edge_second.length));
             let is_parallel =
-                along_first.dot(along_second) < 0.0 && along_first.perp_dot(along_second).abs() <= PARALLEL;
+                along_first.dot(along_second) < 0.0 && along_first.perp_dot(along_second).abs() <= tilt;
             // The inside of a body is on the left of its outline.
             let outward = -along_second.perp();
             let (height, rise) = (outward.dot(offset), outward.dot(velocity));
@@ -131,7 +146,7 @@ impl RigidSystem {
             let inward = if of_second == 0 { -along_second } else { along_second };
             let way = inward.dot(velocity);
             let way = if of_first == of_second { way } else { way.abs() };
-            is_parallel && rise.abs() <= LEVEL * way && (-accuracy..=gap).contains(&height)
+            is_parallel && rise.abs() <= LEVEL.max(tilt) * way && (-accuracy..=gap).contains(&height)
         })
     }
 }
