@@ -103,11 +103,12 @@ impl World {
         changes.iter().try_for_each(|change| self.check_change(change))?;
         self.ask_guard()?;
         let has_failed = self.system.failure().is_some();
-        let outcome = self.system.intervene(self.now, &changes);
         let mut go_on = |event: &Event| {
             on_event(event);
             ControlFlow::Continue(())
         };
+        let _ = self.tell_first_impact(&mut go_on);
+        let outcome = self.system.intervene(self.now, &changes);
         let outcome = outcome.map(|handled| match handled {
             Some(handled) => tell(&mut self.told, &self.system, handled, &mut go_on),
             None => ControlFlow::Continue(()),

@@ -93,6 +93,8 @@ pub struct World {
     pub(crate) start: Start,
     /// The last impact told, always of that kind: its buffers are used again and again.
     pub(crate) told: Event,
+    /// What closed at the start was stopped by an impact, of which nobody has been told yet.
+    owes_first_impact: bool,
     pub(crate) sentry: Sentry,
 }
 
@@ -123,7 +125,19 @@ impl World {
     pub(crate) fn new(parts: WorldParts) -> Self {
         let WorldParts { system, bodies, forces, connectors, now, warnings, start, sentry } = parts;
         let told = Event::Impact(Impact::default());
-        let mut world = Self { system, bodies, forces, connectors, now, warnings, start, told, sentry };
+        let owes_first_impact = system.counts().impacts > 0;
+        let mut world = Self {
+            system,
+            bodies,
+            forces,
+            connectors,
+            now,
+            warnings,
+            start,
+            told,
+            owes_first_impact,
+            sentry,
+        };
         world.sentry.turnover = Turnover::new(world.energy());
         world
     }
@@ -382,6 +396,9 @@ impl World {
         let has_failed = self.system.failure().is_some();
         let until = Time::from_seconds(time);
         self.system.set_duration(self.sentry.duration.max(time - self.time()));
+        if self.tell_first_impact(on_event).is_break() {
+            return self.conclude(Ok(ControlFlow::Break(())), self.system.now());
+        }
         let (system, told) = (&mut self.system, &mut self.told);
         let outcome = advance_while(system, until, |system, handled| tell(told, system, *handled, on_event));
         let reached =
@@ -390,6 +407,18 @@ impl World {
             self.tell_last_words(on_event);
         }
         self.conclude(outcome, reached)
+    }
+
+    /// Tells of the impact at the start, if there was one and nobody has been told.
+    pub(crate) fn tell_first_impact(
+        &mut self,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if !std::mem::take(&mut self.owes_first_impact) {
+            return ControlFlow::Continue(());
+        }
+        write_impact(&mut self.told, self.system.last_impact());
+        on_event(&self.told)
     }
 
     /// Tells of the impact after which the system cannot go on, if it has come to one; not for a system that

@@ -1,7 +1,9 @@
 //! Impacts with known answers, through the facade.
 
 use halfgap::geometry::{DVec2, Shape};
-use halfgap::{BodyId, BodySpec, BodyState, World, WorldBuilder, WorldSettings};
+use halfgap::{
+    BodyId, BodySpec, BodyState, Event, Intervention, ToleranceOverrides, World, WorldBuilder, WorldSettings,
+};
 
 fn builder(tolerance: f64) -> WorldBuilder {
     WorldBuilder::new(WorldSettings { tolerance, ..WorldSettings::default() })
@@ -159,4 +161,37 @@ fn the_background_is_told_of_as_bodies_are() {
     assert_eq!(world.state(BodyId::WORLD), BodyState::default());
     assert!(world.is_fixed(BodyId::WORLD));
     assert_eq!(world.inertia(BodyId::WORLD), None);
+}
+
+/// What is slow and closes at the start is stopped before anybody can listen: it is told all the same, once.
+#[test]
+fn an_impact_at_the_start_is_told_first() {
+    let overrides =
+        ToleranceOverrides { target_gap: Some(5e-3), accuracy: Some(3e-3), velocity_tol: Some(0.5) };
+    let mut builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });
+    builder.add(BodySpec::fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5)));
+    let state = moving(DVec2::new(0.0, 0.505), DVec2::new(0.0, -0.3), 0.0);
+    let ball = builder.add(BodySpec { elasticity: 0.0, ..BodySpec::movable("ball", disc(0.5), 2.0, state) });
+    builder.add_gravity(ball, DVec2::new(0.0, -10.0));
+    let world = builder.build().expect("it rests soon");
+    let told_by = |act: fn(&mut World, BodyId, &mut dyn FnMut(&Event))| {
+        let (mut world, mut impulses) = (world.clone(), Vec::new());
+        let mut note = |event: &Event| {
+            if let Event::Impact(impact) = event {
+                impulses.push((impact.time, impact.rows[0].impulse));
+            }
+        };
+        act(&mut world, ball, &mut note);
+        world.advance_to(2.0, &mut note).expect("it rests");
+        impulses
+    };
+    let first = told_by(|world, _, note| world.advance_to(0.0, note).expect("it is there"));
+    assert_eq!(first.len(), 1, "{first:?}");
+    assert_eq!(first[0].0, 0.0);
+    assert!((first[0].1 - 2.0 * 0.3).abs() < 1e-12, "{first:?}");
+    let push = |world: &mut World, body: BodyId, note: &mut dyn FnMut(&Event)| {
+        let up = Intervention::Velocity { body, velocity: DVec2::Y, angular_velocity: 0.0 };
+        world.intervene(&[up], note).expect("it may be thrown");
+    };
+    assert_eq!(told_by(push)[0], first[0]);
 }
