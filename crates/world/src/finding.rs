@@ -37,7 +37,7 @@ const ROUGH: f64 = 3e4;
 /// Part of the energy that is usual in a scene for which the energy turned over is taken at least.
 const SELDOM: f64 = 1e-2;
 /// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin
-/// slowly. More is a blow that was taken for one.
+/// slowly. More is a blow that was taken for one. So much, too, projections may take where it is given what is slow.
 const CAPTURED: f64 = 5e-2;
 
 /// Something that does not hold in a run.
@@ -268,7 +268,11 @@ impl World {
         let open = Some(books.error().abs()).filter(is_told);
         findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
         // Projections stop what counts as slow, too, and without contact forces put back what has sunk.
-        let projected = Some(books.projections.abs()).filter(|_| !self.is_slow_asked_for()).filter(is_told);
+        let is_blow = |energy: &f64| exceeds(*energy, books, turned_over.max(least), CAPTURED);
+        let projected = Some(books.projections.abs()).filter(|energy| {
+            let puts_back = self.rigid_settings().impulse_step.is_some();
+            !puts_back && is_told(energy) && (!self.sentry.slow_is_given || is_blow(energy))
+        });
         findings.extend(projected.map(|energy| Finding::Projected { energy, turned_over }));
         if scales.usual > 0.0 {
             let turned = turned_over.max(least);
@@ -341,7 +345,7 @@ fn exceeds(energy: f64, books: &Books, turned_over: f64, share: f64) -> bool {
 mod tests {
     use super::*;
     use crate::world::Energy;
-    use crate::{BodySpec, ConnectorSpec, Stabilization, WorldBuilder, WorldSettings};
+    use crate::{BodySpec, ConnectorSpec, Stabilization, ToleranceOverrides, WorldBuilder, WorldSettings};
     use glam::DVec2;
     use halfgap_collision::{Anchor, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
@@ -376,6 +380,22 @@ mod tests {
         };
         assert_eq!(told(1e-9), Vec::<String>::new());
         assert_eq!(told(-1.0), ["moving bodies back onto what holds them changed 1 J of 10 J turned over"]);
+    }
+
+    #[test]
+    fn where_it_is_given_what_is_slow_projections_may_stop_it() {
+        let overrides = ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() };
+        let mut builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });
+        let body = builder.add(disc("falling", 1.0));
+        builder.add_gravity(body, DVec2::new(0.0, -10.0));
+        let world = builder.build().expect("it falls");
+        for (projections, is_told) in [(-0.1, false), (-1.0, true)] {
+            let mut findings = Vec::new();
+            let books = Books { projections, ..Books::from(&world.ledger()) };
+            world.look_at_books(&books, 10.0, &mut findings);
+            let told = findings.iter().any(|finding| matches!(finding, Finding::Projected { .. }));
+            assert_eq!(told, is_told, "{projections} J");
+        }
     }
 
     #[test]
