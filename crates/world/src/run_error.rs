@@ -90,6 +90,21 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Steps of a method without an error estimate have made bodies beyond all measure fast.
+    #[error(
+        "by {time} s errors of steps have made {} {} m/s fast: `time_step` is too long for an `integrator` that does not \
+         look at them",
+        quoted(bodies),
+        Rounded(*speed)
+    )]
+    RanAway {
+        /// When [s].
+        time: f64,
+        /// Speed of the fastest point [m/s].
+        speed: f64,
+        /// Names of the bodies that share the step.
+        bodies: Vec<String>,
+    },
     /// Forces vary over so short a length that rounding of coordinates, or the gap that contacts have, makes energy of
     /// nothing.
     #[error(
@@ -199,6 +214,7 @@ impl RunError {
             Self::Impact { time, .. }
             | Self::Contacts { time, .. }
             | Self::StepCollapsed { time, .. }
+            | Self::RanAway { time, .. }
             | Self::Unresolved { time, .. }
             | Self::Crawls { time, .. }
             | Self::Astray { time, .. }
@@ -226,6 +242,10 @@ impl RunError {
             AdvanceError::StepCollapsed { time, step, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::StepCollapsed { time, step, bodies, laws }
+            }
+            AdvanceError::RanAway { time, speed, bodies } => {
+                let bodies = bodies.into_iter().map(name).collect();
+                Self::RanAway { time, speed, bodies }
             }
             AdvanceError::Unresolved { time, length, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();

@@ -57,6 +57,20 @@ pub enum WorldError {
         /// What it is.
         value: f64,
     },
+    /// A distance that is given is less than rounding of the coordinates, or radii, of the scene leaves.
+    #[error(
+        "{setting} must be at least {least:e} m for coordinates or radii of {coordinate} m, got {value:e} m"
+    )]
+    LostInRounding {
+        /// Which setting.
+        setting: &'static str,
+        /// What it is [m].
+        value: f64,
+        /// What it must be at least [m].
+        least: f64,
+        /// The largest coordinate or radius [m].
+        coordinate: f64,
+    },
     /// A force law or a connector names a body that is not there.
     #[error("{what} names body {body}, but there are {bodies} bodies")]
     NoSuchBody {

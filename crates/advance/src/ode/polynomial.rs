@@ -57,12 +57,16 @@ impl SegmentPolynomial {
     /// smoothly, as `3 x^2 - 2 x^3` of it after the part `x` of the step; so the derivatives at the ends are
     /// still the velocity's. What is only rounding of the values at the ends is left missing: over a short
     /// step it would be a velocity.
+    ///
+    /// The velocity is of degree 7 at most, as dense output is. A power of 8, which
+    /// [`through`](SegmentPolynomial::through) may give, has no place in the integral: what it would add is
+    /// among what is missing, and the derivative is off by it.
     #[must_use]
     pub fn integrated(start: f64, end: f64, velocity: &SegmentPolynomial) -> Self {
         let half_step = 0.5 * velocity.step;
         let mut motion = [0.0; DEGREE + 1];
         let mut end_motion = 0.0;
-        // The highest power of the velocity is zero, whose integral would not fit; highest powers are the smallest.
+        // The highest power of the velocity is zero, for its integral would not fit; highest powers are the smallest.
         for power in (0..DEGREE).rev() {
             let term = half_step * velocity.coefficients[power] * SHARES[power + 1];
             motion[power + 1] = term;
@@ -104,7 +108,9 @@ impl SegmentPolynomial {
     pub(super) fn from_start(start: f64, motion: [f64; DEGREE + 1], step: f64) -> Self {
         let mut coefficients = motion;
         coefficients[0] += start;
-        Self { coefficients, step, rate: 2.0 / step }
+        // A step of no length ends where it starts.
+        let rate = if step == 0.0 { 0.0 } else { 2.0 / step };
+        Self { coefficients, step, rate }
     }
 
     /// The first derivative with respect to time [1/s].

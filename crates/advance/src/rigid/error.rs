@@ -60,6 +60,16 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// Steps of a method without an error estimate have made bodies beyond all measure fast: they are too long for it.
+    #[error("at {time} s steps without an error estimate have made bodies {bodies:?} {speed:e} m/s fast")]
+    RanAway {
+        /// When [s].
+        time: f64,
+        /// Speed of the fastest point [m/s].
+        speed: f64,
+        /// The bodies that share the step.
+        bodies: Vec<BodyId>,
+    },
     /// Forces vary over so short a length that rounding of positions, or the gap that contacts have, makes
     /// energy of nothing.
     #[error(

@@ -4,7 +4,7 @@ use super::motion::flyer::FlightLaw;
 use super::motion::law::ForceLaw;
 use super::system::RigidSettings;
 use crate::time::Time;
-use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError};
+use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
 use std::sync::Arc;
 
 /// What a system is made of.
@@ -80,6 +80,9 @@ impl RigidParts {
     /// Says why there can be no system of these parts at a time, if so.
     pub(crate) fn check(&self, settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
         check_settings(settings, start)?;
+        if self.bodies.iter().any(|(body, ..)| !body.is_fixed()) {
+            check_zone(&settings.tolerances)?;
+        }
         for (index, part) in self.bodies.iter().enumerate() {
             let body = BodyId(u32::try_from(index).unwrap_or(u32::MAX));
             let bad = |(quantity, rule, value)| PartsError::BadBody { body, quantity, rule, value };
@@ -140,6 +143,13 @@ fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsErro
     ];
     let bad = |(setting, rule, value)| PartsError::BadSetting { setting, rule, value };
     keep_to(&rules).map_err(bad)
+}
+
+/// Where something moves, what it comes to touch is at some distance.
+fn check_zone(&Tolerances { target_gap, accuracy, .. }: &Tolerances) -> Result<(), PartsError> {
+    let sizes = [("target_gap", target_gap), ("accuracy", accuracy)];
+    let bad = |(setting, rule, value)| PartsError::BadSetting { setting, rule, value };
+    keep_to(&[(POSITIVE.0, POSITIVE.1, &sizes)]).map_err(bad)
 }
 
 fn check_body((body, law, state): &(Body, FlightLaw, BodyState)) -> Result<(), Broken> {
@@ -243,6 +253,10 @@ mod tests {
         assert_eq!(depth, "search.depth must be finite, and not negative, got -1");
         let gap = refused(|_, settings| settings.tolerances.target_gap = f64::INFINITY);
         assert_eq!(gap, "target_gap must be finite, and not negative, got inf");
+        let none = refused(|_, settings| settings.tolerances.target_gap = 0.0);
+        assert_eq!(none, "target_gap must be positive and finite, got 0");
+        let point = refused(|_, settings| settings.tolerances.accuracy = 0.0);
+        assert_eq!(point, "accuracy must be positive and finite, got 0");
         let steps = StepControl { largest_step: Some(0.0), ..FINE.steps };
         let step = refused(|_, settings| settings.steps = steps);
         assert_eq!(step, "steps.largest_step must be positive and finite, got 0");

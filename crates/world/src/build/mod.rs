@@ -135,7 +135,9 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         | WorldError::ConnectorComesApart { connector, .. } => {
             Some(top.field("connector").element(connector.index).field(connector.kind))
         }
-        WorldError::BadSetting { setting, .. } => Some(top.field("run").field(*setting)),
+        WorldError::BadSetting { setting, .. } | WorldError::LostInRounding { setting, .. } => {
+            Some(top.field("run").field(*setting))
+        }
         WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
     };
     SceneError::new(place.unwrap_or_else(|| top.field("run")), error.to_string())

@@ -1,6 +1,7 @@
 //! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
+use crate::settings::ToleranceOverrides;
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
@@ -13,6 +14,9 @@ use std::sync::Arc;
 /// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to
 /// fourth powers of sums of them, which must be numbers.
 pub(crate) const LARGEST: f64 = 1e60;
+
+/// A gap, or half of a target zone, that is given may be so small a part of the smallest that is taken where none is.
+const GIVEN_SHARE: f64 = 1.0 / 64.0;
 
 /// Part of a lap by which stops of a closed rail are apart at least.
 const BACK_TO_BACK: f64 = 2e-3;
@@ -86,14 +90,21 @@ impl WorldBuilder {
         Ok(())
     }
 
-    /// Refuses an accuracy with which gaps of the target zone would not be positive.
-    pub(super) fn check_accuracy(&self, tolerances: &Tolerances) -> Result<(), WorldError> {
-        match self.settings.overrides.accuracy {
-            Some(value) if value >= tolerances.target_gap => {
-                Err(WorldError::BadSetting { setting: "accuracy", rule: "below the target gap", value })
-            }
-            _ => Ok(()),
+    /// Refuses an accuracy with which gaps of the target zone would not be positive, and what rounding of coordinates
+    /// would decide instead of it.
+    pub(super) fn check_zone(&self, tolerances: &Tolerances, scales: &Scales) -> Result<(), WorldError> {
+        let ToleranceOverrides { target_gap, accuracy, .. } = self.settings.overrides;
+        if let Some(value) = accuracy.filter(|&value| value >= tolerances.target_gap) {
+            return Err(WorldError::BadSetting { setting: "accuracy", rule: "below the target gap", value });
         }
+        let least = GIVEN_SHARE * scales.smallest_gap();
+        for (setting, value) in [("target_gap", target_gap), ("accuracy", accuracy)] {
+            if let Some(value) = value.filter(|&value| value < least) {
+                let coordinate = scales.coordinate;
+                return Err(WorldError::LostInRounding { setting, value, least, coordinate });
+            }
+        }
+        Ok(())
     }
 
     /// Refuses coordinates and radii so large that gaps as small as the smallest movable body cannot be told

@@ -176,7 +176,7 @@ impl WorldBuilder {
         let scales = self.scales(&wrenches);
         self.check_resolution(&scales)?;
         let tolerances = tolerances(&self.settings, &scales);
-        self.check_accuracy(&tolerances)?;
+        self.check_zone(&tolerances, &scales)?;
         let warnings =
             [self.gap_warning(&scales), self.step_warning(), self.fixed_warning(), self.stop_warning()];
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();

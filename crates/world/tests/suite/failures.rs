@@ -1,11 +1,11 @@
 //! What cannot be simulated is told, with all that happened before, and told again to whoever wants to go on.
 
 use glam::DVec2;
-use halfgap::force::{ForceLaw, Snapshot, Wrenches};
+use halfgap::force::{ForceLaw, Snapshot, Spring, Wrenches};
 use halfgap::geometry::Shape;
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Intervention,
-    RunError, SlotFrame, World, WorldBuilder, WorldError, WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Integrator,
+    Intervention, RunError, SlotFrame, ToleranceOverrides, World, WorldBuilder, WorldError, WorldSettings,
 };
 use std::sync::Arc;
 
@@ -74,6 +74,49 @@ fn an_intervention_after_which_nothing_can_go_on_is_told_again_where_nothing_els
     let failed = world.intervene(&[up], &mut |_| ());
     assert!(matches!(failed, Err(RunError::StepCollapsed { .. })), "{failed:?}");
     assert_eq!(world.advance_to(2.0, &mut |_| ()), failed);
+}
+
+#[test]
+fn steps_too_long_for_a_spring_are_told_before_nothing_comes_to_an_end_any_more() {
+    /// Stiffness [N/m] of a spring with a ball of 1 kg, and a step [s] in which it would swing four times.
+    const STIFFNESS: f64 = 1e6;
+    const STEP: f64 = 0.025;
+    let settings =
+        WorldSettings { integrator: Integrator::Euler, time_step: Some(STEP), ..WorldSettings::default() };
+    let mut builder = WorldBuilder::new(settings);
+    let disc = Shape::disc(0.5).expect("a fine radius");
+    let state = BodyState { position: DVec2::X, ..BodyState::default() };
+    let ball = builder.add(BodySpec::movable("ball", disc, 1.0, state));
+    let ends = [end(BodyId::WORLD.0, DVec2::new(0.0, 2.0)), end(ball.0, DVec2::ZERO)];
+    builder.add_force(Arc::new(Spring::new("spring", ends, 0.5, STIFFNESS)));
+    let mut world = builder.build().expect("it swings");
+    let failed = world.advance_to(100.0, &mut |_| ());
+    let Err(RunError::RanAway { speed, bodies, .. }) = &failed else { panic!("{failed:?}") };
+    assert_eq!(bodies.as_slice(), ["ball".to_owned()]);
+    assert!(*speed > 1e8, "{speed} m/s");
+}
+
+#[test]
+fn a_gap_that_is_lost_in_rounding_is_refused() {
+    let build = |target_gap: f64, accuracy: Option<f64>| {
+        let overrides =
+            ToleranceOverrides { target_gap: Some(target_gap), accuracy, ..ToleranceOverrides::default() };
+        let mut builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });
+        let disc = Shape::disc(0.5).expect("a fine radius");
+        let state = BodyState { position: DVec2::new(3.5, 0.0), ..BodyState::default() };
+        builder.add(BodySpec::movable("ball", disc, 1.0, state));
+        builder.build().map(|_| ())
+    };
+    assert!(build(1e-13, None).is_ok());
+    let refused = |setting: &str| {
+        format!(
+            "{setting} must be at least 7.105427357601002e-15 m for coordinates or radii of 4 m, got 1e-15 m"
+        )
+    };
+    let gap = build(1e-15, None);
+    assert!(matches!(&gap, Err(error) if error.to_string() == refused("target_gap")), "{gap:?}");
+    let accuracy = build(1e-6, Some(1e-15));
+    assert!(matches!(&accuracy, Err(error) if error.to_string() == refused("accuracy")), "{accuracy:?}");
 }
 
 /// A push on the body that is named second.

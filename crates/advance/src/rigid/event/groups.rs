@@ -509,6 +509,7 @@ impl RigidSystem {
         let laws = self.names_of_laws(group);
         match failure {
             StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
+            StepFailure::RanAway(speed) => AdvanceError::RanAway { time, speed, bodies },
             StepFailure::Unresolved(length) => {
                 let bodies = self.so_far_apart(group, length).map_or(bodies, Vec::from);
                 AdvanceError::Unresolved { time, length, bodies, laws }

@@ -63,11 +63,17 @@ const UNRESOLVED: f64 = 1e4;
 /// Forces on bodies in contact vary over more target gaps than this, or what contacts are apart by decides on them.
 const TOLD_FROM_GAP: f64 = 10.0;
 
+/// What steps without an error estimate have made so many times as fast as what is usual in the scene, they have made
+/// of nothing.
+const RUNAWAY: f64 = 1e6;
+
 /// Why a group could not be stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StepFailure {
     /// The step size has collapsed to this [s].
     Collapsed(f64),
+    /// Steps without an error estimate have made bodies so fast [m/s].
+    RanAway(f64),
     /// Forces vary over this length [m], which rounding of positions does not resolve.
     Unresolved(f64),
 }
@@ -146,6 +152,10 @@ impl Dynamics<'_> {
                 };
                 self.group.next_step = Some(step * method.factor_after(accepted, before).min(most));
                 let energy = closed.unwrap_or_else(|| self.end_with_rates(tools));
+                let speed = self.top_speed(&self.group.end_state);
+                if !method.is_adaptive() && control.speed > 0.0 && speed > RUNAWAY * control.speed {
+                    return Err(StepFailure::RanAway(speed));
+                }
                 self.follow_rails();
                 return Ok(energy);
             }
