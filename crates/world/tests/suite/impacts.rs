@@ -163,6 +163,9 @@ fn the_background_is_told_of_as_bodies_are() {
     assert_eq!(world.inertia(BodyId::WORLD), None);
 }
 
+/// What is done to a world and a body of it, with somebody to be told.
+type Act = fn(&mut World, BodyId, &mut dyn FnMut(&Event));
+
 /// What is slow and closes at the start is stopped before anybody can listen: it is told all the same, once.
 #[test]
 fn an_impact_at_the_start_is_told_first() {
@@ -174,7 +177,7 @@ fn an_impact_at_the_start_is_told_first() {
     let ball = builder.add(BodySpec { elasticity: 0.0, ..BodySpec::movable("ball", disc(0.5), 2.0, state) });
     builder.add_gravity(ball, DVec2::new(0.0, -10.0));
     let world = builder.build().expect("it rests soon");
-    let told_by = |act: fn(&mut World, BodyId, &mut dyn FnMut(&Event))| {
+    let told_by = |act: Act| {
         let (mut world, mut impulses) = (world.clone(), Vec::new());
         let mut note = |event: &Event| {
             if let Event::Impact(impact) = event {
@@ -189,7 +192,7 @@ fn an_impact_at_the_start_is_told_first() {
     assert_eq!(first.len(), 1, "{first:?}");
     assert_eq!(first[0].0, 0.0);
     assert!((first[0].1 - 2.0 * 0.3).abs() < 1e-12, "{first:?}");
-    let push = |world: &mut World, body: BodyId, note: &mut dyn FnMut(&Event)| {
+    let push: Act = |world, body, note| {
         let up = Intervention::Velocity { body, velocity: DVec2::Y, angular_velocity: 0.0 };
         world.intervene(&[up], note).expect("it may be thrown");
     };
