@@ -185,6 +185,70 @@ fn a_law_changes_branch_at_its_moment() {
     within("ball on a cord: energy [J]", ledger.integration_error(), 1e-9);
 }
 
+/// A force of 1 N along x from a time on, that moment itself included or not.
+#[derive(Debug)]
+struct Push {
+    bodies: [BodyId; 1],
+    /// When it begins [s].
+    from: f64,
+    is_there_at_once: bool,
+}
+
+impl ForceLaw for Push {
+    fn name(&self) -> &str {
+        "push"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.bodies
+    }
+
+    fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+        if now.time > self.from || (self.is_there_at_once && now.time == self.from) {
+            wrenches.add_force(self.bodies[0], DVec2::X, DVec2::ZERO);
+        }
+    }
+
+    fn switches(&self) -> usize {
+        1
+    }
+
+    fn switch(&self, _index: usize, now: &Snapshot<'_>) -> f64 {
+        now.time - self.from
+    }
+}
+
+/// What rests begins to move within digits of the clock: nothing that it does before tells how long a step may be.
+#[test]
+fn a_push_begins_at_its_moment_whichever_branch_has_it_and_whatever_the_clock_says() {
+    for start_time in [0.0, 1e3, 1e6] {
+        for is_there_at_once in [false, true] {
+            let mut worst = 0.0f64;
+            for index in 0..100 {
+                let from = start_time + 0.1 + 0.007 * f64::from(index);
+                let settings = WorldSettings {
+                    tolerance: 1e-10,
+                    start_time,
+                    duration: Some(1.0),
+                    ..WorldSettings::default()
+                };
+                let mut shop = Workshop::weightless(1e-10);
+                shop.builder = halfgap::WorldBuilder::new(settings);
+                let ball = shop.body("ball", disc(0.1), 1.0, at_rest(0.0, 0.0));
+                shop.builder.add_force(Arc::new(Push { bodies: [ball], from, is_there_at_once }));
+                let mut world = shop.build();
+                advance(&mut world, start_time + 1.0);
+                let gained = world.state(ball).velocity.x;
+                worst = worst.max((gained - (start_time + 1.0 - from)).abs());
+            }
+            let what = format!(
+                "push on what rests, clock at {start_time:e} s, at once: {is_there_at_once}: speed [m/s]"
+            );
+            within(&what, worst, 1e-9 + 8.0 * f64::EPSILON * start_time);
+        }
+    }
+}
+
 /// How far [m] a disc that slides in a bowl comes nearer to it than its target gap, inside of steps.
 fn nearer_inside_of_steps(tolerance: f64, gap: f64) -> (f64, f64) {
     let overrides = ToleranceOverrides { target_gap: Some(gap), ..ToleranceOverrides::default() };

@@ -10,6 +10,8 @@ use crate::rigid::step::rows::moving_of;
 const SHORTER: f64 = 0.25;
 /// Cap on that.
 const MOST_SHORTER: usize = 30;
+/// How often the time after a change of sign is doubled until it shows: what changes slowly shows late.
+const MOST_TICKS: usize = 16;
 /// Part of the first segment of a group after which the sign of a switching function is taken.
 const SIGN_AT: f64 = 1.0 / 1024.0;
 
@@ -85,10 +87,30 @@ impl Dynamics<'_> {
             let value = sign * self.switch_at(law, index, node(node_index, span));
             if node_index == 0 { value.max(0.0) } else { value }
         });
-        first_fall(&values, span, |offset| {
+        let offset = first_fall(&values, span, |offset| {
             let value = sign * self.switch_at(law, index, offset);
             if offset <= sign_at { value.max(0.0) } else { value }
-        })
+        })?;
+        Some(self.beyond_switch((law, index), sign, offset))
+    }
+
+    /// The first time [s] the clock tells after a switching function has changed its sign from the given one, near where
+    /// it does. Where it is zero nobody knows which branch the law takes, and what sets out there must be on the one
+    /// that it goes on.
+    fn beyond_switch(&mut self, (law, index): (usize, usize), sign: f64, offset: f64) -> f64 {
+        // Sums of what the clock tells and of offsets are rounded once more.
+        let tick = f64::EPSILON * (self.start.seconds() + offset).abs().max(offset);
+        let mut wait = tick;
+        for _ in 0..MOST_TICKS {
+            if offset + wait + tick >= self.group.span {
+                break;
+            }
+            if sign * self.switch_at(law, index, offset + wait) < 0.0 {
+                return offset + wait + tick;
+            }
+            wait *= 2.0;
+        }
+        offset
     }
 }
 
@@ -166,6 +188,9 @@ mod tests {
             let offset = rings_at(delay, false).expect("it rings");
             assert!((offset - delay).abs() < 1e-12, "{offset}");
         }
+        let value = |offset: f64| (1.0 + offset) - (1.0 + 0.3);
+        let offset = rings_at(0.3, false).expect("it rings");
+        assert!(value(offset) > 0.0, "what sets out there is on the new branch: {offset}");
         // Where a group is made because it has just changed branch, rounding may say that it is about to.
         assert_eq!(rings_at(1e-15, true), None);
     }

@@ -91,6 +91,7 @@ pub trait ForceLaw: Debug + Send + Sync {
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
 
     /// Potential energy [J] of which the forces are the gradient; `None` if there is none: its work is then integrated.
+    /// One that depends on the time is none, for what it gains by itself is no work of the forces.
     fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None
@@ -113,7 +114,8 @@ pub trait ForceLaw: Debug + Send + Sync {
         0
     }
 
-    /// The value of a switching function; the forces are smooth while its sign does not change.
+    /// The value of a switching function; the forces are smooth while its sign does not change. Where it is zero they may
+    /// be those of either branch.
     fn switch(&self, index: usize, now: &Snapshot<'_>) -> f64 {
         let _ = (index, now);
         1.0

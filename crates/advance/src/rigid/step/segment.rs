@@ -92,6 +92,13 @@ impl Dynamics<'_> {
         self.group.rates = rates;
     }
 
+    /// Evaluates the rates at the group's start anew; true if they are others.
+    fn renew_rates(&mut self) -> bool {
+        let before = self.group.rates.clone();
+        self.set_out();
+        self.group.rates != before
+    }
+
     /// Extends the group by one accepted step from its state and rates; its end is projected, and the rates
     /// there are known. Returns the energy at the end, if anybody had to look.
     pub(crate) fn extend(&mut self, tools: &mut Tools<'_>) -> Result<Option<Energy>, StepFailure> {
@@ -115,9 +122,16 @@ impl Dynamics<'_> {
             COLLAPSED * f64::EPSILON * self.start.seconds().abs().min(control.length / control.speed);
         let work_scale = self.work_scale(control);
         let (mut rejected, mut placements, mut is_led, proposed) = (false, 0, false, step);
+        let mut may_ask_again = true;
         loop {
             if step.is_nan() || step <= shortest {
-                return Err(StepFailure::Collapsed(step));
+                // What the clock tells where one step ends may be a last digit less than where the next begins, and a law
+                // change branch between: then the rates there are another branch's.
+                if !std::mem::take(&mut may_ask_again) || !self.renew_rates() {
+                    return Err(StepFailure::Collapsed(step));
+                }
+                step = proposed;
+                continue;
             }
             self.group.span = step;
             self.step(tools.stepper, step);
