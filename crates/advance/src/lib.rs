@@ -1,7 +1,7 @@
 //! Event-driven advance: which event is next, and what is handled in which order?
 //!
 //! *Invariant*: this crate knows no force laws and no scene files; without the feature `rigid` (on by default) it does
-//! not even know bodies, and has no dependencies but an error macro.
+//! not even know bodies, and depends on nothing but an error macro and libm.
 //!
 //! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in
 //! an [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as

@@ -80,7 +80,7 @@ impl Explicit {
     /// See [`Stepper::error_norm`](super::Stepper::error_norm), of the components from `first` on. DOP853 has
     /// two estimates, which are combined as in HNW II.10.
     pub(super) fn error_norm(&self, first: usize, scales: &[f64]) -> f64 {
-        let mean = |row: usize| mean_square(&self.error(row)[first..], scales);
+        let mean = |row: usize| mean_square(&self.error(row)[first..first + scales.len()], scales);
         match self.tableau.errors.len() {
             0 => 0.0,
             1 => mean(0).sqrt(),

@@ -277,6 +277,15 @@ mod tests {
     }
 
     #[test]
+    fn a_step_of_no_length_ends_where_it_starts() {
+        let path = SegmentPolynomial::from_nested(3.0, &[0.0; NESTED], 0.0);
+        assert_eq!(
+            [path.value_at(0.0), path.derivative_at(0.0), path.second_derivative_at(0.0)],
+            [3.0, 0.0, 0.0]
+        );
+    }
+
+    #[test]
     fn what_is_missing_by_more_is_put_in() {
         let (start, speed, step) = (933_919.0, -5.0, 0.25);
         let velocity = SegmentPolynomial::from_start(speed, [0.0; DEGREE + 1], step);

@@ -24,9 +24,6 @@ impl Stepper {
     ///
     /// # Errors
     /// The error of the system.
-    ///
-    /// # Panics
-    /// If state and rates differ in length.
     pub fn starting_step<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,

@@ -15,7 +15,8 @@ pub struct StiffnessEstimate {
     pub fastest: f64,
     /// Size of the error that this makes of the motion along the step, in the units of
     /// [`Stepper::error_norm`], which does not tell it; 0 where nothing is that fast. The end of the step may
-    /// be right all the same.
+    /// be right all the same. Of implicit methods it is not known, and 0: over a step as long as what drives a stiff
+    /// system takes to come and go, the motion between its ends is that of a cubic.
     pub dense_error: f64,
 }
 
@@ -144,6 +145,9 @@ impl Stepper {
     ///
     /// Methods with fixed steps answer 0, whatever came of the step. Of others the answer is not finite if the
     /// step went out of all bounds.
+    ///
+    /// # Panics
+    /// If there are more scales than components, where the method has an estimate.
     #[must_use]
     pub fn error_norm(&self, scales: &[f64]) -> f64 {
         if scales.is_empty() {
@@ -157,6 +161,9 @@ impl Stepper {
 
     /// The same of the components from `first` on; implicit methods answer 0 for what they do not solve for,
     /// as integrals.
+    ///
+    /// # Panics
+    /// If there are no so many components from there on, where an explicit method has an estimate.
     #[must_use]
     pub fn error_norm_from(&self, first: usize, scales: &[f64]) -> f64 {
         match &self.kind {
@@ -178,7 +185,8 @@ impl Stepper {
     /// Writes some components of the motion along the last step as polynomials, one of `out` for each.
     ///
     /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at
-    /// both ends the polynomials have exactly the values given, and those of explicit methods the rates, too.
+    /// both ends the polynomials have the values given, but for rounding of the motion, and those of explicit methods
+    /// the rates, too.
     /// The degree is 7 for DOP853, which asks for three more derivatives, 4 for Dormand-Prince 5, and 3 for
     /// the others.
     ///

@@ -278,3 +278,38 @@ fn an_empty_system_goes_on_by_any_method() {
         assert_eq!(stepper.error_norm(&[]), 0.0, "{method:?}");
     }
 }
+
+/// Two components that decay, each at its rate [1/s].
+struct Pair([f64; 2]);
+
+impl Ode for Pair {
+    type Error = Infallible;
+
+    fn derivative(&mut self, _offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        for (rate, (&value, &decay)) in rates.iter_mut().zip(state.iter().zip(&self.0)) {
+            *rate = -decay * value;
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn what_becomes_fast_in_place_of_something_else_is_told() {
+    let (mut stepper, step, scales) = (Stepper::new(Method::RadauIia5), 1e-2, [1e-6; 2]);
+    stepper.set_scales(&scales);
+    let mut told = |decay: [f64; 2], steps: usize| {
+        let mut fastest = 0.0;
+        for _ in 0..steps {
+            let (state, rates, mut end) = ([1.0; 2], decay.map(|decay| -decay), [0.0; 2]);
+            let start = Point { offset: 0.0, state: &state, rates: &rates };
+            let Ok(()) = stepper.step(&mut Pair(decay), start, step, &mut end);
+            let rates = [-decay[0] * end[0], -decay[1] * end[1]];
+            fastest = stepper.stiffness(Point { offset: step, state: &end, rates: &rates }, &scales).fastest;
+        }
+        fastest
+    };
+    for decay in [[1e6, 1.0], [1.0, 1e6], [1e6, 1.0]] {
+        let fastest = told(decay, 60);
+        assert!((fastest / (1e6 * step) - 1.0).abs() < 1e-2, "{decay:?}: {fastest}");
+    }
+}

@@ -33,6 +33,8 @@ const UNTOLD: f64 = 1e-10;
 /// Differences are taken over the acceptable error, but over no less than this part of a component, so that
 /// the rounding of the rates does not matter.
 const LEAST_DIFFERENCE: f64 = 1e6 * f64::EPSILON;
+/// Part of where the power method has come to that each component has at least, in the first.
+const STIRRED: f64 = 1e-3;
 /// Turns of the power method in one step.
 const TURNS: usize = 4;
 
@@ -319,6 +321,7 @@ impl Radau {
             self.fastest.resize(active, 1.0);
         }
         let mut rate = 0.0;
+        self.stir();
         for _ in 0..TURNS {
             let norm = root_mean_square(&self.fastest, &self.scales);
             if norm == 0.0 || !norm.is_finite() {
@@ -332,6 +335,18 @@ impl Radau {
             rate = root_mean_square(&self.fastest, &self.scales);
         }
         self.stiffness = (rate * self.length).abs();
+    }
+
+    /// Gives every component a little of where the power method has come to: what was slow, of which nothing is left
+    /// there, may have become fast. Neighbours differ, for what pulls alike at all is not fast.
+    fn stir(&mut self) {
+        let norm = root_mean_square(&self.fastest, &self.scales);
+        for (index, (component, scale)) in self.fastest.iter_mut().zip(&self.scales).enumerate() {
+            let least = STIRRED * norm * scale / (1.0 + index as f64);
+            if component.abs() < least {
+                *component = least;
+            }
+        }
     }
 }
 
