@@ -2,8 +2,10 @@
 //! contacts whose normals hardly differ hold a body altogether if both are stopped.
 
 use super::within;
-use halfgap::geometry::{DVec2, EdgeSpec};
-use halfgap::{Anchor, BodySpec, BodyState, ConnectorKind, RailPath};
+use halfgap::geometry::{DVec2, EdgeSpec, Shape};
+use halfgap::{
+    Anchor, BodySpec, BodyState, ConnectorKind, RailPath, ToleranceOverrides, WorldBuilder, WorldSettings,
+};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -217,6 +219,29 @@ fn what_lies_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
     assert_eq!(runs, 216);
     // What falls by the height of the zone with a corner turns, and its corner is hit at that angle.
     within("block askew over a seam, 216 runs: part of its speed", worst, 0.25);
+}
+
+/// Beside a wide zone the edges of these outlines are short: all of them are about as high as the next, at whatever
+/// angle, and still they meet.
+#[test]
+fn outlines_of_short_edges_meet_at_their_corners() {
+    let overrides =
+        ToleranceOverrides { target_gap: Some(5e-3), accuracy: Some(3e-3), velocity_tol: Some(0.5) };
+    for (sides, radius) in [(24, 0.1), (48, 0.1), (96, 0.2)] {
+        for index in 0..20 {
+            let outline = || Shape::regular_polygon(sides, radius).expect("a fine radius");
+            let mut shop = Workshop::weightless(1e-8);
+            shop.builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });
+            let off = radius * (f64::from(index) / 10.0 - 0.95);
+            shop.body("first", outline(), 1.0, BodyState { angle: 0.1, ..at_rest(0.0, 0.0) });
+            let second = sliding(DVec2::new(2.0 * radius + 0.1, off), -1.0);
+            shop.body("second", outline(), 1.0, BodyState { angle: 0.3, ..second });
+            let mut world = shop.build();
+            advance(&mut world, 0.5 + 4.0 * radius);
+            let nearest = world.statistics().smallest_gap.expect("they meet");
+            assert!(nearest > 1e-3, "{sides} sides, {off} m off: {nearest} m");
+        }
+    }
 }
 
 /// A track of two straights of 3 m and two half circles of 1 m, each in so many edges.

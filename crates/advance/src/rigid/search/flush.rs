@@ -13,8 +13,9 @@ use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
 use halfgap_geometry::{Edge, Feature, FeatureId};
 
 /// Angle [rad] between edges that are flush; more where the shorter of them is off by no more than the width of
-/// the target zone at its other end, as what rests may be.
+/// the target zone at its other end, as what rests may be, and is so many times as long as half of that.
 const PARALLEL: f64 = 1e-6;
+const LONG: f64 = 24.0;
 /// Corners that meet are no farther from each other than so many target gaps.
 const NEAR: f64 = 4.0;
 /// What passes rises or sinks by less than this part of its way; more along edges at a larger angle.
@@ -136,7 +137,9 @@ impl RigidSystem {
                 return false;
             };
             let [along_first, along_second] = [edge_first, edge_second].map(|edge| edge.direction);
-            let tilt = PARALLEL.max(2.0 * accuracy / edge_first.length.min(edge_second.length));
+            let shorter = edge_first.length.min(edge_second.length);
+            let askew = if shorter >= LONG * accuracy { 2.0 * accuracy / shorter } else { 0.0 };
+            let tilt = PARALLEL.max(askew);
             let is_parallel =
                 along_first.dot(along_second) < 0.0 && along_first.perp_dot(along_second).abs() <= tilt;
             // The inside of a body is on the left of its outline.
