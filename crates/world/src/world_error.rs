@@ -59,7 +59,9 @@ pub enum WorldError {
     },
     /// A distance that is given is less than rounding of the coordinates, or radii, of the scene leaves.
     #[error(
-        "{setting} must be at least {least:e} m for coordinates or radii of {coordinate} m, got {value:e} m"
+        "{setting} must be at least {} m for coordinates or radii of {} m, got {value:e} m",
+        Rounded(*least),
+        Rounded(*coordinate)
     )]
     LostInRounding {
         /// Which setting.
