@@ -129,7 +129,7 @@ impl RigidSystem {
         if is_sound && !self.is_jammed(region, settling, stage) {
             return Ok(Solved::Soundly);
         }
-        if is_sound && self.let_pass(region, settling) {
+        if self.let_pass(region, settling) {
             self.pose_problem(region, settling, stage);
             is_sound = settling.solve_strictly().is_ok();
             if is_sound && !self.is_jammed(region, settling, stage) {

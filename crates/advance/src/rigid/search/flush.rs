@@ -140,8 +140,10 @@ impl RigidSystem {
             let shorter = edge_first.length.min(edge_second.length);
             let askew = if shorter >= LONG * accuracy { 2.0 * accuracy / shorter } else { 0.0 };
             let tilt = PARALLEL.max(askew);
-            let is_parallel =
-                along_first.dot(along_second) < 0.0 && along_first.perp_dot(along_second).abs() <= tilt;
+            let angle = along_first.perp_dot(along_second).abs();
+            let is_parallel = along_first.dot(along_second) < 0.0 && angle <= tilt;
+            // What lies askew comes as near as contacts do, and no nearer.
+            let lowest = if angle <= PARALLEL { -accuracy } else { gap - accuracy };
             // The inside of a body is on the left of its outline.
             let outward = -along_second.perp();
             let (height, rise) = (outward.dot(offset), outward.dot(velocity));
@@ -149,7 +151,7 @@ impl RigidSystem {
             let inward = if of_second == 0 { -along_second } else { along_second };
             let way = inward.dot(velocity);
             let way = if of_first == of_second { way } else { way.abs() };
-            is_parallel && rise.abs() <= LEVEL.max(tilt) * way && (-accuracy..=gap).contains(&height)
+            is_parallel && rise.abs() <= LEVEL.max(tilt) * way && (lowest..=gap).contains(&height)
         })
     }
 }
