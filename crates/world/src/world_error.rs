@@ -57,9 +57,9 @@ pub enum WorldError {
         /// What it is.
         value: f64,
     },
-    /// A distance that is given is less than rounding of the coordinates, or radii, of the scene leaves.
+    /// A distance that is given is less than rounding of the coordinates of what moves leaves.
     #[error(
-        "{setting} must be at least {} m for coordinates or radii of {} m, got {value:e} m",
+        "{setting} must be at least {} m for coordinates of {} m, got {value:e} m",
         Rounded(*least),
         Rounded(*coordinate)
     )]
@@ -70,7 +70,7 @@ pub enum WorldError {
         value: f64,
         /// What it must be at least [m].
         least: f64,
-        /// The largest coordinate or radius [m].
+        /// The largest coordinate [m].
         coordinate: f64,
     },
     /// A force law or a connector names a body that is not there.

@@ -97,10 +97,13 @@ impl WorldBuilder {
         if let Some(value) = accuracy.filter(|&value| value >= tolerances.target_gap) {
             return Err(WorldError::BadSetting { setting: "accuracy", rule: "below the target gap", value });
         }
-        let least = GIVEN_SHARE * scales.smallest_gap();
+        // A floor may go on to where nothing moves.
+        let movable = self.bodies.iter().filter(|body| body.inertia.is_some());
+        let reach = |body: &BodySpec| farthest_in(&centered(body).bounds_at(&body.state.pose()));
+        let coordinate = movable.map(reach).fold(0.0, f64::max);
+        let least = GIVEN_SHARE * Scales { coordinate, ..*scales }.smallest_gap();
         for (setting, value) in [("target_gap", target_gap), ("accuracy", accuracy)] {
             if let Some(value) = value.filter(|&value| value < least) {
-                let coordinate = scales.coordinate;
                 return Err(WorldError::LostInRounding { setting, value, least, coordinate });
             }
         }

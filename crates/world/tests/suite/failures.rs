@@ -108,9 +108,8 @@ fn a_gap_that_is_lost_in_rounding_is_refused() {
         builder.build().map(|_| ())
     };
     assert!(build(1e-13, None).is_ok());
-    let refused = |setting: &str| {
-        format!("{setting} must be at least 7.11e-15 m for coordinates or radii of 4 m, got 1e-15 m")
-    };
+    let refused =
+        |setting: &str| format!("{setting} must be at least 7.11e-15 m for coordinates of 4 m, got 1e-15 m");
     let gap = build(1e-15, None);
     assert!(matches!(&gap, Err(error) if error.to_string() == refused("target_gap")), "{gap:?}");
     let accuracy = build(1e-6, Some(1e-15));

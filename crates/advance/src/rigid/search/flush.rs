@@ -142,8 +142,8 @@ impl RigidSystem {
             let tilt = PARALLEL.max(askew);
             let angle = along_first.perp_dot(along_second).abs();
             let is_parallel = along_first.dot(along_second) < 0.0 && angle <= tilt;
-            // What lies askew comes as near as contacts do, and no nearer.
-            let lowest = if angle <= PARALLEL { -accuracy } else { gap - accuracy };
+            // What lies askew comes as near as contacts do, which sink to the end of the zone, and no nearer.
+            let lowest = if angle <= PARALLEL { -accuracy } else { gap - accuracy - self.sink() };
             // The inside of a body is on the left of its outline.
             let outward = -along_second.perp();
             let (height, rise) = (outward.dot(offset), outward.dot(velocity));
