@@ -69,10 +69,10 @@ impl RigidSystem {
         settling.candidates.clear();
         let is_start = region.cause == Cause::Start;
         settling.is_start = is_start;
-        let rest = match region {
-            _ if is_start => self.start_rest(),
-            Region { in_storm: true, .. } => self.storm_rest(),
-            _ => self.rest_speed(),
+        let rest = match (is_start, region.in_storm) {
+            (true, _) => self.start_rest(),
+            (false, true) => self.storm_rest(),
+            (false, false) => self.rest_speed(),
         };
         let share = if region.is_hasty { HASTY_SHARE } else { 1.0 };
         let is_candidate = |record: &Collision| {

@@ -3,7 +3,8 @@
 //! What rests has its target gap under it. A block on a fixed table and a cart beside it are both lifted by
 //! that, so that the block, as it slides from the table onto the cart, has its corner at the very height of
 //! the cart's: whether it runs against it is for the last digit to say. Where the two edges that lead away
-//! from the corners are parallel, and the one is to slide along the other, it does not.
+//! from the corners are parallel, or as nearly as contacts in the target zone may leave them, and the one is to slide
+//! along the other, it does not.
 
 use super::pairs::PairId;
 use crate::rigid::event::region::Touch;
@@ -12,9 +13,10 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
 use halfgap_geometry::{Edge, Feature, FeatureId};
 
-/// Angle [rad] between edges that are flush; more where the shorter of them is off by no more than the width of
-/// the target zone at its other end, as what rests may be, and is so many times as long as half of that.
+/// Angle [rad] between edges that are flush, whatever their lengths. What rests in a wide target zone may lie askew by
+/// more: by the width of the zone at the other end of the shorter edge.
 const PARALLEL: f64 = 1e-6;
+/// Only edges that are so many times as long as half of the zone may be askew: shorter ones are within it at any angle.
 const LONG: f64 = 24.0;
 /// Corners that meet are no farther from each other than so many target gaps.
 const NEAR: f64 = 4.0;
