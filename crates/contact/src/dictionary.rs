@@ -85,10 +85,6 @@ impl<T: Number> Dictionary<T> {
         self.at(row, self.n + 1)
     }
 
-    pub(crate) fn variable(&self, row: usize) -> usize {
-        self.basic[row]
-    }
-
     /// The variable of a column.
     pub(crate) fn entering(&self, column: usize) -> usize {
         self.nonbasic[column]
@@ -169,15 +165,18 @@ impl<T: Number> Dictionary<T> {
         sizes[row * width..(row + 1) * width].copy_from_slice(&pivot_row);
     }
 
-    /// The row that becomes infeasible first when the artificial variable decreases from far: the most negative
-    /// constant. `None` if no unilateral constant is negative.
-    pub(crate) fn most_negative(&mut self) -> Option<usize> {
+    /// The row that is the last to become feasible when the variable of a column grows, of those that grow with it.
+    /// `None` if none of these is infeasible.
+    pub(crate) fn last_covered(&mut self, column: usize) -> Option<usize> {
         self.candidates.clear();
-        self.candidates.extend((0..self.n).filter(|&row| !self.free[row]));
+        for row in (0..self.n).filter(|&row| !self.free[row]) {
+            if self.at(row, column) > T::default() {
+                self.candidates.push(row);
+            }
+        }
         if self.candidates.iter().all(|&row| self.constant(row) >= T::default()) {
             return None;
         }
-        let column = self.n;
         self.break_ties(column, None)
     }
 

@@ -5,11 +5,13 @@
 //! final basis is solved again from the original data, which undoes the perturbation and the digits that a
 //! dictionary loses with every pivot, and corrected where it is wrong by that. Ends either at a solution or
 //! on a ray; a ray that is a Farkas certificate proves that the inequalities alone have no solution, any
-//! other proves nothing. What that comes to nothing with is tried again with twice as many digits, if it is not large.
+//! other proves nothing. Of bimatrix games the artificial variable would end on a ray at once: they take the path of
+//! C. Lemke and J. Howson, "Equilibrium points of bimatrix games", SIAM Journal 12, 1964. What that comes to nothing with is tried again with twice as many digits, if it is not large.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, Par};
 
+use crate::bimatrix::is_bimatrix_game;
 use crate::check::Checker;
 use crate::dependent::{dot, make_orthogonal};
 use crate::dictionary::Dictionary;
@@ -55,6 +57,8 @@ pub struct Lemke {
     /// A as entries; scale of each variable.
     matrix: SparseMatrix,
     scale: Vec<f64>,
+    /// The problem is that of a bimatrix game.
+    is_game: bool,
     checker: Checker,
     pivots: usize,
     /// What was taken off the scaled b for bilateral rows that contradict each other by little; empty for nothing.
@@ -92,6 +96,7 @@ impl Lemke {
             Matrix::Symmetric(matrix) | Matrix::General(matrix) => matrix.clone(),
             Matrix::Bodies(bodies) => bodies.product(),
         };
+        self.is_game = is_bimatrix_game(&self.matrix, problem);
         self.find_scale();
     }
 
@@ -147,20 +152,47 @@ impl Lemke {
                 dictionary.eliminate_bilateral();
             }
         }
-        let Some(first) = dictionary.most_negative() else { return End::Solved };
+        if self.is_game {
+            return self.follow_game(problem, dictionary);
+        }
         let artificial = dictionary.artificial();
-        let mut leaving = dictionary.variable(first);
         let Some(column) = dictionary.column(artificial) else { return End::Stopped };
-        dictionary.pivot(first, column);
+        let Some(first) = dictionary.last_covered(column) else { return End::Solved };
+        let leaving = dictionary.pivot(first, column);
+        self.pivot_on(problem, dictionary, leaving, &[artificial])
+    }
+
+    /// The path of Lemke and Howson: the first row's strategy alone, the best answer to it, the best answer to that, and
+    /// from there on until the first row's own condition holds, too.
+    fn follow_game<T: Number>(&mut self, problem: &Problem, dictionary: &mut Dictionary<T>) -> End {
+        let (own, mut leaving) = (0, 0);
+        for _ in 0..2 {
+            self.pivots += 1;
+            let Some(column) = dictionary.column(dictionary.complement(leaving)) else { return End::Stopped };
+            let Some(row) = dictionary.last_covered(column) else { return End::Stopped };
+            leaving = dictionary.pivot(row, column);
+        }
+        let ends = [own, dictionary.complement(own)];
+        self.pivot_on(problem, dictionary, leaving, &ends)
+    }
+
+    /// Lets the complement of what left enter, until one of some variables has left.
+    fn pivot_on<T: Number>(
+        &mut self,
+        problem: &Problem,
+        dictionary: &mut Dictionary<T>,
+        mut leaving: usize,
+        ends: &[usize],
+    ) -> End {
         for _ in 0..self.settings.pivot_cap(problem.len()).max(LEAST_CAP) {
+            if ends.contains(&leaving) {
+                return End::Solved;
+            }
             self.pivots += 1;
             let entering = dictionary.complement(leaving);
             let Some(column) = dictionary.column(entering) else { return End::Stopped };
             let Some(row) = dictionary.blocking(column) else { return End::Ray(column) };
             leaving = dictionary.pivot(row, column);
-            if leaving == artificial {
-                return End::Solved;
-            }
         }
         End::Stopped
     }

@@ -48,6 +48,7 @@
 #![warn(rustdoc::broken_intra_doc_links)]
 
 mod auto;
+mod bimatrix;
 mod body_factor;
 mod check;
 mod closed_rows;

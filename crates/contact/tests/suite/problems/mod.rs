@@ -6,6 +6,7 @@ mod data;
 mod extremes;
 mod files;
 mod found;
+mod games;
 mod least_norm;
 mod perturbed;
 mod properties;
