@@ -25,7 +25,14 @@ impl Workshop {
         Self { builder: WorldBuilder::new(settings), gravity: DVec2::new(0.0, -GRAVITY) }
     }
 
-    /// The same where nothing falls.
+    /// The same where bodies pass through each other.
+    #[must_use]
+    pub fn passing(tolerance: f64) -> Self {
+        let settings = WorldSettings { tolerance, collisions: false, ..WorldSettings::default() };
+        Self { builder: WorldBuilder::new(settings), ..Self::new(tolerance) }
+    }
+
+    /// The same as a new one where nothing falls.
     #[must_use]
     pub fn weightless(tolerance: f64) -> Self {
         Self { gravity: DVec2::ZERO, ..Self::new(tolerance) }

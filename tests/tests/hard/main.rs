@@ -10,6 +10,7 @@ mod dead_points;
 mod dips;
 mod events;
 mod extremes;
+mod folds;
 mod grazing;
 mod held;
 mod ledger;

@@ -481,7 +481,7 @@ impl Ode for Dynamics<'_> {
     type Error = Infallible;
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
-        if !self.group.held.is_soft() {
+        if !self.group.held.is_soft() && !self.group.tree.is_left() {
             self.find_rates(offset, state, rates, Self::solve_rows);
             return Ok(());
         }

@@ -55,7 +55,7 @@ impl Dynamics<'_> {
                 let off = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
                 excess = excess.max(off).max(self.lost_energy(&tools.settings.steps, energy));
             }
-            if excess <= 1.0 || tries >= DEEP_SHORTENINGS {
+            if excess <= self.group.kept.allowance() || tries >= DEEP_SHORTENINGS {
                 return Ok(told);
             }
             self.limit_next_step(tools.stepper.method().step_factor(excess));
@@ -97,7 +97,7 @@ impl Dynamics<'_> {
                 return Ok(told);
             }
             self.limit_next_step(tools.stepper.method().step_factor(excess));
-            if excess <= 1.0 {
+            if excess <= self.group.kept.allowance() {
                 return Ok(told);
             }
             tries += 1;

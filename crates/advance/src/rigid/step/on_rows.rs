@@ -28,27 +28,38 @@ impl Dynamics<'_> {
     /// Moves a state onto the held rows, and stops what its velocities would move it off them by.
     fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
         let length = self.physics.steps.length;
+        // Where there is no more than rounding to correct, that would come into each stage anew.
+        let noise = self.noise(state, length);
         // Near a point where loops could go on in two ways every digit counts; else what is lacking comes
         // with the next round.
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..MOST_ROUNDS {
             let error = self.measure_errors(state, &mut row_rates);
+            if error <= noise {
+                break;
+            }
             respond(self);
             // A change by x leaves errors of the order of x^2/L.
-            if self.largest_change().powi(2) > error * length {
+            let change = self.largest_change();
+            if change.powi(2) > error * length {
                 break;
             }
             self.change(state, 0);
-            if error <= f64::EPSILON.sqrt() * length {
+            if change <= f64::EPSILON.sqrt() * length {
                 break;
             }
         }
+        let speed = self.speed_in(state, self.physics.steps);
+        let largest = row_rates.iter().fold(0.0f64, |most, rate| most.max(rate.abs()));
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&row_rates);
         self.stage.rates = row_rates;
+        if largest <= noise / length * speed {
+            return;
+        }
         respond(self);
-        if self.largest_change() <= ALL_OF_IT * self.speed_in(state, self.physics.steps) {
+        if self.largest_change() <= ALL_OF_IT * speed {
             self.change(state, self.group.velocities());
         }
     }

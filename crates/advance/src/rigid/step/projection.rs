@@ -15,6 +15,8 @@ const WORTHWHILE: f64 = 0.5;
 const FAR: f64 = 8.0;
 /// What bodies of loops move by for less than this part of the length changes none of their rates.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
+/// A gap is off by up to so many roundings of positions.
+const GAP_ROUNDINGS: f64 = 4.0;
 /// A change of velocities by more than so many times what is fast corrects nothing: to stop a group
 /// altogether, some points change by a little more than the fastest moves.
 pub(crate) const ALL_OF_IT: f64 = 2.0;
@@ -49,6 +51,7 @@ impl Dynamics<'_> {
         // Errors of loops decide which way they go on from where they could go both, unless there are hardly any.
         let is_singular = self.group.kept.may_near_singular();
         let is_soft = self.group.held.is_soft() || is_singular;
+        let noise = if is_singular { self.noise(&end, length) } else { ROUNDING_SHARE * zone };
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
@@ -58,7 +61,7 @@ impl Dynamics<'_> {
             // for more than what holds near here, and for what rounding makes of their gaps: errors far
             // within the zone are not worth more.
             let way = self.largest_change();
-            let is_noise = error < ROUNDING_SHARE * zone && way > zone;
+            let is_noise = error < noise && way > zone;
             if way.powi(2) > error * length || is_noise {
                 break;
             }
@@ -88,6 +91,11 @@ impl Dynamics<'_> {
         }
         self.stage.rates = rates;
         self.group.end_state = end;
+    }
+
+    /// By how far [m] a row may be off in a state that is as near as rounding allows.
+    pub(crate) fn noise(&self, state: &[f64], length: f64) -> f64 {
+        (ROUNDED * length).max(GAP_ROUNDINGS * self.rounding_in(state))
     }
 
     /// Measures the rows in a state and factorises: by how far [m] each gap is off, left in the stage's

@@ -106,6 +106,7 @@ impl Dynamics<'_> {
         if !self.is_resolved(control) {
             return Err(StepFailure::Unresolved(self.group.force_length));
         }
+        self.leave_tree(self.is_near_singular(), false);
         self.set_scales(control, tools.scales);
         tools.stepper.set_scales(tools.scales);
         let method = tools.stepper.method();
@@ -121,7 +122,10 @@ impl Dynamics<'_> {
         let shortest =
             COLLAPSED * f64::EPSILON * self.start.seconds().abs().min(control.length / control.speed);
         let work_scale = self.work_scale(control);
-        let (mut rejected, mut placements, mut is_led, proposed) = (false, 0, false, step);
+        let proposed = step;
+        // What errors ask for, wherever steps are led.
+        let mut natural = step;
+        let (mut rejected, mut placements, mut is_led) = (false, 0, false);
         let mut may_ask_again = true;
         loop {
             if step.is_nan() || step <= shortest {
@@ -135,6 +139,12 @@ impl Dynamics<'_> {
             }
             self.group.span = step;
             self.step(tools.stepper, step);
+            if self.group.tree.is_used() && self.is_near_singular() {
+                self.leave_tree(true, true);
+                self.set_scales(control, tools.scales);
+                tools.stepper.set_scales(tools.scales);
+                continue;
+            }
             if placements < MOST_PLACEMENTS
                 && let Some(better) = self.group.kept.better_length(step, method)
             {
@@ -151,20 +161,21 @@ impl Dynamics<'_> {
                 (step, rejected) = (step * RETREAT, true);
                 continue;
             }
-            if self.keeps(error) || self.group.kept.passes_astride(step, error) {
+            if self.keeps(error) || self.group.kept.passes_astride(step, error, control.local_error) {
                 self.group.kept.note_accepted(step);
+                self.group.kept.is_led = is_led;
                 // What laws do elsewhere nothing here foretells.
                 let is_steady = self.group.laws.is_empty() && STEADY_PART * self.growth_by_forces() >= 1.0;
                 self.group.steady_step = is_steady.then_some(step);
                 let accepted = Accepted { length: step, error };
                 // A step that was made short of such a point tells nothing about those after it.
                 let before = self.group.accepted.replace(accepted).filter(|_| !is_led);
-                let most = match (is_led, rejected) {
-                    (true, _) => proposed / step,
-                    (false, true) => 1.0,
-                    (false, false) => self.largest_growth(),
-                };
-                self.group.next_step = Some(step * method.factor_after(accepted, before).min(most));
+                self.group.next_step = Some(if is_led {
+                    natural
+                } else {
+                    let most = if rejected { 1.0 } else { self.largest_growth() };
+                    step * method.factor_after(accepted, before).min(most)
+                });
                 let energy = closed.unwrap_or_else(|| self.end_with_rates(tools));
                 let speed = self.top_speed(&self.group.end_state);
                 if !method.is_adaptive() && control.speed > 0.0 && speed > RUNAWAY * control.speed {
@@ -173,10 +184,23 @@ impl Dynamics<'_> {
                 self.follow_rails();
                 return Ok(energy);
             }
-            let shorter = step * method.step_factor(error);
-            step = self.group.kept.shorter_length(shorter, method);
-            (rejected, is_led) = (true, is_led || step < shorter);
+            [natural, step] = self.group.kept.shorter_lengths(step, method.step_factor(error), method);
+            (rejected, is_led) = (true, is_led || step < natural);
         }
+    }
+
+    /// Steps the group as it is, or as a tree, from the next step on, which begins where the last one did or where it ended.
+    fn leave_tree(&mut self, is_left: bool, begins_there: bool) {
+        let Group { tree, kept, .. } = &mut *self.group;
+        if tree.leave(is_left) {
+            kept.measure_otherwise(is_left, begins_there);
+        }
+    }
+
+    /// True if stages of the last step came so near a point where loops could go on in two ways that they are to be
+    /// on the rows: in angles they are off those beside the pins, which there makes large forces of nothing.
+    fn is_near_singular(&self) -> bool {
+        self.group.kept.is_near_singular() && self.group.stepping() != Stepping::Stiff
     }
 
     /// True if a step with such an error is kept. Where nothing touches, errors follow the step, and it is
@@ -252,8 +276,11 @@ impl Dynamics<'_> {
         growths.fold(f64::INFINITY, f64::min)
     }
 
-    /// The next step is at most by a factor longer than the one just made.
+    /// The next step is at most by a factor longer than the one just made, unless that says nothing about it.
     pub(crate) fn limit_next_step(&mut self, factor: f64) {
+        if factor > 1.0 && self.group.kept.is_led {
+            return;
+        }
         let longest = self.group.span * factor;
         self.group.next_step = Some(self.group.next_step.map_or(longest, |next| next.min(longest)));
     }
@@ -327,7 +354,12 @@ impl Dynamics<'_> {
 
     /// Rounding [m] of the positions of the group's bodies.
     pub(crate) fn rounding(&self) -> f64 {
-        let positions = self.group.state[..self.group.velocities()].chunks_exact(3);
+        self.rounding_in(&self.group.state)
+    }
+
+    /// The same in a state.
+    pub(crate) fn rounding_in(&self, state: &[f64]) -> f64 {
+        let positions = state[..self.group.velocities()].chunks_exact(3);
         f64::EPSILON * positions.flat_map(|q| [q[0].abs(), q[1].abs()]).fold(0.0, f64::max)
     }
 

@@ -5,33 +5,44 @@
 //! follow from the rows divided by what a row keeps once the others are held, which falls with the square of
 //! the distance, so near it rates are all rounding, and errors of the loop decide which way it goes. Far from
 //! it nothing of that shows, so steps are made such that no stage comes near it: it is passed in the widest
-//! interval between stages. Whether a loop does pass such a point, or only nearly, tells how it is held along
+//! interval between stages, and these are moved onto the rows (`on_rows`). A stage that is off them by e makes
+//! accelerations of e over the cube of the distance from the point, whatever e is: a step that is too short
+//! makes much of rounding. Whether a loop does pass such a point, or only nearly, tells how it is held along
 //! the step, which `extending` looks at.
 
 use crate::ode::Method;
 
 /// A stage is near such a point when the point is less than this part of the step away.
-const CLOSE: f64 = 0.08;
+const CLOSE: f64 = 0.1;
 /// A step comes to such a point if the root of what a row keeps falls to this part of its largest.
 const LOW: f64 = 0.35;
 /// Such a point may be ahead where it has fallen to this part.
 const LOWER: f64 = 0.7;
+/// Stages are moved onto the rows where it has fallen to this part.
+const NEAR: f64 = 0.15;
 /// A step so many times as long as the way to such a point leaves it before its first stage.
 const EARLY: f64 = 40.0;
-/// Where a step cannot pass the point between its stages, it ends at this part of the way there.
-const SHORT_OF_IT: f64 = 0.5;
+/// Where a step cannot pass the point between its stages, it ends so early that one of its length can, after at
+/// least this part of the way there.
+const LEAST_WAY: f64 = 0.1;
 
 /// A step astride of such a point may err by so many times what is acceptable: to come nearer to the point
 /// costs more than that.
 const ASTRIDE_ERROR: f64 = 4.0;
-/// And by so many times, if shorter ones err by no less: that is rounding.
-const MOST_ROUNDING: f64 = 1e3;
+/// And by so much relative to what is usual, if shorter ones err by no less: that is rounding.
+const ROUNDING: f64 = 1e-7;
+/// It is made shorter by no more than this at once: what rounding makes of it grows with the square of that.
+const SHORTENING: f64 = 0.5;
 
 /// What the rows of loops kept at the stages of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Kept {
     /// Offset [s] and the root of the least part that a row kept.
     stages: Vec<(f64, f64)>,
+    /// The root where the first stage of the next step is, or near, if what rows keep is measured otherwise from there on.
+    known: Option<f64>,
+    /// What roots that are measured otherwise are multiplied by, so that they compare with those from before.
+    unit: Option<f64>,
     /// The largest such root since there is the group.
     most: f64,
     /// The least of the last step.
@@ -40,25 +51,32 @@ pub(crate) struct Kept {
     lowest: Option<usize>,
     /// A step is made.
     is_open: bool,
+    /// The last step was made shorter for such a point, and tells nothing about those after it.
+    pub(crate) is_led: bool,
     /// Error norm of the last step astride of a point that erred by too much.
     missed: Option<f64>,
+    /// Error norm of the last step astride of a point that passed although it is larger than others may be.
+    passed: Option<f64>,
 }
 
 impl Kept {
     /// Forgets another group.
     pub(crate) fn clear(&mut self) {
         self.stages.clear();
-        (self.most, self.least, self.lowest, self.missed) = (0.0, 0.0, None, None);
+        (self.most, self.least, self.lowest) = (0.0, 0.0, None);
+        (self.known, self.unit) = (None, None);
+        (self.missed, self.passed, self.is_led) = (None, None, false);
     }
 
     pub(crate) fn open(&mut self) {
         self.stages.clear();
-        self.is_open = true;
+        (self.is_open, self.passed) = (true, None);
     }
 
     pub(crate) fn close(&mut self) {
         self.is_open = false;
         self.lowest = None;
+        self.measure_as_before();
         let roots = || self.stages.iter().map(|stage| stage.1);
         self.most = roots().fold(self.most, f64::max);
         self.least = roots().fold(f64::INFINITY, f64::min);
@@ -67,6 +85,29 @@ impl Kept {
             self.stages.dedup_by_key(|stage| stage.0);
             let numbered = self.stages.iter().enumerate();
             self.lowest = numbered.min_by(|a, b| a.1.1.total_cmp(&b.1.1)).map(|(place, _)| place);
+        }
+    }
+
+    /// What rows keep is measured otherwise from the next step on, which begins where the last one did or where it
+    /// ended; or as at first again.
+    pub(crate) fn measure_otherwise(&mut self, is_otherwise: bool, begins_there: bool) {
+        let offsets = self.stages.iter().copied();
+        let stage = if begins_there {
+            offsets.min_by(|a, b| a.0.total_cmp(&b.0))
+        } else {
+            offsets.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        (self.known, self.unit) = (stage.map(|stage| stage.1).filter(|_| is_otherwise), None);
+    }
+
+    /// Makes the roots of a step comparable with those from before they were measured otherwise.
+    fn measure_as_before(&mut self) {
+        if let Some(known) = self.known.take() {
+            let first = self.stages.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+            self.unit = first.map(|first| known / first.1).filter(|unit| unit.is_normal());
+        }
+        if let Some(unit) = self.unit {
+            self.stages.iter_mut().for_each(|stage| stage.1 *= unit);
         }
     }
 
@@ -112,6 +153,11 @@ impl Kept {
         self.lowest.is_some()
     }
 
+    /// True if the last step came so near such a point that stages off the rows make large forces of nothing.
+    pub(crate) fn is_near_singular(&self) -> bool {
+        self.least < NEAR * self.most
+    }
+
     /// True if the next steps may come to such a point: what a loop is off by grows on the way there.
     pub(crate) fn may_near_singular(&self) -> bool {
         self.least < LOWER * self.most
@@ -122,20 +168,27 @@ impl Kept {
     pub(crate) fn better_length(&self, length: f64, method: Method) -> Option<f64> {
         let (point, away) = self.point()?;
         let better = led(point, length, method)?;
-        (away <= CLOSE * length).then_some(better)
+        (away <= CLOSE * length || (point > length && better < length)).then_some(better)
     }
 
     /// True if a step that passed such a point between its stages, and whose error norm is too large, may
     /// pass all the same: it is not by much, or a longer one before it erred by no more, so no shorter one
-    /// will err by less.
-    pub(crate) fn passes_astride(&mut self, length: f64, error: f64) -> bool {
-        let is_astride = self.point().is_some_and(|(point, away)| point < length && away > CLOSE * length);
-        if !is_astride {
+    /// will err by less. A norm of 1 is an error of so much relative to what is usual.
+    pub(crate) fn passes_astride(&mut self, length: f64, error: f64, local_error: f64) -> bool {
+        if !self.is_astride(length) {
             return false;
         }
         let before = self.missed.replace(error);
         let is_rounding = before.is_some_and(|before| error >= before);
-        error <= if is_rounding { MOST_ROUNDING } else { ASTRIDE_ERROR }
+        let most = if is_rounding { ROUNDING / local_error } else { 0.0 };
+        let passes = error <= most.max(ASTRIDE_ERROR);
+        self.passed = passes.then_some(error);
+        passes
+    }
+
+    /// By how many times what others may the last step may err: those astride of a point do so by more.
+    pub(crate) fn allowance(&self) -> f64 {
+        self.passed.map_or(1.0, |error| error.max(1.0))
     }
 
     /// Notes that a step was accepted: beyond a point, or where none is ahead, what erred before it tells
@@ -147,20 +200,29 @@ impl Kept {
         }
     }
 
-    /// A length [s] for a step that erred by so much that it is to be made shorter, to a length given: it
-    /// would come near such a point by its stages, or by its end.
-    pub(crate) fn shorter_length(&self, shorter: f64, method: Method) -> f64 {
+    /// The length [s] that a step gets which erred by so much that it is to be made shorter by a factor, and one no
+    /// longer with which it comes near such a point neither by its stages nor by its end.
+    pub(crate) fn shorter_lengths(&self, length: f64, factor: f64, method: Method) -> [f64; 2] {
+        let factor = if self.is_astride(length) { factor.max(SHORTENING) } else { factor };
+        let shorter = factor * length;
         let better = self.point().and_then(|(point, _)| led(point, shorter, method));
-        better.map_or(shorter, |better| better.min(shorter))
+        [shorter, better.map_or(shorter, |better| better.min(shorter))]
+    }
+
+    /// True if a step passes such a point between its stages.
+    fn is_astride(&self, length: f64) -> bool {
+        self.point().is_some_and(|(point, away)| point < length && away > CLOSE * length)
     }
 }
 
-/// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends well
-/// before it; `None` if that is behind, or so near the start that no stage can be farther from it.
+/// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends where the
+/// next one will; `None` if that is behind, or so near the start that no stage can be farther from it.
 fn led(point: f64, length: f64, method: Method) -> Option<f64> {
-    let astride = point / method.middle_between_stages()?;
+    let middle = method.middle_between_stages()?;
     let is_at_start = point <= 0.0 || EARLY * point <= length;
-    (!is_at_start).then_some(if astride <= length { astride } else { SHORT_OF_IT * point })
+    let astride = point / middle;
+    let short_of_it = (point - middle * length).max(LEAST_WAY * point);
+    (!is_at_start).then_some(if astride <= length { astride } else { short_of_it })
 }
 
 #[cfg(test)]
@@ -196,24 +258,36 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_cannot_pass_a_point_between_its_stages_ends_well_before_it() {
-        for point in [0.6, 0.86, 0.97, 1.03] {
-            let better = seen(1.0, point, 0.0).better_length(1.0, METHOD).expect("a stage is near");
-            assert!((better / point - SHORT_OF_IT).abs() < 1e-2, "{point}: {better}");
+    fn a_step_that_cannot_pass_a_point_between_its_stages_ends_where_the_next_one_can() {
+        let middle = METHOD.middle_between_stages().expect("it has stages");
+        for point in [0.6, 0.86, 0.97, 1.03, 1.3] {
+            let better = seen(1.0, point, 0.0).better_length(1.0, METHOD).expect("it is near");
+            assert!((better + middle - point).abs() < 1e-2, "{point}: {better}");
         }
+        // What is nearly in the middle already is passed from not much nearer.
+        let better = seen(1.0, 0.57, 0.0).better_length(1.0, METHOD).expect("a stage is near");
+        assert!(better >= LEAST_WAY * 0.56, "{better}");
     }
 
     #[test]
     fn what_shorter_steps_do_not_mend_passes_astride() {
+        const LOCAL_ERROR: f64 = 1e-9;
         let mut kept = seen(1.0, 0.46, 0.0);
-        assert!(kept.passes_astride(1.0, 3.0));
+        assert!(kept.passes_astride(1.0, 3.0, LOCAL_ERROR));
+        assert_eq!(kept.allowance(), 3.0);
         kept.note_accepted(1.0);
         for (error, passes) in [(20.0, false), (10.0, false), (15.0, true), (1e4, false)] {
-            assert_eq!(kept.passes_astride(1.0, error), passes, "{error}");
+            assert_eq!(kept.passes_astride(1.0, error, LOCAL_ERROR), passes, "{error}");
+        }
+        // Of what is not asked for with much care, little is rounding.
+        let mut kept = seen(1.0, 0.46, 0.0);
+        for error in [10.0, 15.0] {
+            assert!(!kept.passes_astride(1.0, error, 1e-5), "{error}");
+            assert_eq!(kept.allowance(), 1.0);
         }
         // What does not pass a point by its middle is rejected as ever.
         for point in [0.3, 1.2] {
-            assert!(!seen(1.0, point, 0.0).passes_astride(1.0, 3.0), "{point}");
+            assert!(!seen(1.0, point, 0.0).passes_astride(1.0, 3.0, LOCAL_ERROR), "{point}");
         }
     }
 
@@ -228,12 +302,16 @@ mod tests {
 
     #[test]
     fn what_is_made_shorter_does_not_end_at_a_point() {
-        let kept = seen(1.0, 0.45, 0.0);
-        for (shorter, expected) in [(0.9, 0.225), (0.45, 0.225), (0.3, 0.225), (0.2, 0.2), (0.99, 0.964)] {
-            assert!((kept.shorter_length(shorter, METHOD) - expected).abs() < 1e-2, "{shorter}");
+        let kept = seen(1.0, 0.3, 0.0);
+        for (factor, expected) in [(0.9, 0.643), (0.5, 0.0667), (0.2, 0.2)] {
+            let [asked, led] = kept.shorter_lengths(1.0, factor, METHOD);
+            assert!(asked == factor && (led - expected).abs() < 1e-2, "{factor}: {led}");
         }
-        for (point, shorter) in [(1.6, 0.9), (-0.1, 0.9), (0.01, 0.9)] {
-            assert_eq!(seen(1.0, point, 0.0).shorter_length(shorter, METHOD), shorter, "{point}");
+        for (point, factor) in [(2.0, 0.9), (-0.1, 0.9), (0.01, 0.9)] {
+            assert_eq!(seen(1.0, point, 0.0).shorter_lengths(1.0, factor, METHOD), [factor; 2], "{point}");
         }
+        // Astride of a point rounding decides, and grows where steps are short.
+        let [asked, _] = seen(1.0, 0.46, 0.0).shorter_lengths(1.0, 0.2, METHOD);
+        assert_eq!(asked, SHORTENING);
     }
 }

@@ -100,6 +100,8 @@ pub(crate) struct JointTree {
     inner: Vec<[DVec2; SegmentPolynomial::INNER.len()]>,
     /// Link of each body of the group.
     link_of: Vec<Option<usize>>,
+    /// The group is stepped as it is for a while.
+    is_left: bool,
 }
 
 impl JointTree {
@@ -107,12 +109,24 @@ impl JointTree {
         self.links.clear();
         self.numbers.0.clear();
         self.rest.rows.clear();
+        self.is_left = false;
+    }
+
+    /// Steps the group as it is, or as a tree again, if there is one; true if that is otherwise than before.
+    pub(crate) fn leave(&mut self, is_left: bool) -> bool {
+        let is_left = is_left && !self.links.is_empty();
+        std::mem::replace(&mut self.is_left, is_left) != is_left
+    }
+
+    /// True if there is a tree, but the group is stepped as it is for now.
+    pub(crate) fn is_left(&self) -> bool {
+        self.is_left
     }
 
     /// True if the group is stepped as a tree.
     #[inline]
     pub(crate) fn is_used(&self) -> bool {
-        !self.links.is_empty()
+        !self.links.is_empty() && !self.is_left
     }
 
     /// True if bodies that are where its coordinates say are where all rows hold them.
