@@ -3,6 +3,7 @@
 //! Rows are coupled when they touch the same movable body; a floor couples nothing. Found with union-find: R. Tarjan,
 //! "Efficiency of a good but not linear set union algorithm", Journal of the ACM 22, 1975.
 
+use crate::error::Infeasibility;
 use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 
@@ -142,6 +143,21 @@ impl Islands {
         &self.rows[self.start[island] as usize..self.start[island + 1] as usize]
     }
 
+    /// The proof that an island has no solution as one of the whole, whose scale may be larger.
+    pub(crate) fn proof_of_whole(
+        &self,
+        problem: &Problem,
+        island: usize,
+        proof: Infeasibility,
+    ) -> Infeasibility {
+        let rows = self.rows(island);
+        let mut direction = vec![0.0; problem.len()];
+        rows.iter().zip(&proof.direction).for_each(|(&row, z)| direction[row as usize] = *z);
+        let own = scale(problem, rows.iter().map(|&row| row as usize));
+        let contradiction = proof.contradiction * own / scale(problem, 0..problem.len());
+        Infeasibility { row: rows[proof.row] as usize, direction, contradiction, ..proof }
+    }
+
     /// An island as a problem of its own, without keys.
     pub(crate) fn part(&mut self, problem: &Problem, island: usize) -> &Problem {
         let slot = island.min(KEPT - 1);
@@ -201,6 +217,13 @@ impl Islands {
         self.columns.iter().for_each(|&k| self.local[k] = NONE);
         part
     }
+}
+
+/// The largest scaled offset of some rows, or 1.
+fn scale(problem: &Problem, rows: impl Iterator<Item = usize>) -> f64 {
+    let largest =
+        rows.fold(0.0, |most: f64, row| most.max((problem.offset[row] / problem.row_scale(row)).abs()));
+    if largest > 0.0 { largest } else { 1.0 }
 }
 
 /// Lists the columns of some rows in their own order, so that they ascend within each row as they do in the whole, and

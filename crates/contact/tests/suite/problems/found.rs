@@ -172,6 +172,42 @@ fn what_has_no_solution_is_proven() {
     }
 }
 
+/// A problem with so many discs at rest on a floor before its rows.
+fn beside_discs(name: &str, discs: usize, offset: f64) -> Problem {
+    let mut file = Case::found(name).file;
+    let rows = file.j.as_mut().unwrap();
+    rows.triplets.iter_mut().for_each(|(row, column, _)| (*row, *column) = (*row + discs, *column + discs));
+    rows.triplets.extend((0..discs).map(|disc| (disc, disc, 1.0)));
+    (rows.rows, rows.columns) = (rows.rows + discs, rows.columns + discs);
+    file.inverse_mass.as_mut().unwrap().splice(0..0, vec![1.0; discs]);
+    file.bilateral.as_mut().unwrap().splice(0..0, vec![false; discs]);
+    file.b.splice(0..0, vec![offset; discs]);
+    file.problem().unwrap()
+}
+
+#[test]
+fn what_has_no_solution_has_none_beside_other_bodies() {
+    let (name, mut solution) = ("nine_rows_of_whole_numbers", Solution::new());
+    for discs in [0, 24, 35, 39, 100] {
+        let problem = beside_discs(name, discs, -1.0);
+        match Auto::default().solve(&problem, &mut solution) {
+            Err(SolveError::Infeasible(proof)) => {
+                assert_eq!(disproof(&problem, &proof.direction), None, "{discs} discs");
+                assert!(
+                    proof.row >= discs && proof.direction[..discs].iter().all(|z| *z == 0.0),
+                    "{proof:?}"
+                );
+                // Digits that are not returned do not count.
+                assert!((1e-17..1e-15).contains(&proof.leakage), "{proof:?}");
+            }
+            other => panic!("{discs} discs: {other:?}"),
+        }
+        // Beside offsets so large it is rounding.
+        let problem = beside_discs(name, discs + 1, -1e9);
+        Auto::default().solve(&problem, &mut solution).unwrap();
+    }
+}
+
 /// Two bodies held together by two pins on a line at an angle to the y axis, whose four rows hold three
 /// motions. The offsets are those of some accelerations, and one of the pins is off along the line.
 fn two_pins(angle: f64, off: f64) -> Problem {
@@ -283,6 +319,12 @@ fn numbers_beyond_what_can_be_computed_with_are_refused_by_row() {
         Auto::default().solve(&problem, &mut Solution::new()).unwrap();
         let error = Problem::from_rows(&[(0, 0, size)], &[1.0], &[-1.0]).unwrap_err();
         assert!(error.to_string().starts_with("row 0: its diagonal entry of A is"), "{error}");
+    }
+    // The force would be 1e315 N.
+    let problem = Problem::from_rows(&[(0, 0, 1e-150)], &[1e-5], &[-1e10]).unwrap();
+    for solver in [&mut Auto::default() as &mut dyn Solver, &mut Lemke::default()] {
+        let outcome = solver.solve(&problem, &mut Solution::new());
+        assert!(matches!(outcome, Err(SolveError::Unsolved { .. })), "{outcome:?}");
     }
     let error = Problem::from_dense(&[vec![0.0, 1.0], vec![1.0, 0.0]], &[-1.0, -1.0]).unwrap_err();
     assert!(error.to_string().contains("not positive semidefinite"), "{error}");
