@@ -269,8 +269,13 @@ impl Methods {
         if self.settings.is_proven(&error, problem) {
             return Err(error);
         }
+        self.refine(problem, &error)?;
         if self.proximal.solve(problem, solution).is_ok() {
             return Ok(());
+        }
+        // Where there is no solution, its forces have grown along a direction that proves it.
+        if solution.residuals.growth >= self.settings.least_growth {
+            self.refine_direction(problem, &solution.force)?;
         }
         #[cfg(feature = "qp")]
         if self.qp.solve(problem, solution).is_ok() {
@@ -282,10 +287,23 @@ impl Methods {
                 Err(proof) if self.lemke.is_certain || self.settings.is_proven(&proof, problem) => {
                     return Err(proof);
                 }
-                Err(_) => {}
+                Err(proof) => self.refine(problem, &proof)?,
             }
         }
         Err(error)
+    }
+
+    /// An error if a proof that leaves doubt can be refined to one that leaves none.
+    fn refine(&mut self, problem: &Problem, error: &SolveError) -> Result<(), SolveError> {
+        match error {
+            SolveError::Infeasible(proof) => self.refine_direction(problem, &proof.direction),
+            _ => Ok(()),
+        }
+    }
+
+    fn refine_direction(&mut self, problem: &Problem, direction: &[f64]) -> Result<(), SolveError> {
+        let proof = self.proximal.refine_proof(problem, direction);
+        proof.map_or(Ok(()), |proof| Err(SolveError::Infeasible(Box::new(proof))))
     }
 }
 
