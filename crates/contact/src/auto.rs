@@ -82,21 +82,27 @@ impl Auto {
         warm: Option<&WarmStart>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        if problem.len() < SPLIT_ROWS {
-            self.methods.solve(problem, warm, solution)?;
-            if !self.methods.is_left_in_doubt(problem, solution) {
-                return Ok(());
-            }
-            // Its islands may be small enough to be looked at.
-            return match self.islands.find(problem) {
-                1 => Ok(()),
-                islands => self.solve_islands(problem, islands, warm, solution),
-            };
+        let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
+        if islands > 1 {
+            return self.solve_islands(problem, islands, warm, solution);
         }
-        match self.islands.find(problem) {
-            0 | 1 => self.methods.solve(problem, warm, solution),
-            islands => self.solve_islands(problem, islands, warm, solution),
+        self.methods.solve(problem, warm, solution)?;
+        if problem.len() < SPLIT_ROWS && self.methods.is_left_in_doubt(problem, solution) {
+            return self.look_at_islands(problem, warm, solution);
         }
+        Ok(())
+    }
+
+    /// Solves again a problem that was not split, if it can be: its islands may be small enough to be looked at.
+    #[cold]
+    fn look_at_islands(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let islands = self.islands.find(problem);
+        if islands > 1 { self.solve_islands(problem, islands, warm, solution) } else { Ok(()) }
     }
 
     fn solve_islands(
@@ -294,6 +300,7 @@ impl Methods {
     }
 
     /// An error if a proof that leaves doubt can be refined to one that leaves none.
+    #[cold]
     fn refine(&mut self, problem: &Problem, error: &SolveError) -> Result<(), SolveError> {
         match error {
             SolveError::Infeasible(proof) => self.refine_direction(problem, &proof.direction),
@@ -301,6 +308,7 @@ impl Methods {
         }
     }
 
+    #[cold]
     fn refine_direction(&mut self, problem: &Problem, direction: &[f64]) -> Result<(), SolveError> {
         let proof = self.proximal.refine_proof(problem, direction);
         proof.map_or(Ok(()), |proof| Err(SolveError::Infeasible(Box::new(proof))))
