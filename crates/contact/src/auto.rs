@@ -59,6 +59,8 @@ struct Methods {
     lemke: Lemke,
     /// The last problem was handed over to the proximal method.
     was_handed_over: bool,
+    /// The last answer is one of nearly dependent rows, with forces as large as that takes.
+    is_strained: bool,
     /// A second answer, to be compared with the first.
     other: Solution,
 }
@@ -81,16 +83,48 @@ impl Auto {
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
         let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
-        if islands <= 1 {
-            return self.methods.solve(problem, warm, solution);
+        if islands > 1 {
+            return self.solve_islands(problem, islands, warm, solution);
         }
+        self.methods.solve(problem, warm, solution)?;
+        if problem.len() < SPLIT_ROWS && self.methods.is_left_in_doubt(problem, solution) {
+            return self.look_at_islands(problem, warm, solution);
+        }
+        Ok(())
+    }
+
+    /// Solves again a problem that was not split, if it can be: its islands may be small enough to be looked at.
+    #[cold]
+    fn look_at_islands(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let islands = self.islands.find(problem);
+        if islands > 1 { self.solve_islands(problem, islands, warm, solution) } else { Ok(()) }
+    }
+
+    fn solve_islands(
+        &mut self,
+        problem: &Problem,
+        islands: usize,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
         solution.reset(problem.len(), Method::Auto);
         self.carries.clear();
         self.carries.resize(problem.len(), false);
         for island in 0..islands {
             match self.solve_island(problem, island, warm, solution) {
-                // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
-                Err(SolveError::Infeasible(_)) => {
+                Err(SolveError::Infeasible(proof)) => {
+                    let proof = self.islands.proof_of_whole(problem, island, *proof);
+                    if proof.contradiction > self.settings.inconsistency
+                        && proof.least_growth() >= self.settings.least_growth
+                    {
+                        return Err(SolveError::Infeasible(Box::new(proof)));
+                    }
+                    // What is a contradiction beside the offsets of an island is rounding beside those of all rows.
                     return self.methods.solve(problem, warm, solution);
                 }
                 other => other?,
@@ -150,6 +184,7 @@ impl Methods {
             qp: Qp::new(settings)?,
             lemke: Lemke::new(settings)?,
             was_handed_over: false,
+            is_strained: false,
             other: Solution::new(),
         })
     }
@@ -175,7 +210,7 @@ impl Methods {
         } else {
             self.dual.run(problem, start, solution).map(|()| None)
         };
-        let is_strained = first.is_ok() && self.dual.is_strained;
+        self.is_strained = first.is_ok() && self.dual.is_strained;
         let outcome = match first {
             Ok(None) => Ok(()),
             Ok(Some(reason)) => {
@@ -192,21 +227,24 @@ impl Methods {
             }
             Err(error) => self.try_others(problem, solution, error),
         };
-        outcome.and_then(|()| self.relax(problem, solution, is_strained))
+        outcome.and_then(|()| self.relax(problem, solution))
+    }
+
+    /// Whether forces are so large that they are to be compared with those found with twice as many digits.
+    fn is_to_be_relaxed(&self, solution: &Solution) -> bool {
+        let least = if self.is_strained { STRAINED } else { MUCH_STRAINED };
+        solution.residuals.growth >= least && self.settings.contradiction == Contradiction::SolveExactly
+    }
+
+    /// The same of the last answer, where the problem was too large for it.
+    fn is_left_in_doubt(&self, problem: &Problem, solution: &Solution) -> bool {
+        problem.is_symmetric() && problem.len() > RELAXED_ROWS && self.is_to_be_relaxed(solution)
     }
 
     /// Where nearly dependent rows were solved by large forces, contacts may have been judged by what rounding leaves of
     /// these, and by forces that are larger still rows that have no solution at all: looks with twice as many digits.
-    fn relax(
-        &mut self,
-        problem: &Problem,
-        solution: &mut Solution,
-        is_strained: bool,
-    ) -> Result<(), SolveError> {
-        let is_small = problem.len() <= RELAXED_ROWS;
-        let is_asked = self.settings.contradiction == Contradiction::SolveExactly;
-        let least = if is_strained { STRAINED } else { MUCH_STRAINED };
-        if !(solution.residuals.growth >= least && is_small && is_asked) {
+    fn relax(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        if problem.len() > RELAXED_ROWS || !self.is_to_be_relaxed(solution) {
             return Ok(());
         }
         let is_found = self.lemke.solve_twofold(problem, &mut self.other);
@@ -237,8 +275,13 @@ impl Methods {
         if self.settings.is_proven(&error, problem) {
             return Err(error);
         }
+        self.refine(problem, &error)?;
         if self.proximal.solve(problem, solution).is_ok() {
             return Ok(());
+        }
+        // Where there is no solution, its forces have grown along a direction that proves it.
+        if solution.residuals.growth >= self.settings.least_growth {
+            self.refine_direction(problem, &solution.force)?;
         }
         #[cfg(feature = "qp")]
         if self.qp.solve(problem, solution).is_ok() {
@@ -250,10 +293,25 @@ impl Methods {
                 Err(proof) if self.lemke.is_certain || self.settings.is_proven(&proof, problem) => {
                     return Err(proof);
                 }
-                Err(_) => {}
+                Err(proof) => self.refine(problem, &proof)?,
             }
         }
         Err(error)
+    }
+
+    /// An error if a proof that leaves doubt can be refined to one that leaves none.
+    #[cold]
+    fn refine(&mut self, problem: &Problem, error: &SolveError) -> Result<(), SolveError> {
+        match error {
+            SolveError::Infeasible(proof) => self.refine_direction(problem, &proof.direction),
+            _ => Ok(()),
+        }
+    }
+
+    #[cold]
+    fn refine_direction(&mut self, problem: &Problem, direction: &[f64]) -> Result<(), SolveError> {
+        let proof = self.proximal.refine_proof(problem, direction);
+        proof.map_or(Ok(()), |proof| Err(SolveError::Infeasible(Box::new(proof))))
     }
 }
 

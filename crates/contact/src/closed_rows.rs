@@ -147,9 +147,7 @@ impl ClosedRows {
         let complement = diagonal - square;
         let dependence = if self.spread > 0.0 { LOST * self.spread } else { self.dependence };
         let relation = Relation { complement, dependent: complement <= dependence, first };
-        // A raise is far more than rounding.
-        let doubts = self.doubts && self.spread == 0.0;
-        Relation { dependent: relation.dependent || (doubts && self.is_doubtful(relation)), ..relation }
+        Relation { dependent: relation.dependent || (self.doubts && self.is_doubtful(relation)), ..relation }
     }
 
     /// True if it is bilateral rows that the row found doubtful nearly depends on: of contacts it takes less
@@ -237,9 +235,11 @@ impl ClosedRows {
         independent
     }
 
-    /// True if what is left of the row just considered may be no more than rounding.
+    /// True if what is left of the row just considered may be no more than rounding. A raise is far more than that.
     fn is_doubtful(&mut self, relation: Relation) -> bool {
-        relation.complement <= DOUBTFUL && relation.complement <= self.rounding(self.len())
+        self.spread == 0.0
+            && relation.complement <= DOUBTFUL
+            && relation.complement <= self.rounding(self.len())
     }
 
     /// Closes the same rows again, in order, with the forces they have. Returns false if rounding made one dependent:
@@ -349,5 +349,24 @@ impl ClosedRows {
     /// Largest |â| of a closed row.
     pub(crate) fn closed_error(&self) -> f64 {
         self.rows.iter().fold(0.0, |m: f64, &row| m.max(self.acceleration[row].abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ProblemError;
+
+    #[test]
+    fn with_a_raise_no_connector_is_doubtful() -> Result<(), ProblemError> {
+        let mut problem = Problem::from_rows(&[(0, 0, 1.0), (1, 0, 1.0)], &[1.0], &[-1.0, -1.0])?;
+        problem.set_bilateral(&[true, true])?;
+        let mut closed = ClosedRows::default();
+        closed.load(&problem, 1e-11, false);
+        closed.spread = 1e-9;
+        assert!(closed.close_flagged(&[true, true]));
+        // What takes a pass over the factor for each row was not looked at.
+        assert_eq!((closed.len(), closed.shares.len()), (2, 0));
+        Ok(())
     }
 }

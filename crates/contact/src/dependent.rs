@@ -66,11 +66,18 @@ impl Shift {
         let mut direction = null_direction(closed, row);
         // What the bilateral rows were made to agree on stays so.
         make_orthogonal(&mut direction, &self.basis);
+        if self.remove(closed, &direction, limit) {
+            return Reconciled::Shifted;
+        }
+        // What rounding has left below zero counts for where the row is, but is no part of a proof.
+        let contacts = direction.iter_mut().zip(&closed.free).filter(|(_, free)| !**free);
+        contacts.for_each(|(z, _)| *z = z.max(0.0));
         let violated = dot(&direction, &closed.system.b) < 0.0;
-        match self.remove(closed, &direction, row, limit) {
-            None => Reconciled::Shifted,
-            Some(proof) if violated && proof.least_growth() >= least_growth => Reconciled::Infeasible(proof),
-            Some(_) => Reconciled::Unproven,
+        let proof = Box::new(certificate(closed, &direction, row));
+        if violated && proof.least_growth() >= least_growth {
+            Reconciled::Infeasible(proof)
+        } else {
+            Reconciled::Unproven
         }
     }
 
@@ -96,36 +103,36 @@ impl Shift {
             let mut direction = null_direction(closed, row);
             // Orthogonal directions can be settled one by one.
             make_orthogonal(&mut direction, &self.basis);
-            let proof = self.remove(closed, &direction, row, limit.max(noise));
-            if proof.is_some() {
-                return proof;
+            if !self.remove(closed, &direction, limit.max(noise)) {
+                return Some(Box::new(certificate(closed, &direction, row)));
             }
             self.basis.push(direction);
         }
         None
     }
 
-    fn remove(
-        &mut self,
-        closed: &mut ClosedRows,
-        direction: &[f64],
-        row: usize,
-        limit: f64,
-    ) -> Option<Box<Infeasibility>> {
-        let contradiction = dot(direction, &closed.system.b);
-        let factor = contradiction / dot(direction, direction);
-        let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
-        let size = factor.abs() * largest;
+    /// Removes the contradiction along a direction by the least change of b̂ that does so; false, and nothing is done, if
+    /// that changes a row by more than `limit`.
+    fn remove(&mut self, closed: &mut ClosedRows, direction: &[f64], limit: f64) -> bool {
+        let (factor, size) = least_change(direction, &closed.system.b);
         if size > limit {
-            return Some(Box::new(certificate(closed, direction, row, size)));
+            return false;
         }
         self.taken.resize(direction.len(), 0.0);
         for ((taken, b), z) in self.taken.iter_mut().zip(&mut closed.system.b).zip(direction) {
             *taken += factor * z;
             *b -= factor * z;
         }
-        None
+        true
     }
+}
+
+/// What of a direction the least change of b̂ that removes the contradiction along it takes off, and the largest change of a
+/// row by that.
+fn least_change(direction: &[f64], b: &[f64]) -> (f64, f64) {
+    let factor = dot(direction, b) / dot(direction, direction);
+    let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
+    (factor, factor.abs() * largest)
 }
 
 /// Takes the parts out of a direction that it has in orthogonal others; twice is enough (Kahan and Parlett).
@@ -136,20 +143,20 @@ pub(crate) fn make_orthogonal<T: Number>(direction: &mut [T], basis: &[Vec<T>]) 
     }
 }
 
-/// The direction in which `row`, last considered, and the closed rows cancel each other. Bilateral rows may be taken
-/// with either sign.
+/// The direction in which `row`, last considered, and the closed rows cancel each other: positive on contacts, up to
+/// rounding, and of either sign on connectors.
 fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
     let mut direction = vec![0.0; closed.force.len()];
     for (at, &other) in closed.rows.iter().enumerate() {
-        let z = -closed.step[at];
-        direction[other] = if closed.free[other] { z } else { z.max(0.0) };
+        direction[other] = -closed.step[at];
     }
     direction[row] = 1.0;
     direction
 }
 
 /// The proof by a null direction, which counts with either sign where all of its rows are bilateral.
-fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize, size: f64) -> Infeasibility {
+fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize) -> Infeasibility {
+    let (_, size) = least_change(direction, &closed.system.b);
     let scale = closed.system.scale;
     let sign = if dot(direction, &closed.system.b) > 0.0 { -1.0 } else { 1.0 };
     let mut image = vec![0.0; direction.len()];

@@ -43,6 +43,9 @@ const SLIGHT: f64 = 100.0;
 const MOST_SLIGHT: usize = 10;
 const MOST_SLIGHT_AT_LAST: usize = 100;
 
+/// Part of the acceleration of a row which, left after its contradiction was removed, shows that this is beyond rounding.
+const STUCK: f64 = 0.5;
+
 /// Passes over all rows that a pivot takes beside those of the factor.
 const ROW_PASSES: usize = 5;
 
@@ -485,11 +488,15 @@ impl DualActiveSet {
             Reconciled::Unproven => End::Unproven,
             Reconciled::Shifted => {
                 self.contacts_contradict = true;
-                self.closed.force[row] = 0.0;
+                let (held, before) = (self.closed.len(), self.closed.acceleration[row]);
+                let had_force = std::mem::take(&mut self.closed.force[row]) > 0.0;
                 self.closed.solve_closed();
                 self.closed.accelerate();
                 self.make_forces_admissible();
-                End::Done
+                // What leaves the row where it was, and all others, would be done for ever.
+                let is_as_before = !had_force && self.closed.len() == held;
+                let is_stuck = is_as_before && self.closed.acceleration[row] < STUCK * before;
+                if is_stuck { End::Stopped } else { End::Done }
             }
         }
     }

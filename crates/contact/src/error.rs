@@ -139,9 +139,10 @@ pub enum SolveError {
 
 /// Proof that a problem has no solution.
 ///
-/// `direction` is a combination z of the rows, z ≥ 0 on unilateral rows, that no force can accelerate (A z = 0 up to
-/// rounding) while bᵀz < 0. For any forces f, zᵀ(A f + b) = bᵀz < 0, so the accelerations cannot all be admissible
-/// (Farkas' lemma).
+/// `direction` is a combination z of the rows, z ≥ 0 on unilateral rows, that no admissible forces can accelerate: Aᵀz is
+/// zero on bilateral and at most zero on unilateral rows, up to rounding, while bᵀz < 0. For any admissible forces f,
+/// zᵀ(A f + b) ≤ bᵀz < 0, so the accelerations cannot all be admissible (Farkas' lemma). If A is symmetric and positive
+/// semidefinite, A z = 0 then.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "no forces satisfy the contacts: row {row} cannot be kept from closing (contradiction {contradiction:e} of the scale)"
@@ -153,13 +154,15 @@ pub struct Infeasibility {
     pub direction: Vec<f64>,
     /// Least change of a row's b, in units of the scale, that would remove the contradiction: |bᵀz| max|s z| / |s z|².
     pub contradiction: f64,
-    /// Largest scaled component of A z, in units of the largest scaled component of z: zero up to rounding.
+    /// Largest scaled component of Aᵀz that admissible forces could use (of either sign on bilateral rows, positive on
+    /// others; where A is symmetric it may be any), in units of the largest scaled component of z: zero up to the
+    /// rounding of z.
     pub leakage: f64,
 }
 
 impl Infeasibility {
     /// The growth that any solution would at least have, as far as the certificate can tell: forces of that size would
-    /// have to use the rounding in A z.
+    /// have to use the rounding in Aᵀz.
     #[must_use]
     pub fn least_growth(&self) -> f64 {
         self.contradiction / self.leakage.max(f64::EPSILON)

@@ -3,7 +3,8 @@
 //! Rows are coupled when they touch the same movable body; a floor couples nothing. Found with union-find: R. Tarjan,
 //! "Efficiency of a good but not linear set union algorithm", Journal of the ACM 22, 1975.
 
-use crate::matrix::Matrix;
+use crate::error::Infeasibility;
+use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 
 const NONE: u32 = u32::MAX;
@@ -31,6 +32,8 @@ pub(crate) struct Islands {
     is_current: Vec<bool>,
     /// Place in the island of each row or column of the whole.
     local: Vec<u32>,
+    /// The columns of an island that becomes a problem.
+    columns: Vec<usize>,
 }
 
 impl Islands {
@@ -140,6 +143,21 @@ impl Islands {
         &self.rows[self.start[island] as usize..self.start[island + 1] as usize]
     }
 
+    /// The proof that an island has no solution as one of the whole, whose scale may be larger.
+    pub(crate) fn proof_of_whole(
+        &self,
+        problem: &Problem,
+        island: usize,
+        proof: Infeasibility,
+    ) -> Infeasibility {
+        let rows = self.rows(island);
+        let mut direction = vec![0.0; problem.len()];
+        rows.iter().zip(&proof.direction).for_each(|(&row, z)| direction[row as usize] = *z);
+        let own = scale(problem, rows.iter().map(|&row| row as usize));
+        let contradiction = proof.contradiction * own / scale(problem, 0..problem.len());
+        Infeasibility { row: rows[proof.row] as usize, direction, contradiction, ..proof }
+    }
+
     /// An island as a problem of its own, without keys.
     pub(crate) fn part(&mut self, problem: &Problem, island: usize) -> &Problem {
         let slot = island.min(KEPT - 1);
@@ -166,27 +184,28 @@ impl Islands {
         if std::mem::discriminant(&part.matrix) != std::mem::discriminant(&problem.matrix) {
             part.matrix = problem.matrix.clone();
         }
-        let (target, mut target_masses) = match &mut part.matrix {
+        let (target, target_masses) = match &mut part.matrix {
             Matrix::Bodies(bodies) => (&mut bodies.rows, Some(&mut bodies.inverse_mass)),
             Matrix::Symmetric(matrix) | Matrix::General(matrix) => (matrix, None),
         };
         let columns = masses.map_or(problem.len(), |masses| masses.len());
         self.local.resize(columns.max(self.local.len()), NONE);
-        if let Some(masses) = &mut target_masses {
-            masses.clear();
+        self.columns.clear();
+        if let (Some(from), Some(to)) = (masses, target_masses) {
+            list_columns(rows, source, &mut self.local, &mut self.columns);
+            to.clear();
+            to.extend(self.columns.iter().map(|&k| from[k]));
         } else {
-            rows.iter().enumerate().for_each(|(at, &row)| self.local[row as usize] = at as u32);
+            // Of a matrix, rows are columns, too.
+            self.columns.extend(rows.iter().map(|&row| row as usize));
         }
+        self.columns.iter().enumerate().for_each(|(at, &k)| self.local[k] = at as u32);
         target.start.truncate(1);
         target.column.clear();
         target.value.clear();
         for &row in rows {
             let (columns, values) = source.row(row as usize);
             for (&k, &v) in columns.iter().zip(values) {
-                if let (NONE, Some(from), Some(to)) = (self.local[k], masses, &mut target_masses) {
-                    self.local[k] = to.len() as u32;
-                    to.push(from[k]);
-                }
                 if self.local[k] != NONE {
                     target.column.push(self.local[k] as usize);
                     target.value.push(v);
@@ -194,15 +213,31 @@ impl Islands {
             }
             target.start.push(target.column.len());
         }
-        // Only what was touched, for there may be as many islands as bodies. Of a matrix, rows are columns, too.
-        for &row in rows {
-            source.row(row as usize).0.iter().for_each(|&k| self.local[k] = NONE);
-            if masses.is_none() {
-                self.local[row as usize] = NONE;
-            }
-        }
+        // Only what was touched, for there may be as many islands as bodies.
+        self.columns.iter().for_each(|&k| self.local[k] = NONE);
         part
     }
+}
+
+/// The largest scaled offset of some rows, or 1.
+fn scale(problem: &Problem, rows: impl Iterator<Item = usize>) -> f64 {
+    let largest =
+        rows.fold(0.0, |most: f64, row| most.max((problem.offset[row] / problem.row_scale(row)).abs()));
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+/// Lists the columns of some rows in their own order, so that they ascend within each row as they do in the whole, and
+/// marks them as local.
+fn list_columns(rows: &[u32], source: &SparseMatrix, local: &mut [u32], columns: &mut Vec<usize>) {
+    for &row in rows {
+        for &k in source.row(row as usize).0 {
+            if local[k] == NONE {
+                local[k] = 0;
+                columns.push(k);
+            }
+        }
+    }
+    columns.sort_unstable();
 }
 
 #[cfg(test)]
@@ -219,6 +254,19 @@ mod tests {
         assert_eq!(islands.find(&problem), 2);
         assert_eq!((islands.rows(0), islands.rows(1)), (&[0, 2][..], &[1][..]));
         assert_eq!(islands.part(&problem, 0).offset(), [-1.0, -3.0]);
+        Ok(())
+    }
+
+    #[test]
+    fn the_columns_of_a_part_ascend_as_those_of_the_whole() -> Result<(), ProblemError> {
+        // The first row touches the last body, and a floor, column 1, that the others touch, too.
+        let rows = [(0, 1, 3.0), (0, 3, 1.0), (1, 2, 2.0), (2, 0, 5.0), (2, 1, 6.0), (2, 3, 4.0)];
+        let problem = Problem::from_rows(&rows, &[1.0, 0.0, 2.0, 4.0], &[-1.0, -2.0, -3.0])?;
+        let mut islands = Islands::default();
+        assert_eq!(islands.find(&problem), 2);
+        let rows = [(0, 1, 3.0), (0, 2, 1.0), (1, 0, 5.0), (1, 1, 6.0), (1, 2, 4.0)];
+        let part = Problem::from_rows(&rows, &[1.0, 0.0, 4.0], &[-1.0, -3.0])?;
+        assert_eq!(*islands.part(&problem, 0), part);
         Ok(())
     }
 

@@ -426,15 +426,9 @@ impl Lemke {
         direction: &[T],
         least_growth: f64,
     ) -> Option<Infeasibility> {
-        let (n, zero) = (problem.len(), T::default());
-        let mut image = vec![zero; n];
-        self.visit(problem, |i, j, value: T| image[j] = image[j] + value * direction[i]);
+        let leakage = self.leakage(problem, direction)?;
         let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs().nearest()));
-        let outside = |i: usize| {
-            if problem.bilateral[i] { image[i].abs().nearest() } else { image[i].nearest().max(0.0) }
-        };
-        let leakage = (0..n).map(outside).fold(0.0, f64::max) / largest;
-        let (mut worth, mut square) = (zero, 0.0);
+        let (mut worth, mut square) = (T::default(), 0.0);
         for (i, &z) in direction.iter().enumerate() {
             worth = worth + T::from(problem.offset[i]) * T::from(self.scale[i]) * z;
             square += z.nearest() * z.nearest();
@@ -445,9 +439,25 @@ impl Lemke {
             return None;
         }
         let size = |&i: &usize| direction[i].abs().nearest();
-        let row = (0..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
-        let direction = direction.iter().zip(&self.scale).map(|(z, s)| z.nearest() * s).collect();
+        let row = (0..direction.len()).max_by(|i, j| size(i).total_cmp(&size(j)))?;
+        let direction: Vec<f64> = direction.iter().zip(&self.scale).map(|(z, s)| z.nearest() * s).collect();
+        // What is returned has fewer digits, and leaks more.
+        let rounded: Vec<T> =
+            direction.iter().zip(&self.scale).map(|(&z, &s)| T::from(z) / T::from(s)).collect();
+        let leakage = self.leakage(problem, &rounded)?;
         Some(Infeasibility { row, direction, contradiction, leakage })
+    }
+
+    /// The largest component of Aᵀz that a force could use, in units of the largest of z; `None` where numbers have left
+    /// their range.
+    fn leakage<T: Number>(&self, problem: &Problem, direction: &[T]) -> Option<f64> {
+        let mut image = vec![T::default(); problem.len()];
+        self.visit(problem, |i, j, value: T| image[j] = image[j] + value * direction[i]);
+        let image = image.into_iter().map(Number::nearest).zip(&problem.bilateral);
+        let mut usable =
+            image.map(|(part, &is_free)| if is_free || part.is_nan() { part.abs() } else { part });
+        let used = usable.try_fold(0.0, |most: f64, part| part.is_finite().then(|| most.max(part)))?;
+        Some(used / direction.iter().fold(0.0, |most: f64, z| most.max(z.abs().nearest())))
     }
 }
 

@@ -50,6 +50,7 @@
 mod auto;
 mod bimatrix;
 mod body_factor;
+mod certificate;
 mod check;
 mod closed_rows;
 mod crossover;

@@ -381,6 +381,12 @@ impl Problem {
         (0..n).map(|i| (0..n).map(|j| self.entry(i, j)).collect()).collect()
     }
 
+    /// s_i = sqrt(A_ii), 1 where that is zero.
+    pub(crate) fn row_scale(&self, row: usize) -> f64 {
+        let diagonal = self.entry(row, row);
+        if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 }
+    }
+
     fn entry(&self, i: usize, j: usize) -> f64 {
         match &self.matrix {
             Matrix::Symmetric(matrix) | Matrix::General(matrix) => matrix.entry(i, j),

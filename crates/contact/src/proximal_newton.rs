@@ -14,8 +14,9 @@
 //! algorithm", Mathematics of Operations Research 1, 1976. The first step goes straight to the minimum for a guessed C.
 
 use crate::body_factor::BodyFactor;
+use crate::certificate::refine;
 use crate::check::{Checker, Residuals};
-use crate::error::{SettingsError, SolveError};
+use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::interior_point::InteriorPoint;
 use crate::line_search::PiecewiseLinear;
 use crate::problem::Problem;
@@ -109,6 +110,18 @@ impl ProximalNewton {
     /// Whether the last problem solved had the matrix of this one, so that its factor is of use.
     pub(crate) fn is_loaded(&self, problem: &Problem) -> bool {
         self.system.is_loaded(problem)
+    }
+
+    /// The proof that there is no solution, made of a direction along which forces have grown, or of another proof, if
+    /// that leaves no doubt.
+    pub(crate) fn refine_proof(&mut self, problem: &Problem, direction: &[f64]) -> Option<Infeasibility> {
+        if !problem.has_bodies() {
+            return None;
+        }
+        self.load(problem, None);
+        let is_ready = self.factor.prepare(&self.system, self.motion.len());
+        let Self { system, factor, settings, .. } = self;
+        is_ready.then(|| refine(problem, system, factor, direction, settings)).flatten()
     }
 
     /// As [`solve`](Solver::solve), beginning at what the interior-point method finds, from an earlier answer

@@ -26,7 +26,8 @@ pub struct Settings {
     /// Growth from which an answer may be judged by its backward residual instead: there rounding alone, times the
     /// growth, exceeds `natural_residual`.
     pub least_growth: f64,
-    /// Growth beyond which no answer is accepted: the forces mean nothing any more.
+    /// Growth from which the backward residual no longer counts, for the forces mean nothing any more: such an answer is
+    /// accepted only by its natural residual. A proof that every solution has that growth leaves no doubt.
     pub greatest_growth: f64,
     /// Largest backward residual of an accepted answer of great growth.
     pub backward_residual: f64,

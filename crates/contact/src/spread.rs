@@ -64,9 +64,11 @@ impl DualActiveSet {
     }
 
     /// Whether forces were spread in the last solve, and can be so again, with the rows that are to start
-    /// closed now. If not, and that was tried, no rows are closed.
+    /// closed now. If not, and that was tried, no rows are closed. Where connectors came first it is not tried: the
+    /// factor of all rows would be wide.
     pub(crate) fn is_still_spread(&mut self) -> bool {
-        let was_spread = self.closed.was_spread && self.is_warm && self.closed.proximal == 0.0;
+        let closed = &self.closed;
+        let was_spread = closed.was_spread && self.is_warm && closed.proximal == 0.0 && closed.kept == 0;
         (self.closed.spread > 0.0 || was_spread)
             && self.try_spread(|solver| {
                 if solver.closed.spread > 0.0 && solver.closed.still_closed(&solver.start) {
@@ -210,5 +212,19 @@ mod tests {
         let (mut solver, mut solution) = (DualActiveSet::default(), Solution::new());
         solver.solve(&problem, &mut solution).expect("forces of a pyramid");
         assert!(solution.iterations > 0 && solution.active.len() < problem.len());
+    }
+    #[test]
+    fn spreading_is_not_tried_again_where_connectors_came_first() {
+        let (mut solver, mut solution, mut warm) =
+            (DualActiveSet::default(), Solution::new(), WarmStart::new());
+        let problem = pyramid(8, 0.5);
+        solver.solve(&problem, &mut solution).expect("forces of a pyramid");
+        warm.remember(&problem, &solution);
+        solver.solve_from(&problem, &warm, &mut solution).expect("forces of a pyramid");
+        let closed = solver.closed.len();
+        // As if the last ones were spread, these rows are not, and two connectors had been closed first.
+        (solver.closed.was_spread, solver.closed.spread, solver.closed.kept) = (true, 0.0, 2);
+        assert!(!solver.is_still_spread());
+        assert_eq!((solver.closed.len(), solver.closed.spread), (closed, 0.0));
     }
 }

@@ -27,6 +27,8 @@ fn solvable_problems_that_were_called_infeasible_are_solved() {
         "ring_of_three_off_by_1e-5",
         "truss_of_9_rods_kicked",
         "linear_program_of_rows_far_apart",
+        // Bodies are met in another order than their own, which the proximal method did not expect.
+        "islands_of_66_rows",
     ] {
         let (_, judged) = solved(&mut Auto::default(), name);
         assert!(judged.good(), "{name}: {judged:?}");
@@ -64,6 +66,15 @@ fn a_contact_holds_what_two_pins_at_one_place_would_hold_by_huge_forces() {
 fn rows_that_take_each_others_place_for_little_are_left_at_it_for_a_while() {
     let (_, judged) = solved(&mut DualActiveSet::default(), "brick_wall_off_by_1e-9");
     assert!(judged.good() && judged.growth < 100.0, "{judged:?}");
+}
+
+#[test]
+fn contacts_that_contradict_each_other_by_rounding_are_made_to_agree_once() {
+    for name in ["gears_20", "gears_98"] {
+        let (solution, judged) = solved(&mut DualActiveSet::default(), name);
+        assert!(judged.good() && solution.inconsistency < 1e-12, "{name}: {judged:?}");
+        assert!(solution.iterations < 50, "{name}: {} pivots", solution.iterations);
+    }
 }
 
 #[test]
@@ -149,6 +160,8 @@ fn what_has_no_solution_is_proven() {
         "two_blocks_squeezed_mass_ratio_1e6",
         "pit_mass_ratio_1e9",
         "unsymmetric_doubled_joint_off_by_1e-7",
+        // Beyond what is tried with more digits.
+        "discs_jammed_in_a_box",
     ] {
         let case = Case::found(name);
         let mut solution = Solution::new();
@@ -158,6 +171,42 @@ fn what_has_no_solution_is_proven() {
             }
             other => panic!("{name}: {other:?}"),
         }
+    }
+}
+
+/// A problem with so many discs at rest on a floor before its rows.
+fn beside_discs(name: &str, discs: usize, offset: f64) -> Problem {
+    let mut file = Case::found(name).file;
+    let rows = file.j.as_mut().unwrap();
+    rows.triplets.iter_mut().for_each(|(row, column, _)| (*row, *column) = (*row + discs, *column + discs));
+    rows.triplets.extend((0..discs).map(|disc| (disc, disc, 1.0)));
+    (rows.rows, rows.columns) = (rows.rows + discs, rows.columns + discs);
+    file.inverse_mass.as_mut().unwrap().splice(0..0, vec![1.0; discs]);
+    file.bilateral.as_mut().unwrap().splice(0..0, vec![false; discs]);
+    file.b.splice(0..0, vec![offset; discs]);
+    file.problem().unwrap()
+}
+
+#[test]
+fn what_has_no_solution_has_none_beside_other_bodies() {
+    let (name, mut solution) = ("nine_rows_of_whole_numbers", Solution::new());
+    for discs in [0, 24, 35, 39, 100] {
+        let problem = beside_discs(name, discs, -1.0);
+        match Auto::default().solve(&problem, &mut solution) {
+            Err(SolveError::Infeasible(proof)) => {
+                assert_eq!(disproof(&problem, &proof.direction), None, "{discs} discs");
+                assert!(
+                    proof.row >= discs && proof.direction[..discs].iter().all(|z| *z == 0.0),
+                    "{proof:?}"
+                );
+                // Digits that are not returned do not count.
+                assert!((1e-17..1e-15).contains(&proof.leakage), "{proof:?}");
+            }
+            other => panic!("{discs} discs: {other:?}"),
+        }
+        // Beside offsets so large it is rounding.
+        let problem = beside_discs(name, discs + 1, -1e9);
+        Auto::default().solve(&problem, &mut solution).unwrap();
     }
 }
 
@@ -272,6 +321,12 @@ fn numbers_beyond_what_can_be_computed_with_are_refused_by_row() {
         Auto::default().solve(&problem, &mut Solution::new()).unwrap();
         let error = Problem::from_rows(&[(0, 0, size)], &[1.0], &[-1.0]).unwrap_err();
         assert!(error.to_string().starts_with("row 0: its diagonal entry of A is"), "{error}");
+    }
+    // The force would be 1e315 N.
+    let problem = Problem::from_rows(&[(0, 0, 1e-150)], &[1e-5], &[-1e10]).unwrap();
+    for solver in [&mut Auto::default() as &mut dyn Solver, &mut Lemke::default()] {
+        let outcome = solver.solve(&problem, &mut Solution::new());
+        assert!(matches!(outcome, Err(SolveError::Unsolved { .. })), "{outcome:?}");
     }
     let error = Problem::from_dense(&[vec![0.0, 1.0], vec![1.0, 0.0]], &[-1.0, -1.0]).unwrap_err();
     assert!(error.to_string().contains("not positive semidefinite"), "{error}");
