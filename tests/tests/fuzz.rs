@@ -163,7 +163,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a light crank between a pin and a heavy body: the rod between them was softened where its own square, not the heavy body's, drowned the rest",
     ),
     (50_866, "the same with a fourteenth of all energy"),
-    (9_931_979, "a linkage of 175 tons and of a kilogram at its dead point: rounding was too much for its stages"),
+    (
+        9_931_979,
+        "a linkage of 175 tons and of a kilogram at its dead point: rounding was too much for its stages",
+    ),
     (2_055_199, "the same of three bodies"),
     (4_217_548, "corners that passed over each other fired for ever: another rule for them came first"),
     (

@@ -90,6 +90,8 @@ struct Look {
     rate: f64,
     /// Bound on its downward acceleration, and on the upward one while behind.
     curvature: f64,
+    /// A lower such bound that holds for a shorter time [s], if there is one.
+    at_first: Option<(f64, f64)>,
     /// Gap less target [m].
     height: f64,
     /// Values and rates below these are rounding.
@@ -229,6 +231,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             value: height,
             rate: gap.normal.dot(u),
             curvature: downward,
+            at_first: None,
             height,
             value_rounding: rounding(size),
             rate_rounding: rounding(u.length()).max(pair.rest),
@@ -244,6 +247,12 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             look.value *= distance + reach;
             look.rate *= 2.0 * distance;
             look.curvature = 2.0 * (u_max * u_max + d_max.max(reach) * a_max);
+            if !look.is_behind(pair.depth) {
+                // A pin in its hole is slow beside its bodies, and not much faster for as long as it takes across the hole.
+                let across = quotient(reach, u.length()).min(quotient(reach, a_max).sqrt());
+                let u_first = u.length() + a_max * across;
+                look.at_first = Some((2.0 * (u_first * u_first + reach.max(distance) * a_max), across));
+            }
             look.value_rounding *= distance + reach;
             look.rate_rounding *= 2.0 * distance.max(reach);
         }
@@ -285,6 +294,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             value: height,
             rate,
             curvature,
+            at_first: None,
             height,
             value_rounding: rounding(size),
             rate_rounding: rounding(e_rate.length() + w.abs() * e.length()).max(pair.rest),
@@ -368,6 +378,7 @@ impl Look {
         value: f64::INFINITY,
         rate: 0.0,
         curvature: 0.0,
+        at_first: None,
         height: f64::INFINITY,
         value_rounding: 0.0,
         rate_rounding: 0.0,
@@ -399,18 +410,26 @@ impl Look {
 
     /// For how long [s] nothing happens.
     fn quiet_for(&self, depth: f64) -> f64 {
-        let by_value = if self.is_behind(depth) {
+        let always = self.quiet_with(self.curvature, depth);
+        let at_first = self.at_first.filter(|(curvature, _)| *curvature < self.curvature);
+        let by_value = at_first
+            .map_or(always, |(curvature, end)| self.quiet_with(curvature, depth).min(end).max(always));
+        self.outside_for.map_or(by_value, |wait| wait.max(by_value))
+    }
+
+    /// For how long [s] nothing happens by the value, with a bound on its acceleration.
+    fn quiet_with(&self, curvature: f64, depth: f64) -> f64 {
+        if self.is_behind(depth) {
             // Mirrored: before the value could rise to the target, nothing comes back.
-            first_descent(-self.value, -self.rate, self.curvature)
+            first_descent(-self.value, -self.rate, curvature)
         } else if self.value > self.value_rounding {
-            first_descent(self.value, self.rate, self.curvature)
+            first_descent(self.value, self.rate, curvature)
         } else if self.rate >= 0.0 {
             // At the target and opening: nothing fires before the rate could turn.
-            quotient(self.rate, self.curvature)
+            quotient(self.rate, curvature)
         } else {
             0.0
-        };
-        self.outside_for.map_or(by_value, |wait| wait.max(by_value))
+        }
     }
 }
 

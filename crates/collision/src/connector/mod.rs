@@ -361,7 +361,7 @@ impl Connector {
     }
 }
 
-/// The row of a slot: on the body that carries the direction, the foot of the other body's point.
+/// The row of a slot: on the body that carries the direction, the foot of the other body's point. The world carries its own.
 #[inline]
 fn slot_row(anchors: [&Anchor; 2], [a, b]: [&Moving; 2], normal: DVec2, frame: SlotFrame) -> ConnectorSample {
     let [on_a, on_b] = [a.pose.point_to_world(anchors[0].point), b.pose.point_to_world(anchors[1].point)];
@@ -372,10 +372,15 @@ fn slot_row(anchors: [&Anchor; 2], [a, b]: [&Moving; 2], normal: DVec2, frame: S
     };
     let normal = carrier.pose.vector_to_world(normal);
     let gap = normal.dot(on_a - on_b);
-    let points = match frame {
-        SlotFrame::A => [on_b + normal * gap, on_b],
-        SlotFrame::B => [on_a, on_a - normal * gap],
-        SlotFrame::World => [on_a, on_b],
+    let carries = |side: usize, own: SlotFrame| {
+        frame == own || (frame == SlotFrame::World && anchors[side].body.is_world())
+    };
+    let points = if carries(0, SlotFrame::A) {
+        [on_b + normal * gap, on_b]
+    } else if carries(1, SlotFrame::B) {
+        [on_a, on_a - normal * gap]
+    } else {
+        [on_a, on_b]
     };
     Ends::of(points, [a, b]).along(gap, normal, carrier.angular_velocity)
 }

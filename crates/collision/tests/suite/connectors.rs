@@ -51,6 +51,31 @@ fn rail_kinds() -> Vec<ConnectorKind> {
 }
 
 #[test]
+fn a_slot_of_the_world_acts_on_a_body_at_the_point_of_the_body() {
+    // It may begin far away: what it is there is the same everywhere along it.
+    let (far, own) = (Anchor { body: BodyId::WORLD, point: DVec2::new(9.0, -3.0) }, anchor(0, 0.3, -0.2));
+    let (body, normal) = (still(1.0, 2.0, 0.4), DVec2::new(0.6, 0.8));
+    let place = body.pose.point_to_world(own.point);
+    for frame in [SlotFrame::World, SlotFrame::A, SlotFrame::B] {
+        let kinds = [
+            (ConnectorKind::Slot { a: far, b: own, normal, frame }, Moving::BACKGROUND, body),
+            (ConnectorKind::Slot { a: own, b: far, normal, frame }, body, Moving::BACKGROUND),
+        ];
+        for (side, (kind, a, b)) in kinds.into_iter().enumerate() {
+            let carried = [SlotFrame::B, SlotFrame::A][side];
+            if frame == carried {
+                continue;
+            }
+            let sample = fine(kind).measure(0, &a, &b);
+            for point in [sample.point_a, sample.point_b] {
+                let off = (point - place).perp_dot(normal);
+                assert!(off.abs() < 1e-14, "{frame:?}, body {side}: {off} m along the slot");
+            }
+        }
+    }
+}
+
+#[test]
 fn aligned_connectors_are_satisfied() {
     let (a, b) = (still(0.2, 1.1, 0.4), still(-1.0, 0.3, -2.0));
     let moved = |body: &Moving, shift: DVec2| Moving {

@@ -90,3 +90,20 @@ fn corners_that_cross_a_ring_are_not_looked_at_all_the_way() {
         assert!(looks < MOST_LOOKS, "{corners} corners: {looks} looks");
     }
 }
+
+#[test]
+fn a_pin_that_is_slow_in_its_hole_is_not_followed_at_the_pace_of_its_bodies() {
+    /// Clearance [m], and the speed [m/s] at which pin and hole come together while both go round at metres a second.
+    const CLEARANCE: f64 = 1e-5;
+    const SPEED: f64 = 1e-4;
+    const MOST_LOOKS: u32 = 1000;
+    let arm = DVec2::new(0.3, 0.0);
+    let pin = Shape::disc(0.05).expect("a fine radius").translated(arm);
+    let hole = Shape::ring(0.1, 0.05 + CLEARANCE).expect("a fine ring").translated(arm);
+    let motions = [DVec2::new(SPEED, 0.0), DVec2::ZERO].map(|v| Counted::new(DVec2::ZERO, v, 10.0));
+    let (found, looks) = search([&pin, &hole], [&motions[0], &motions[1]]);
+    let Search::Contact(contact) = found else { panic!("{found:?}") };
+    let expected = (CLEARANCE - TOLERANCES.target_gap) / SPEED;
+    assert!((contact.time - expected).abs() < 1e-9, "{} s, not {expected} s", contact.time);
+    assert!(looks < MOST_LOOKS, "{looks} looks");
+}
