@@ -30,13 +30,13 @@ impl ForceLaw for Hum {
     }
 }
 
-/// Advances a body that hums by the time of some 30,000 steps, where the whole takes so many seconds.
+/// Advances a body that hums by the time of some 150,000 steps, where the whole takes so many seconds.
 fn hum(duration: f64) -> (Result<(), AdvanceError>, RigidSystem) {
     let disc = body(&disc(0.5), moving(DVec2::new(1e-3, 0.0), DVec2::ZERO, 0.0));
     let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(Hum)], ..RigidParts::default() };
     let mut system = RigidSystem::new(parts, SETTINGS, Time::ZERO).expect("nothing touches");
     system.set_duration(duration);
-    let outcome = advance_until(&mut system, Time::from_seconds(3e4 / FREQUENCY), |_, _| ());
+    let outcome = advance_until(&mut system, Time::from_seconds(6e4 / FREQUENCY), |_, _| ());
     (outcome, system)
 }
 
@@ -47,7 +47,7 @@ fn steps_that_would_never_come_to_an_end_are_told() {
         panic!("{outcome:?}, {:?}", system.counts())
     };
     assert!(step > 0.01 / FREQUENCY && step < 10.0 / FREQUENCY, "{step}");
-    assert!((time / step - 1e4).abs() < 100.0, "after {} steps", time / step);
+    assert!((time / step - 1e5).abs() < 1e3, "after {} steps", time / step);
     assert_eq!((duration, bodies, laws), (1e6, vec![BodyId(0)], vec!["hum".to_owned()]));
 }
 
@@ -56,6 +56,6 @@ fn steps_that_will_come_to_an_end_are_not() {
     for duration in [0.0, 10.0] {
         let (outcome, system) = hum(duration);
         assert_eq!(outcome, Ok(()));
-        assert!(system.counts().segments > 10_000, "{:?}", system.counts());
+        assert!(system.counts().segments > 100_000, "{:?}", system.counts());
     }
 }

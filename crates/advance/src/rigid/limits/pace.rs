@@ -17,8 +17,9 @@ use halfgap_collision::BodyId;
 
 /// Steps in succession over which the pace is taken.
 const STEPS: u32 = 10_000;
-/// No run is waited for that would take so many steps.
+/// No run is waited for that would take so many steps, by so many paces in succession: some are slow for a while.
 const HOPELESS: f64 = 1e10;
+const PACES: u32 = 10;
 
 /// Steps in succession over which a group is found to be hasty.
 const FEW_STEPS: u32 = 64;
@@ -30,6 +31,8 @@ const HASTE: f64 = 1e-4;
 pub(crate) struct Pace {
     all: Count<STEPS>,
     few: Count<FEW_STEPS>,
+    /// Hopeless paces in succession.
+    hopeless: u32,
     is_hasty: bool,
 }
 
@@ -68,8 +71,12 @@ impl RigidSystem {
         if let Some(mean) = pace.few.note(group.start) {
             pace.is_hasty = mean < HASTE * self.settings.resolution_time;
         }
-        let mean = pace.all.note(group.start).filter(|mean| mean * HOPELESS < self.duration);
-        self.crawls = mean.map(|step| AdvanceError::Crawls {
+        let mean = pace.all.note(group.start);
+        if let Some(mean) = mean {
+            pace.hopeless = if mean * HOPELESS < self.duration { pace.hopeless + 1 } else { 0 };
+        }
+        let is_told = pace.hopeless >= PACES;
+        self.crawls = mean.filter(|_| is_told).map(|step| AdvanceError::Crawls {
             time: group.start.seconds(),
             step,
             duration: self.duration,
