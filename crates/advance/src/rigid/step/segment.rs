@@ -107,8 +107,7 @@ impl Dynamics<'_> {
             return Err(StepFailure::Unresolved(self.group.force_length));
         }
         self.leave_tree(self.is_near_singular(), false);
-        self.set_scales(control, tools.scales);
-        tools.stepper.set_scales(tools.scales);
+        self.scale_errors(tools);
         let method = tools.stepper.method();
         let turning = self.longest_turning_step();
         let longest = self.longest_sound_step().min(self.longest_watched_step()).min(turning);
@@ -141,8 +140,7 @@ impl Dynamics<'_> {
             self.step(tools.stepper, step);
             if self.group.tree.is_used() && self.is_near_singular() {
                 self.leave_tree(true, true);
-                self.set_scales(control, tools.scales);
-                tools.stepper.set_scales(tools.scales);
+                self.scale_errors(tools);
                 continue;
             }
             if placements < MOST_PLACEMENTS
@@ -195,6 +193,12 @@ impl Dynamics<'_> {
         if tree.leave(is_left) {
             kept.measure_otherwise(is_left, begins_there);
         }
+    }
+
+    /// Tells the stepper how much the numbers that are stepped may err by.
+    fn scale_errors(&mut self, tools: &mut Tools<'_>) {
+        self.set_scales(&tools.settings.steps, tools.scales);
+        tools.stepper.set_scales(tools.scales);
     }
 
     /// True if stages of the last step came so near a point where loops could go on in two ways that they are to be
@@ -288,8 +292,7 @@ impl Dynamics<'_> {
     /// Repeats the segment up to an offset [s] within it, into the end state; false if that is seen to err by
     /// more than a step may, as where it ends at what the whole step has passed astride.
     pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) -> bool {
-        self.set_scales(&tools.settings.steps, tools.scales);
-        tools.stepper.set_scales(tools.scales);
+        self.scale_errors(tools);
         if offset > 0.0 {
             self.step(tools.stepper, offset);
         } else {

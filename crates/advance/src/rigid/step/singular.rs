@@ -301,6 +301,32 @@ mod tests {
     }
 
     #[test]
+    fn what_is_measured_otherwise_compares_with_what_was_before() {
+        /// A step from 0.5 s before a point on, of which what rows keep is measured in some unit.
+        fn step(kept: &mut Kept, unit: f64) {
+            kept.open();
+            for node in [0.1, 0.2, 0.4] {
+                kept.note(node, (unit * (0.5 - node)).powi(2));
+            }
+            kept.close();
+        }
+        let mut kept = Kept::default();
+        step(&mut kept, 2.0);
+        let (most, least, point) = (kept.most, kept.least, kept.point());
+        for _ in 0..2 {
+            kept.measure_otherwise(true, true);
+            step(&mut kept, 1e-4);
+            assert!((kept.least / least - 1.0).abs() < 1e-12 && kept.most == most, "{kept:?}");
+        }
+        // As long as it lasts, and no longer.
+        step(&mut kept, 1e-4);
+        assert!((kept.least / least - 1.0).abs() < 1e-12);
+        kept.measure_otherwise(false, false);
+        step(&mut kept, 2.0);
+        assert_eq!((kept.most, kept.least, kept.point()), (most, least, point));
+    }
+
+    #[test]
     fn what_is_made_shorter_does_not_end_at_a_point() {
         let kept = seen(1.0, 0.3, 0.0);
         for (factor, expected) in [(0.9, 0.643), (0.5, 0.0667), (0.2, 0.2)] {
