@@ -30,6 +30,9 @@ const LAST_RESORT_ROWS: usize = 400;
 /// Rows up to which large forces are compared with those found with twice as many digits: beyond, that takes milliseconds.
 const RELAXED_ROWS: usize = 32;
 
+/// Leakage of a proof that is no more than the rounding of its own numbers.
+const CLEAR: f64 = 16.0 * f64::EPSILON;
+
 /// Growth from which they are compared: forces that are large because rows nearly depend on each other, and any.
 const STRAINED: f64 = 1e6;
 const MUCH_STRAINED: f64 = 1e9;
@@ -119,13 +122,18 @@ impl Auto {
             match self.solve_island(problem, island, warm, solution) {
                 Err(SolveError::Infeasible(proof)) => {
                     let proof = self.islands.proof_of_whole(problem, island, *proof);
-                    if proof.contradiction > self.settings.inconsistency
-                        && proof.least_growth() >= self.settings.least_growth
-                    {
+                    // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
+                    let outcome = self.methods.solve(problem, warm, solution);
+                    let is_proof = proof.contradiction > self.settings.inconsistency
+                        && proof.least_growth() >= self.settings.least_growth;
+                    // A solution refutes it if rounding is not all that it leaks by, or with smaller forces than it allows.
+                    let is_doubtful =
+                        proof.leakage > CLEAR || solution.residuals.growth < proof.least_growth();
+                    let is_refuted = outcome.is_ok() && is_doubtful;
+                    if is_proof && !is_refuted {
                         return Err(SolveError::Infeasible(Box::new(proof)));
                     }
-                    // What is a contradiction beside the offsets of an island is rounding beside those of all rows.
-                    return self.methods.solve(problem, warm, solution);
+                    return outcome;
                 }
                 other => other?,
             }

@@ -28,15 +28,16 @@ impl Dynamics<'_> {
     /// Moves a state onto the held rows, and stops what its velocities would move it off them by.
     fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
         let length = self.physics.steps.length;
-        // Where there is no more than rounding to correct, that would come into each stage anew.
-        let noise = self.noise(state, length);
+        // Of a group that is stepped as it is for a while what is only rounding is left: it would come into each stage anew.
+        let is_left = self.group.tree.is_left();
+        let noise = if is_left { self.noise(state, length) } else { 0.0 };
         // Near a point where loops could go on in two ways every digit counts; else what is lacking comes
         // with the next round.
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..MOST_ROUNDS {
             let error = self.measure_errors(state, &mut row_rates);
-            if error <= noise {
+            if is_left && error <= noise {
                 break;
             }
             respond(self);
@@ -46,7 +47,9 @@ impl Dynamics<'_> {
                 break;
             }
             self.change(state, 0);
-            if change <= f64::EPSILON.sqrt() * length {
+            // And near such a point that is as much larger as the change is.
+            let left = if is_left { change } else { error };
+            if left <= f64::EPSILON.sqrt() * length {
                 break;
             }
         }
@@ -55,7 +58,7 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&row_rates);
         self.stage.rates = row_rates;
-        if largest <= noise / length * speed {
+        if is_left && largest <= noise / length * speed {
             return;
         }
         respond(self);

@@ -15,6 +15,9 @@ const WORTHWHILE: f64 = 0.5;
 const FAR: f64 = 8.0;
 /// What bodies of loops move by for less than this part of the length changes none of their rates.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
+/// A row that keeps the square of s moves bodies by its error over s: no more than this part of s L, or the motion there
+/// is another one.
+const BENT: f64 = 1e-4;
 /// A gap is off by up to so many roundings of positions.
 const GAP_ROUNDINGS: f64 = 4.0;
 /// A change of velocities by more than so many times what is fast corrects nothing: to stop a group
@@ -51,7 +54,8 @@ impl Dynamics<'_> {
         // Errors of loops decide which way they go on from where they could go both, unless there are hardly any.
         let is_singular = self.group.kept.may_near_singular();
         let is_soft = self.group.held.is_soft() || is_singular;
-        let noise = if is_singular { self.noise(&end, length) } else { ROUNDING_SHARE * zone };
+        // What is off by little in several loops is made good as long as that bends no motion.
+        let noise = self.group.tree.is_left().then(|| self.noise(&end, length));
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
@@ -61,8 +65,9 @@ impl Dynamics<'_> {
             // for more than what holds near here, and for what rounding makes of their gaps: errors far
             // within the zone are not worth more.
             let way = self.largest_change();
-            let is_noise = error < noise && way > zone;
-            if way.powi(2) > error * length || is_noise {
+            let is_little = error < ROUNDING_SHARE * zone && way > zone;
+            let is_sound = noise.is_some_and(|noise| error >= noise && way.powi(2) <= BENT * error * length);
+            if way.powi(2) > error * length || (is_little && !is_sound) {
                 break;
             }
             self.change(&mut end, 0);

@@ -202,9 +202,11 @@ impl Dynamics<'_> {
     }
 
     /// True if stages of the last step came so near a point where loops could go on in two ways that they are to be
-    /// on the rows: in angles they are off those beside the pins, which there makes large forces of nothing.
+    /// on the rows: in angles they are off those beside the pins, and what a few loops are off by there makes large
+    /// forces of nothing.
     fn is_near_singular(&self) -> bool {
-        self.group.kept.is_near_singular() && self.group.stepping() != Stepping::Stiff
+        let Group { tree, kept, .. } = &*self.group;
+        kept.is_near_singular() && tree.has_few_loops() && self.group.stepping() != Stepping::Stiff
     }
 
     /// True if a step with such an error is kept. Where nothing touches, errors follow the step, and it is

@@ -210,6 +210,12 @@ fn what_has_no_solution_has_none_beside_other_bodies() {
     }
 }
 
+#[test]
+fn a_doubtful_verdict_on_an_island_does_not_stand_against_a_solution() {
+    let (_, judged) = solved(&mut Auto::default(), "stacks_of_masses_1e12_apart");
+    assert!(judged.growth < 1e8 && judged.backward <= 1e-14, "{judged:?}");
+}
+
 /// Two bodies held together by two pins on a line at an angle to the y axis, whose four rows hold three
 /// motions. The offsets are those of some accelerations, and one of the pins is off along the line.
 fn two_pins(angle: f64, off: f64) -> Problem {

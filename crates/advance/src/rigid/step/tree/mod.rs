@@ -77,6 +77,10 @@ struct Stance {
 #[derive(Clone, Debug, Default)]
 struct Numbers(Vec<usize>);
 
+/// Rows beside the pins of a tree that close more than one loop, but few. Where one folds, or the many of lazy tongs at
+/// once, steps in angles err by less.
+const ROWS_OF_FEW_LOOPS: std::ops::RangeInclusive<usize> = 3..=6;
+
 /// The bodies of a group as a tree, with its buffers. Without links there is none, and the group is stepped as it is.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointTree {
@@ -132,6 +136,11 @@ impl JointTree {
     /// True if bodies that are where its coordinates say are where all rows hold them.
     pub(crate) fn holds_all(&self) -> bool {
         self.is_used() && self.rest.rows.is_empty()
+    }
+
+    /// True if it has more than one loop, but few.
+    pub(crate) fn has_few_loops(&self) -> bool {
+        ROWS_OF_FEW_LOOPS.contains(&self.rest.rows.len())
     }
 
     /// Coordinates.
