@@ -106,7 +106,9 @@ impl Dynamics<'_> {
         if !self.is_resolved(control) {
             return Err(StepFailure::Unresolved(self.group.force_length));
         }
-        self.leave_tree(self.is_near_singular(), false);
+        if !self.is_near_singular() {
+            self.leave_tree(false);
+        }
         self.scale_errors(tools);
         let method = tools.stepper.method();
         let turning = self.longest_turning_step();
@@ -138,8 +140,9 @@ impl Dynamics<'_> {
             }
             self.group.span = step;
             self.step(tools.stepper, step);
-            if self.group.tree.is_used() && self.is_near_singular() {
-                self.leave_tree(true, true);
+            // Steps that are kept short on demand err by little in angles, and on the rows by rounding.
+            if self.group.tree.is_used() && control.largest_step.is_none() && self.is_near_singular() {
+                self.leave_tree(true);
                 self.scale_errors(tools);
                 continue;
             }
@@ -187,11 +190,11 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Steps the group as it is, or as a tree, from the next step on, which begins where the last one did or where it ended.
-    fn leave_tree(&mut self, is_left: bool, begins_there: bool) {
+    /// Steps the group as it is, from the last step on, or as a tree again.
+    fn leave_tree(&mut self, is_left: bool) {
         let Group { tree, kept, .. } = &mut *self.group;
         if tree.leave(is_left) {
-            kept.measure_otherwise(is_left, begins_there);
+            kept.measure_otherwise(is_left);
         }
     }
 

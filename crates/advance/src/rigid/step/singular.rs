@@ -39,7 +39,7 @@ const SHORTENING: f64 = 0.5;
 pub(crate) struct Kept {
     /// Offset [s] and the root of the least part that a row kept.
     stages: Vec<(f64, f64)>,
-    /// The root where the first stage of the next step is, or near, if what rows keep is measured otherwise from there on.
+    /// The root where the first stage of the next step is, if what rows keep is measured otherwise from there on.
     known: Option<f64>,
     /// What roots that are measured otherwise are multiplied by, so that they compare with those from before.
     unit: Option<f64>,
@@ -88,16 +88,11 @@ impl Kept {
         }
     }
 
-    /// What rows keep is measured otherwise from the next step on, which begins where the last one did or where it
-    /// ended; or as at first again.
-    pub(crate) fn measure_otherwise(&mut self, is_otherwise: bool, begins_there: bool) {
-        let offsets = self.stages.iter().copied();
-        let stage = if begins_there {
-            offsets.min_by(|a, b| a.0.total_cmp(&b.0))
-        } else {
-            offsets.max_by(|a, b| a.0.total_cmp(&b.0))
-        };
-        (self.known, self.unit) = (stage.map(|stage| stage.1).filter(|_| is_otherwise), None);
+    /// What rows keep is measured otherwise from the next step on, which begins where the last one did; or as at
+    /// first again.
+    pub(crate) fn measure_otherwise(&mut self, is_otherwise: bool) {
+        let first = self.stages.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        (self.known, self.unit) = (first.map(|stage| stage.1).filter(|_| is_otherwise), None);
     }
 
     /// Makes the roots of a step comparable with those from before they were measured otherwise.
@@ -314,14 +309,14 @@ mod tests {
         step(&mut kept, 2.0);
         let (most, least, point) = (kept.most, kept.least, kept.point());
         for _ in 0..2 {
-            kept.measure_otherwise(true, true);
+            kept.measure_otherwise(true);
             step(&mut kept, 1e-4);
             assert!((kept.least / least - 1.0).abs() < 1e-12 && kept.most == most, "{kept:?}");
         }
         // As long as it lasts, and no longer.
         step(&mut kept, 1e-4);
         assert!((kept.least / least - 1.0).abs() < 1e-12);
-        kept.measure_otherwise(false, false);
+        kept.measure_otherwise(false);
         step(&mut kept, 2.0);
         assert_eq!((kept.most, kept.least, kept.point()), (most, least, point));
     }
