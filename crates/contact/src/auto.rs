@@ -30,12 +30,12 @@ const LAST_RESORT_ROWS: usize = 400;
 /// Rows up to which large forces are compared with those found with twice as many digits: beyond, that takes milliseconds.
 const RELAXED_ROWS: usize = 32;
 
-/// Leakage of a proof that is no more than the rounding of its own numbers.
-const CLEAR: f64 = 16.0 * f64::EPSILON;
-
 /// Growth from which they are compared: forces that are large because rows nearly depend on each other, and any.
 const STRAINED: f64 = 1e6;
 const MUCH_STRAINED: f64 = 1e9;
+
+/// Leakage of a proof that is no more than the rounding of its own numbers.
+const CLEAR: f64 = 16.0 * f64::EPSILON;
 
 /// Chooses a method, and another if that fails.
 #[derive(Clone, Debug, Default)]

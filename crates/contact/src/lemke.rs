@@ -6,7 +6,8 @@
 //! dictionary loses with every pivot, and corrected where it is wrong by that. Ends either at a solution or
 //! on a ray; a ray that is a Farkas certificate proves that the inequalities alone have no solution, any
 //! other proves nothing. Of bimatrix games the artificial variable would end on a ray at once: they take the path of
-//! C. Lemke and J. Howson, "Equilibrium points of bimatrix games", SIAM Journal 12, 1964. What that comes to nothing with is tried again with twice as many digits, if it is not large.
+//! C. Lemke and J. Howson, "Equilibrium points of bimatrix games", SIAM Journal 12, 1964. What that comes to nothing with
+//! is tried again with twice as many digits, if it is not large.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, Par};

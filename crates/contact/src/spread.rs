@@ -213,6 +213,7 @@ mod tests {
         solver.solve(&problem, &mut solution).expect("forces of a pyramid");
         assert!(solution.iterations > 0 && solution.active.len() < problem.len());
     }
+
     #[test]
     fn spreading_is_not_tried_again_where_connectors_came_first() {
         let (mut solver, mut solution, mut warm) =

@@ -106,7 +106,7 @@ impl Dynamics<'_> {
         if !self.is_resolved(control) {
             return Err(StepFailure::Unresolved(self.group.force_length));
         }
-        if !self.is_near_singular() {
+        if !self.is_better_on_rows() {
             self.leave_tree(false);
         }
         self.scale_errors(tools);
@@ -141,7 +141,7 @@ impl Dynamics<'_> {
             self.group.span = step;
             self.step(tools.stepper, step);
             // Steps that are kept short on demand err by little in angles, and on the rows by rounding.
-            if self.group.tree.is_used() && control.largest_step.is_none() && self.is_near_singular() {
+            if self.group.tree.is_used() && control.largest_step.is_none() && self.is_better_on_rows() {
                 self.leave_tree(true);
                 self.scale_errors(tools);
                 continue;
@@ -207,7 +207,7 @@ impl Dynamics<'_> {
     /// True if stages of the last step came so near a point where loops could go on in two ways that they are to be
     /// on the rows: in angles they are off those beside the pins, and what a few loops are off by there makes large
     /// forces of nothing.
-    fn is_near_singular(&self) -> bool {
+    fn is_better_on_rows(&self) -> bool {
         let Group { tree, kept, .. } = &*self.group;
         kept.is_near_singular() && tree.has_few_loops() && self.group.stepping() != Stepping::Stiff
     }
