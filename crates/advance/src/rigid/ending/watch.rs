@@ -235,7 +235,11 @@ impl Dynamics<'_> {
         let trial = std::mem::take(&mut self.stage.trial);
         let mut rates = std::mem::take(&mut self.stage.trial_rates);
         rates.resize(trial.len(), 0.0);
-        let Ok(()) = self.derivative(offset, &trial, &mut rates);
+        if self.group.tree.is_used() {
+            self.find_rates(offset, &trial, &mut rates, Self::hang_and_tell);
+        } else {
+            let Ok(()) = self.derivative(offset, &trial, &mut rates);
+        }
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 

@@ -7,10 +7,12 @@
 //! bodies: this one translates at both ends of a step, and its dense output.
 //!
 //! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest`
-//! holds what is held beside the pins, `stepping` makes the steps of a group. Angles are those of the bodies,
-//! not those between them, so a coordinate of the tree is a number of the group's state.
+//! holds what is held beside the pins, `stepping` makes the steps of a group, `forces` tells what its rows
+//! give. Angles are those of the bodies, not those between them, so a coordinate of the tree is a number of
+//! the group's state.
 
 mod build;
+mod forces;
 mod placing;
 mod rest;
 mod stepping;

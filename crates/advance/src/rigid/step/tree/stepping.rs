@@ -121,12 +121,17 @@ impl Dynamics<'_> {
     /// Turns the accelerations in the stage, which are without forces of rows, into those of the tree; bodies
     /// are in place. Forces of rows are not known then.
     pub(crate) fn hang(&mut self) {
+        self.pull_tree();
+        self.stage.forces.clear();
+    }
+
+    /// As [`hang`](Self::hang), but leaves the forces of the rows beside the pins in the stage, if there are any.
+    pub(super) fn pull_tree(&mut self) {
         self.stage.gap_error = self.largest_gap_error();
         let Group { tree, bodies, .. } = &mut *self.group;
         tree.find_stances(bodies, &self.stage.movings);
         tree.accelerate(&mut self.stage.accelerations);
         self.hold_rest();
-        self.stage.forces.clear();
     }
 
     /// How fast the fastest part of the tree is, as the stepper tells it of its last step.
