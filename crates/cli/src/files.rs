@@ -35,11 +35,25 @@ pub(crate) fn write_all(
         write(folder, name, |out| out.write_all(scene.at(frame).as_bytes()))?;
     }
     for (index, frame) in evenly(&recording.frames, pictures).enumerate() {
-        let name = format!("picture-{index:04}.svg");
+        let name = picture_name(index);
         write(folder, &name, |out| out.write_all(scene.at(frame).as_bytes()))?;
     }
+    remove_further(folder, evenly(&recording.frames, pictures).count())?;
     write(folder, "energy.svg", |out| out.write_all(energy_picture(recording).as_bytes()))?;
     write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))
+}
+
+fn picture_name(index: usize) -> String {
+    format!("picture-{index:04}.svg")
+}
+
+/// Removes the pictures from a number on, which an earlier run of more has left: they would seem to be of this one.
+fn remove_further(folder: &Path, count: usize) -> Result<(), Failure> {
+    let left = (count..).map(|index| folder.join(picture_name(index))).take_while(|path| path.exists());
+    for path in left {
+        std::fs::remove_file(&path).map_err(|error| Failure::Write(path.clone(), error))?;
+    }
+    Ok(())
 }
 
 /// So many of the frames between the first and the last, evenly over the run; all if there are no more.

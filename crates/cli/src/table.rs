@@ -61,6 +61,7 @@ fn push_summary(text: &mut String, result: &RunResult) {
     let length = |value: Option<f64>| value.map_or("none".to_owned(), |value| format!("{value:.3e} m"));
     let change = energy.total - energy.start;
     let ends = format!("{} J at the start, {} J at the end", number(energy.start), number(energy.total));
+    let wall = result.statistics.wall_seconds.map_or("none".to_owned(), |wall| format!("{wall:.6} s"));
     let rows = [
         ("energy", format!("{ends} (change {change:.3e} J)")),
         (
@@ -73,7 +74,7 @@ fn push_summary(text: &mut String, result: &RunResult) {
         ("contact solves", statistics.contact_solves.to_string()),
         ("smallest gap", length(statistics.smallest_gap)),
         ("connector error", length(statistics.largest_connector_error)),
-        ("wall time", format!("{:.6} s", result.statistics.wall_seconds)),
+        ("wall time", wall),
     ];
     for (name, value) in rows {
         let _ = writeln!(text, "{name:16} {value}");

@@ -3,8 +3,7 @@
 //! *Invariant*: this crate knows bodies, motions and thresholds, but no forces and no solvers.
 //!
 //! ```
-//! use glam::DVec2;
-//! use halfgap_collision::geometry::Shape;
+//! use halfgap_collision::geometry::{DVec2, Shape};
 //! use halfgap_collision::{
 //!     BodyState, Flight, MovingShape, Search, SearchSettings, Tolerances, first_contact,
 //! };

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::order::RowOrder;
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::DOUBTFUL;
 use crate::skyline::Skyline;
 use crate::system::System;
@@ -307,7 +307,7 @@ impl ClosedRows {
         self.factor.solve(&mut self.step[..closed]);
         for (at, &row) in self.rows.iter().enumerate() {
             let force = self.force[row] + self.step[at];
-            self.force[row] = if self.free[row] { force } else { force.max(0.0) };
+            self.force[row] = if self.free[row] { force } else { pushing(force) };
         }
     }
 

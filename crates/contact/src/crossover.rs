@@ -4,7 +4,7 @@
 use crate::dual_active_set::{DualActiveSet, REFINED};
 use crate::error::SolveError;
 use crate::exchanges::{Party, first_to_vanish};
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::WELL;
 use crate::solution::Solution;
 use crate::start::Start;
@@ -109,7 +109,7 @@ impl DualActiveSet {
                 first_to_vanish(dependent, unilateral.map(|other| party(other, shares[other])));
             for (other, share) in shares.iter().enumerate().filter(|(_, share)| **share != 0.0) {
                 let now = force[other] + moved * share;
-                force[other] = if closed.free[other] { now } else { now.max(0.0) };
+                force[other] = if closed.free[other] { now } else { pushing(now) };
             }
             force[row] -= sign * moved;
             force[left.row] = 0.0;

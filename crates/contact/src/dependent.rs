@@ -8,7 +8,7 @@
 
 use crate::closed_rows::ClosedRows;
 use crate::error::Infeasibility;
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::twofold::Number;
 
 /// What came of a null direction.
@@ -71,7 +71,7 @@ impl Shift {
         }
         // What rounding has left below zero counts for where the row is, but is no part of a proof.
         let contacts = direction.iter_mut().zip(&closed.free).filter(|(_, free)| !**free);
-        contacts.for_each(|(z, _)| *z = z.max(0.0));
+        contacts.for_each(|(z, _)| *z = pushing(*z));
         let violated = dot(&direction, &closed.system.b) < 0.0;
         let proof = Box::new(certificate(closed, &direction, row));
         if violated && proof.least_growth() >= least_growth {

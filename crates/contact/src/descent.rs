@@ -12,6 +12,7 @@
 
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::DualActiveSet;
+use crate::problem::pushing;
 use crate::settings::WELL;
 
 /// One in so many closed rows that pull, and so many at least, are more than blocks can mend.
@@ -32,7 +33,7 @@ impl DualActiveSet {
         let pulling = closed.rows.iter().filter(pulls).count();
         if self.may_descend() && pulling >= LEAST.max(closed.len() / MANY) {
             self.admissible.clear();
-            self.admissible.extend(closed.force.iter().map(|force| force.max(0.0)));
+            self.admissible.extend(closed.force.iter().map(|&force| pushing(force)));
             self.descend();
         }
     }
@@ -151,7 +152,7 @@ impl ClosedRows {
             }
         }
         for (at, &row) in self.rows.iter().enumerate() {
-            force[row] = (force[row] + length * self.step[at]).max(0.0);
+            force[row] = pushing(force[row] + length * self.step[at]);
         }
         if let Some(first) = first {
             force[self.rows[first]] = 0.0;

@@ -17,7 +17,7 @@ use crate::closed_rows::ClosedRows;
 use crate::dependent::{Reconciled, Shift};
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::exchanges::Exchanges;
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::{Contradiction, ForceSelection, Settings};
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
@@ -523,7 +523,7 @@ impl DualActiveSet {
         for (row, out) in solution.force.iter_mut().enumerate() {
             let force = closed.force[row] / closed.system.row_scale[row];
             // What rounding has left below zero is none.
-            *out = if closed.free[row] { force } else { force.max(0.0) };
+            *out = if closed.free[row] { force } else { pushing(force) };
         }
         solution.active.extend_from_slice(&closed.rows);
         solution.active.sort_unstable();

@@ -9,16 +9,16 @@
 //! C. Lemke and J. Howson, "Equilibrium points of bimatrix games", SIAM Journal 12, 1964. What that comes to nothing with
 //! is tried again with twice as many digits, if it is not large.
 
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Mat, Par};
+use faer::Mat;
 
 use crate::bimatrix::is_bimatrix_game;
 use crate::check::Checker;
+use crate::dense_lu::DenseLu;
 use crate::dependent::{dot, make_orthogonal};
 use crate::dictionary::Dictionary;
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::matrix::{Matrix, SparseMatrix};
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
@@ -374,21 +374,24 @@ impl Lemke {
         let size = self.largest_offset(problem);
         let shift = |row: usize| self.shift.get(row).map_or(0.0, |shift| shift * size);
         let offset = |row: usize| problem.offset[row] * self.scale[row] - shift(row);
-        let right = Mat::from_fn(active.len(), 1, |at, _| -offset(active[at]));
-        let factor = PartialPivLu::new(basis.as_ref());
-        let mut force = factor.solve(&right);
+        let right: Vec<f64> = active.iter().map(|&row| -offset(row)).collect();
+        let factor = DenseLu::new(basis.clone());
+        let mut force = right.clone();
+        factor.solve_in_place(&mut force);
         for _ in 0..self.settings.refinements {
-            let rest = &right - &basis * &force;
-            force += factor.solve(&rest);
+            let sum = |at: usize| force.iter().enumerate().map(|(j, f)| basis[(at, j)] * f).sum::<f64>();
+            let mut rest: Vec<f64> = right.iter().enumerate().map(|(at, right)| right - sum(at)).collect();
+            factor.solve_in_place(&mut rest);
+            force.iter_mut().zip(&rest).for_each(|(force, rest)| *force += rest);
         }
         solution.force.fill(0.0);
-        for (at, &i) in active.iter().enumerate() {
-            let value = force[(at, 0)] * self.scale[i];
-            solution.force[i] = if problem.bilateral[i] { value } else { value.max(0.0) };
+        for (&i, force) in active.iter().zip(&force) {
+            let value = force * self.scale[i];
+            solution.force[i] = if problem.bilateral[i] { value } else { pushing(value) };
         }
-        let largest = (0..active.len()).map(|at| force[(at, 0)].abs()).fold(0.0, f64::max);
-        let unilateral = active.iter().enumerate().filter(|&(_, &i)| !problem.bilateral[i]);
-        let pulling = unilateral.map(|(at, &i)| (i, -force[(at, 0)] / largest));
+        let largest = force.iter().map(|force| force.abs()).fold(0.0, f64::max);
+        let unilateral = active.iter().zip(&force).filter(|&(&i, _)| !problem.bilateral[i]);
+        let pulling = unilateral.map(|(&i, force)| (i, -force / largest));
         pulling.filter(|row| row.1 > 0.0).max_by(|p, q| p.1.total_cmp(&q.1))
     }
 
@@ -468,8 +471,6 @@ impl Solver for Lemke {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
-        // One thread, so that sums keep their order.
-        faer::set_global_parallelism(Par::Seq);
         (self.pivots, self.is_certain) = (0, false);
         self.prepare(problem);
         let mut doubtful = None;

@@ -35,8 +35,8 @@
 //! | `system`, `entries` | the problem scaled to a unit diagonal, which the symmetric methods work on |
 //! | `dual_active_set`, `start`, `descent`, `spread`, `crossover`, `exchanges`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
 //! | `proximal_newton`, `interior_point`, `body_factor`, `line_search` | [`ProximalNewton`] |
-//! | `lemke`, `dictionary`, `twofold` | [`Lemke`], for unsymmetric problems |
-//! | `qp` | `Qp`, feature `qp` (default): clarabel with a polish |
+//! | `lemke`, `bimatrix`, `dictionary`, `dense_lu`, `twofold` | [`Lemke`], for unsymmetric problems |
+//! | `qp` | `Qp`, feature `qp` (default; on wasm it wants wasm-bindgen): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
 //! | `held_rows` | [`HeldRows`]: a fixed set of rows as equations, solved again and again |
 //! | `row`, `impact` | [`Impact`]: impulses of an impact by an [`ImpactLaw`] |
@@ -54,6 +54,7 @@ mod certificate;
 mod check;
 mod closed_rows;
 mod crossover;
+mod dense_lu;
 mod dependent;
 mod descent;
 mod dictionary;

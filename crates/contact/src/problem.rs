@@ -44,6 +44,12 @@ pub struct Problem {
     pub(crate) keys: Vec<ContactKey>,
 }
 
+/// The force of a unilateral row, which pushes or is none. Zero has no sign then, which `f64::max` leaves to the compiler.
+#[inline(always)]
+pub(crate) fn pushing(force: f64) -> f64 {
+    if force > 0.0 { force } else { 0.0 }
+}
+
 /// Index of a body within one problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProblemBody(pub u32);

@@ -19,7 +19,7 @@ use crate::check::{Checker, Residuals};
 use crate::error::{Infeasibility, SettingsError, SolveError};
 use crate::interior_point::InteriorPoint;
 use crate::line_search::PiecewiseLinear;
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::solver::{Method, Solver};
@@ -410,7 +410,7 @@ impl ProximalNewton {
     fn update_multipliers(&mut self, problem: &Problem) -> (f64, f64) {
         for row in 0..problem.len() {
             let force = self.multiplier[row] - self.acceleration[row] / self.epsilon;
-            self.multiplier[row] = if problem.bilateral[row] { force } else { force.max(0.0) };
+            self.multiplier[row] = if problem.bilateral[row] { force } else { pushing(force) };
         }
         self.force.copy_from_slice(&self.multiplier);
         self.system.push(&self.force, &mut self.motion);

@@ -8,7 +8,7 @@
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::Infeasibility;
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::WELL;
 use crate::warm::WarmStart;
 
@@ -103,7 +103,7 @@ impl DualActiveSet {
         if self.knows_forces {
             let earlier = |row| lookup.as_ref().and_then(|lookup| lookup.find(row));
             let scaled =
-                |row| earlier(row).map_or(0.0, |earlier| earlier.force.max(0.0) * system.row_scale[row]);
+                |row| earlier(row).map_or(0.0, |earlier| pushing(earlier.force) * system.row_scale[row]);
             self.admissible.clear();
             self.admissible.extend((0..problem.len()).map(scaled));
         }

@@ -26,6 +26,8 @@
 //! assert!((world.energy().total() - 20.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! On wasm the default feature `qp` wants wasm-bindgen; all else does not.
 
 #![forbid(unsafe_code)]
 

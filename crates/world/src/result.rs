@@ -89,8 +89,8 @@ pub struct EnergyResult {
 pub struct StatisticsResult {
     /// The world's own.
     pub world: Statistics,
-    /// Time [s] spent on stepping alone.
-    pub wall_seconds: f64,
+    /// Time [s] spent on stepping alone, where there is a clock.
+    pub wall_seconds: Option<f64>,
 }
 
 impl RunResult {

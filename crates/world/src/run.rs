@@ -94,7 +94,7 @@ impl RunPlan {
 }
 
 /// How a run went, complete or not.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RunReport {
     /// States and impacts.
     pub recording: Recording,
@@ -107,8 +107,8 @@ pub struct RunReport {
     /// What does not hold at the end, or where it stopped; where all is recorded, what was seen not to hold
     /// on the way, too.
     pub findings: Vec<Finding>,
-    /// Time [s] spent on stepping alone.
-    pub wall_seconds: f64,
+    /// Time [s] spent on stepping alone; `None` where the platform has no clock, as wasm32-unknown-unknown.
+    pub wall_seconds: Option<f64>,
 }
 
 /// Is told at the start, at each event and at each output which part of a run is done, 0 to 1, and says whether
@@ -179,7 +179,14 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
     recording.ledger = world.ledger();
     turnover.note_kinetic(world.largest_kinetic_energy());
     let findings = findings.at_end(world, turnover.energy);
-    RunReport { recording, stops, start_energy, error, findings, wall_seconds: stepper.wall.as_secs_f64() }
+    RunReport {
+        recording,
+        stops,
+        start_energy,
+        error,
+        findings,
+        wall_seconds: stepper.wall.map(|wall| wall.as_secs_f64()),
+    }
 }
 
 /// Records the world, unless its last frame has this time already.
@@ -193,17 +200,24 @@ fn done(time: f64, plan: &RunPlan) -> f64 {
     ((time - plan.start_time) / (plan.end_time - plan.start_time)).clamp(0.0, 1.0)
 }
 
+/// What the clock says; `None` where there is none, and asking would panic.
+fn clock() -> Option<Instant> {
+    let has_clock = cfg!(not(all(target_family = "wasm", target_os = "unknown")));
+    has_clock.then(Instant::now)
+}
+
 /// Advances a world, collects its events and measures the time that takes.
 struct Stepper {
     impacts: Vec<Impact>,
     contacts: Vec<ContactRecord>,
-    wall: Duration,
+    /// As long as there is a clock.
+    wall: Option<Duration>,
     record: Record,
 }
 
 impl Stepper {
     fn new(record: Record) -> Self {
-        Self { impacts: Vec::new(), contacts: Vec::new(), wall: Duration::ZERO, record }
+        Self { impacts: Vec::new(), contacts: Vec::new(), wall: Some(Duration::ZERO), record }
     }
 
     fn advance(
@@ -213,7 +227,7 @@ impl Stepper {
         goes_on: &mut dyn FnMut(f64) -> Result<(), RunError>,
     ) -> Result<(), RunError> {
         let keep = self.record == Record::Everything;
-        let started = Instant::now();
+        let started = clock();
         let mut interrupted = Ok(());
         let outcome = world.advance_while(time, &mut |event| {
             if keep {
@@ -224,7 +238,7 @@ impl Stepper {
             }
             if interrupted.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
-        self.wall += started.elapsed();
+        self.wall = self.wall.zip(started).map(|(wall, started)| wall + started.elapsed());
         outcome.and(interrupted)
     }
 

@@ -161,6 +161,10 @@ fn out_writes_recording_and_pictures() {
         "arcs are drawn as arcs: {}",
         read("end.svg")
     );
+    // What an earlier run of more pictures has left would seem to be of this one.
+    assert_eq!(halfgap(&["run", &scene, "--out", &out, "--pictures", "1", "--quiet"]).status.code(), Some(0));
+    let is_there = |name: &str| Path::new(&out).join(name).exists();
+    assert_eq!(["picture-0000.svg", "picture-0001.svg"].map(is_there), [true, false]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use super::HeldRows;
 use crate::exchanges::{Party, first_to_vanish};
+use crate::problem::pushing;
 
 impl HeldRows {
     /// Lists rows that can be spared, of those that depend on others by the last
@@ -58,7 +59,7 @@ impl HeldRows {
         for (k, share) in shares.chain([(place, -1.0)]).filter(|(_, share)| *share != 0.0) {
             let row = self.row_at(k);
             let now = force[row] + moved * share;
-            force[row] = if may_pull(row) { now } else { now.max(0.0) };
+            force[row] = if may_pull(row) { now } else { pushing(now) };
         }
     }
 }

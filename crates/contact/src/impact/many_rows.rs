@@ -7,7 +7,7 @@ use super::law::ImpactError;
 use crate::dual_active_set::DualActiveSet;
 use crate::error::SolveError;
 use crate::matrix::{Matrix, SparseMatrix};
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::{Contradiction, Settings};
 use crate::solution::Solution;
 use crate::start::Start;
@@ -222,7 +222,7 @@ impl Impact {
             let impulse = many.solution.force[place];
             self.noise = self.noise.max(left * self.length(row));
             if impulse != 0.0 {
-                self.apply(row, if self.rows[row].bilateral { impulse } else { impulse.max(0.0) });
+                self.apply(row, if self.rows[row].bilateral { impulse } else { pushing(impulse) });
             }
         }
         Ok(())
