@@ -2,8 +2,8 @@
 
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, Event, World,
-    WorldBuilder, WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorId, ConnectorKind, ConnectorSpec, Event,
+    Inertia, World, WorldBuilder, WorldSettings,
 };
 
 /// Gravity of the tests [m/s^2].
@@ -35,7 +35,13 @@ impl Workshop {
     /// The same as a new one where nothing falls.
     #[must_use]
     pub fn weightless(tolerance: f64) -> Self {
-        Self { gravity: DVec2::ZERO, ..Self::new(tolerance) }
+        Self::new(tolerance).without_gravity()
+    }
+
+    /// The same with nothing that falls from now on.
+    #[must_use]
+    pub fn without_gravity(self) -> Self {
+        Self { gravity: DVec2::ZERO, ..self }
     }
 
     /// A movable body of the given mass [kg].
@@ -58,6 +64,12 @@ impl Workshop {
         elasticity: f64,
     ) -> BodyId {
         self.spec(BodySpec { elasticity, ..BodySpec::movable(name, shape, mass, state) })
+    }
+
+    /// A movable body of the given mass [kg] and moment [kg m^2].
+    pub fn inert(&mut self, name: &str, shape: Shape, [mass, moment]: [f64; 2], state: BodyState) -> BodyId {
+        let inertia = Some(Inertia { mass, moment });
+        self.spec(BodySpec { inertia, ..BodySpec::movable(name, shape, mass, state) })
     }
 
     fn spec(&mut self, spec: BodySpec) -> BodyId {

@@ -2,6 +2,7 @@
 //!
 //! `docs/stability.md` lists what is reached: run with `-- --nocapture --test-threads 1` to see the numbers.
 
+mod branches;
 mod cams;
 mod chains;
 mod changes;

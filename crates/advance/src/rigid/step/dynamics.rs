@@ -481,13 +481,13 @@ impl Ode for Dynamics<'_> {
     type Error = Infallible;
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
-        if !self.group.held.is_soft() && !self.group.tree.is_left() {
+        if self.group.held.is_soft() || self.passes_by_rows() {
+            self.find_rates_on_rows(offset, state, rates);
+        } else {
             self.find_rates(offset, state, rates, Self::solve_rows);
-            return Ok(());
         }
-        self.find_rates_on_rows(offset, state, rates);
-        let Group { held, kept, dependent, .. } = &mut *self.group;
-        if kept.is_open() {
+        if self.group.kept.is_open() && self.may_have_loops() {
+            let Group { held, kept, dependent, .. } = &mut *self.group;
             kept.note(offset, held.kept_beyond(*dependent));
         }
         Ok(())
@@ -495,6 +495,18 @@ impl Ode for Dynamics<'_> {
 }
 
 impl Dynamics<'_> {
+    /// True if connectors hold the group by more than one row, so that these may come to depend on each other.
+    fn may_have_loops(&self) -> bool {
+        !self.is_held_by_one() && self.group.rows.iter().any(|row| row.bilateral)
+    }
+
+    /// True if the group passes along its rows a point where loops could go on in two ways: its stages are moved onto
+    /// the rows, and what is only rounding is left as it is, for it would come into each stage anew.
+    pub(crate) fn passes_by_rows(&self) -> bool {
+        let Group { tree, kept, held, .. } = &*self.group;
+        tree.is_left() || (!tree.is_used() && !held.is_soft() && kept.is_near_singular())
+    }
+
     /// Rates of the group's state; `constrain` adds what the rows do to accelerations in the stage.
     pub(crate) fn find_rates(
         &mut self,

@@ -28,16 +28,15 @@ impl Dynamics<'_> {
     /// Moves a state onto the held rows, and stops what its velocities would move it off them by.
     fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
         let length = self.physics.steps.length;
-        // Of a group that is stepped as it is for a while what is only rounding is left: it would come into each stage anew.
-        let is_left = self.group.tree.is_left();
-        let noise = if is_left { self.noise(state, length) } else { 0.0 };
+        let is_passing = self.passes_by_rows();
+        let noise = if is_passing { self.noise(state, length) } else { 0.0 };
         // Near a point where loops could go on in two ways every digit counts; else what is lacking comes
         // with the next round.
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..MOST_ROUNDS {
             let error = self.measure_errors(state, &mut row_rates);
-            if is_left && error <= noise {
+            if is_passing && error <= noise {
                 break;
             }
             respond(self);
@@ -48,7 +47,7 @@ impl Dynamics<'_> {
             }
             self.change(state, 0);
             // And near such a point that is as much larger as the change is.
-            let left = if is_left { change } else { error };
+            let left = if is_passing { change } else { error };
             if left <= f64::EPSILON.sqrt() * length {
                 break;
             }
@@ -58,7 +57,7 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         self.stage.offsets.extend_from_slice(&row_rates);
         self.stage.rates = row_rates;
-        if is_left && largest <= noise / length * speed {
+        if is_passing && largest <= noise / length * speed {
             return;
         }
         respond(self);

@@ -55,7 +55,7 @@ impl Dynamics<'_> {
         let is_singular = self.group.kept.may_near_singular();
         let is_soft = self.group.held.is_soft() || is_singular;
         // What is off by little in several loops is made good as long as that bends no motion.
-        let noise = self.group.tree.is_left().then(|| self.noise(&end, length));
+        let noise = self.passes_by_rows().then(|| self.noise(&end, length));
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
