@@ -1,4 +1,4 @@
-//! Stages of a step, moved onto held rows of which some depend on others.
+//! Stages of a step, moved onto held rows of which some depend on others, for ever or for a moment.
 //!
 //! Where states are on the rows, what one of them asks for the others give already. A stage is off them, by
 //! far more than the error of its step: there the rows all but depend on each other, and what they disagree
