@@ -486,8 +486,8 @@ impl Ode for Dynamics<'_> {
         } else {
             self.find_rates(offset, state, rates, Self::solve_rows);
         }
-        if self.group.kept.is_open() && self.may_have_loops() {
-            let Group { held, kept, dependent, .. } = &mut *self.group;
+        let Group { held, loops, kept, dependent, .. } = &mut *self.group;
+        if kept.is_open() && (loops.any() || held.is_soft()) {
             kept.note(offset, held.kept_beyond(*dependent));
         }
         Ok(())
@@ -495,11 +495,6 @@ impl Ode for Dynamics<'_> {
 }
 
 impl Dynamics<'_> {
-    /// True if connectors hold the group by more than one row, so that these may come to depend on each other.
-    fn may_have_loops(&self) -> bool {
-        !self.is_held_by_one() && self.group.rows.iter().any(|row| row.bilateral)
-    }
-
     /// True if the group passes along its rows a point where loops could go on in two ways: its stages are moved onto
     /// the rows, and what is only rounding is left as it is, for it would come into each stage anew.
     pub(crate) fn passes_by_rows(&self) -> bool {

@@ -1,5 +1,6 @@
 //! A group: bodies that share their steps because rows or force laws couple them.
 
+use super::loops::Loops;
 use super::rows::HeldRow;
 use super::singular::Kept;
 use super::stiff::Stiffness;
@@ -63,7 +64,8 @@ pub(crate) struct Group {
     pub(crate) held: HeldRows,
     /// In whose coordinates it is stepped, if it hangs together by pins alone.
     pub(crate) tree: JointTree,
-    /// What rows of loops keep that depend on each other for a moment.
+    /// Whether its connectors close any, and what rows of loops keep that depend on each other for a moment.
+    pub(crate) loops: Loops,
     pub(crate) kept: Kept,
     /// How many rows depend on others all along, where such rows share what they hold.
     pub(crate) dependent: usize,
@@ -152,6 +154,7 @@ impl Group {
             works: emptied(old.works),
             held: old.held,
             tree: old.tree,
+            loops: old.loops,
             kept: old.kept,
             state: emptied(old.state),
             rates: emptied(old.rates),
@@ -173,12 +176,13 @@ impl Group {
         self.bodies[0]
     }
 
-    /// Finds the places of the bodies of its rows.
+    /// Finds the places of the bodies of its rows, and whether these make loops.
     pub(crate) fn find_sides(&mut self) {
         let bodies = &self.bodies;
         let place = |body| bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
         self.sides.clear();
         self.sides.extend(self.rows.iter().map(|row| row.bodies.map(place)));
+        self.loops.find(self.bodies.len(), &self.rows, &self.sides);
     }
 
     /// Numbers in its state: positions, velocities, works.
@@ -224,11 +228,12 @@ mod tests {
         let system = resting_discs(&[0.0]);
         let mut used = system.group_of(BodyId(1)).expect("it rests").clone();
         assert!(used.free_acceleration > 0.0 && used.span > 0.0);
-        let held = used.held.clone();
+        let (held, loops) = (used.held.clone(), used.loops.clone());
         used.clear();
         let mut fresh = Group::default();
         // Whose rows are sorted how is found anew with each group.
         (fresh.held, fresh.tree, fresh.kept) = (held, used.tree.clone(), used.kept.clone());
+        fresh.loops = loops;
         assert_eq!(format!("{used:?}"), format!("{fresh:?}"));
     }
 }
