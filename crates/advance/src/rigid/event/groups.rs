@@ -422,7 +422,7 @@ impl RigidSystem {
         self.ledger.projections += std::mem::take(&mut group.projected);
         std::mem::swap(&mut group.state, &mut group.end_state);
         self.with_group(&mut group, |dynamics, tools| {
-            dynamics.find_tree(tools.settings);
+            dynamics.find_tree_and_loops(tools.settings);
             dynamics.set_out();
             if dynamics.leave_singular_tree() {
                 dynamics.set_out();

@@ -176,13 +176,12 @@ impl Group {
         self.bodies[0]
     }
 
-    /// Finds the places of the bodies of its rows, and whether these make loops.
+    /// Finds the places of the bodies of its rows.
     pub(crate) fn find_sides(&mut self) {
         let bodies = &self.bodies;
         let place = |body| bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
         self.sides.clear();
         self.sides.extend(self.rows.iter().map(|row| row.bodies.map(place)));
-        self.loops.find(self.bodies.len(), &self.rows, &self.sides);
     }
 
     /// Numbers in its state: positions, velocities, works.

@@ -14,6 +14,11 @@ pub(crate) struct Loops {
 }
 
 impl Loops {
+    /// There is none.
+    pub(crate) fn clear(&mut self) {
+        self.is_closed = false;
+    }
+
     /// Finds whether there is one among so many bodies that are held by rows, of which `sides` are the places.
     pub(crate) fn find(&mut self, bodies: usize, rows: &[HeldRow], sides: &[[Option<u32>; 2]]) {
         self.is_closed = false;

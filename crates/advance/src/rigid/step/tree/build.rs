@@ -30,12 +30,17 @@ struct Pin {
 }
 
 impl Dynamics<'_> {
-    /// Finds the tree of the group, whose bodies are in place: none unless it hangs by pins, with few rows beside them,
-    /// none of these redundant, and is stepped without any of the remedies against drift that scenes may ask for.
-    pub(crate) fn find_tree(&mut self, settings: &RigidSettings) {
-        self.group.tree.clear();
+    /// Finds how the connectors of the group hang together, whose bodies are in place: its tree, if it hangs by pins,
+    /// with few rows beside them, none of these redundant, and whether there are loops. Neither counts where it is stepped
+    /// with any of the remedies against drift that scenes may ask for, or without an error estimate.
+    pub(crate) fn find_tree_and_loops(&mut self, settings: &RigidSettings) {
+        let Group { tree, loops, .. } = &mut *self.group;
+        tree.clear();
+        loops.clear();
         if settings.projection && self.physics.extra.is_none() && settings.method.is_adaptive() {
             self.find_tree_for(settings.steps.local_error * settings.steps.length);
+            let Group { loops, bodies, rows, sides, .. } = &mut *self.group;
+            loops.find(bodies.len(), rows, sides);
         }
     }
 
