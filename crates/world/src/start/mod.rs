@@ -22,7 +22,7 @@ use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
-use joined::{ConnectorOff, require_small_errors, worst_connector};
+use joined::{ConnectorOff, require_small_errors, rows, worst_connector};
 use regain::regain_touches;
 use tight::TightPairs;
 use touching::{
@@ -35,6 +35,10 @@ const MOST_ROUNDS: u32 = 12;
 const MOST_SHORT_ROUNDS: u32 = 100;
 /// A round all the way that leaves more than this part of the connectors' error has come to the end of what can be had.
 const LEAST_GAIN: f64 = 0.5;
+/// What carries a body farther than so many times all that is to be made good, and than this part of the body, has left
+/// where it was to be: to first order faces have no ends, and it has passed one.
+const FARTHEST: f64 = 10.0;
+const FARTHEST_OF_REACH: f64 = 0.1;
 
 /// A body, what acts on it in flight, and its state at the start.
 pub(crate) type StartParts = (Body, FlightLaw, BodyState);
@@ -95,6 +99,7 @@ pub(crate) fn correct_start(
     let mut tight = TightPairs::default();
     let (mut rounds, mut known) = (Rounds::default(), KnownTouches::default());
     let mut lifted: Vec<Touch> = Vec::new();
+    let mut lacking = 0.0;
     loop {
         // What has been moved may have come near others, and deeper into them.
         let pairs = rules.near_pairs(&mut near, bodies);
@@ -104,6 +109,7 @@ pub(crate) fn correct_start(
         if rounds.are_at_first() {
             lifted.clear();
             lifted.extend(records.iter().filter(|record| is_below_zone(record)).filter_map(touch));
+            lacking = all_lacking(bodies, &records, connectors);
         }
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
@@ -117,7 +123,8 @@ pub(crate) fn correct_start(
         let failure = cannot_correct(too_near, overlap, off, named, connectors);
         if goes_on {
             known.complete(&mut records, bodies, rules);
-            if let Some(share) = correct_positions(bodies, &records, connectors) {
+            let share = correct_positions(bodies, &records, connectors);
+            if let Some(share) = share.filter(|_| are_near(bodies, &given, lacking)) {
                 rounds.note(share, error);
                 continue;
             }
@@ -190,6 +197,21 @@ fn widen(
 /// True if the connectors are together: to rounding, or as near as they come if that is near enough.
 fn fits(error: f64, has_stalled: bool, rules: &StartRules<'_>) -> bool {
     error <= rules.rounding || (has_stalled && error <= rules.contradiction)
+}
+
+/// Sum [m] of all that gaps below the zone and connectors lack.
+fn all_lacking(bodies: &[StartParts], records: &[Collision], connectors: &[Connector]) -> f64 {
+    let gaps = records.iter().filter(|record| is_below_zone(record));
+    let off = rows(bodies, connectors).map(|(_, connector, sample)| {
+        if connector.is_bilateral() { sample.gap.abs() } else { (-sample.gap).max(0.0) }
+    });
+    gaps.map(|record| record.distance_to_target().abs()).chain(off).sum()
+}
+
+/// True if no body has gone farther than what is lacking in all [m] can ask for.
+fn are_near(bodies: &[StartParts], given: &[BodyState], lacking: f64) -> bool {
+    let farthest = |reach: f64| (FARTHEST * lacking).max(FARTHEST_OF_REACH * reach);
+    bodies.iter().zip(ways(bodies, given)).all(|((body, _, _), way)| way <= farthest(body.shape.reach()))
 }
 
 /// How far [m] points of each body have moved at most.

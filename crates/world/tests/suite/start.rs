@@ -385,3 +385,29 @@ fn discs_that_touch_in_a_triangle_all_touch_after_they_are_lifted() {
         assert!((gap - target).abs() < 0.1 * target, "{a} and {b}: {gap:e} m for {target:e} m");
     }
 }
+
+#[test]
+fn discs_in_a_bearing_with_less_play_than_gaps_stay_where_they_are_given() {
+    // To first order a disc that is lifted from the ring and from the shaft could be anywhere along them.
+    let overrides =
+        ToleranceOverrides { target_gap: Some(2e-4), accuracy: Some(2e-7), ..ToleranceOverrides::default() };
+    let mut builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });
+    let ring = Shape::ring(1.3177244644872448, 1.2177244644872447).expect("a fine ring");
+    builder.add(BodySpec::fixed("ring", ring, DVec2::ZERO));
+    let mut add = |name: &str, radius: f64, mass: f64, place: [f64; 2]| {
+        let state = BodyState { position: DVec2::from(place), ..BodyState::default() };
+        let shape = Shape::disc(radius).expect("a fine radius");
+        (builder.add(BodySpec::movable(name, shape, mass, state)), state.position)
+    };
+    let given = [
+        add("shaft", 1.0, 5.0, [0.0, -6.607149897213634e-05]),
+        add("upper ball", 0.10875211307866887, 0.11, [-0.15851461193418254, 1.0974737208241774]),
+        add("lower ball", 0.10875211307866887, 0.4, [-0.31433179152945007, -1.0633771555427525]),
+        add("right ball", 0.10875211307866887, 0.5, [0.6268429752923347, -0.914682094731805]),
+    ];
+    let world = build(builder);
+    for (body, place) in given {
+        let moved = world.state(body).position.distance(place);
+        assert!(moved < 0.02, "{}: {moved} m", world.name(body));
+    }
+}

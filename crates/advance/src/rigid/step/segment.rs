@@ -147,7 +147,7 @@ impl Dynamics<'_> {
                 continue;
             }
             if placements < MOST_PLACEMENTS
-                && let Some(better) = self.group.kept.better_length(step, method)
+                && let Some(better) = self.group.kept.better_length(step, natural, method)
             {
                 (step, placements, is_led) = (better, placements + 1, true);
                 continue;

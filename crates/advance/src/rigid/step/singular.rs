@@ -158,11 +158,11 @@ impl Kept {
         self.least < LOWER * self.most
     }
 
-    /// A length [s] for the last step with which it will not come near such a point by one of its stages;
-    /// `None` if it has not.
-    pub(crate) fn better_length(&self, length: f64, method: Method) -> Option<f64> {
+    /// A length [s], of `most` at most, for the last step, with which it will not come near such a point by one of its
+    /// stages; `None` if it has not.
+    pub(crate) fn better_length(&self, length: f64, most: f64, method: Method) -> Option<f64> {
         let (point, away) = self.point()?;
-        let better = led(point, length, method)?;
+        let better = led(point, most, method)?;
         (away <= CLOSE * length || (point > length && better < length)).then_some(better)
     }
 
@@ -241,14 +241,15 @@ mod tests {
     #[test]
     fn a_step_is_led_astride_of_a_point_that_a_stage_comes_near() {
         for (length, point) in [(1.0, 0.3), (1.0, 0.27), (0.01, 0.0025), (2.0, 0.31), (1.0, 0.06)] {
-            let better = seen(length, point, 0.0).better_length(length, METHOD).expect("a stage is near");
+            let better =
+                seen(length, point, 0.0).better_length(length, length, METHOD).expect("a stage is near");
             assert!(better < length);
             // The next one sees the point in the widest interval, and is left as it is.
             assert!(
                 (point / better - METHOD.middle_between_stages().expect("it has stages")).abs() < 1e-2,
                 "{better}"
             );
-            assert_eq!(seen(better, point, 0.0).better_length(better, METHOD), None);
+            assert_eq!(seen(better, point, 0.0).better_length(better, better, METHOD), None);
         }
     }
 
@@ -256,11 +257,11 @@ mod tests {
     fn a_step_that_cannot_pass_a_point_between_its_stages_ends_where_the_next_one_can() {
         let middle = METHOD.middle_between_stages().expect("it has stages");
         for point in [0.6, 0.86, 0.97, 1.03, 1.3] {
-            let better = seen(1.0, point, 0.0).better_length(1.0, METHOD).expect("it is near");
+            let better = seen(1.0, point, 0.0).better_length(1.0, 1.0, METHOD).expect("it is near");
             assert!((better + middle - point).abs() < 1e-2, "{point}: {better}");
         }
         // What is nearly in the middle already is passed from not much nearer.
-        let better = seen(1.0, 0.57, 0.0).better_length(1.0, METHOD).expect("a stage is near");
+        let better = seen(1.0, 0.57, 0.0).better_length(1.0, 1.0, METHOD).expect("a stage is near");
         assert!(better >= LEAST_WAY * 0.56, "{better}");
     }
 
@@ -290,9 +291,9 @@ mod tests {
     fn what_rows_keep_otherwise_leads_no_step() {
         // Far from a point, or beyond it, or where rows come near to depending on each other but do not.
         for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
-            assert_eq!(seen(1.0, point, floor).better_length(1.0, METHOD), None, "{point}");
+            assert_eq!(seen(1.0, point, floor).better_length(1.0, 1.0, METHOD), None, "{point}");
         }
-        assert_eq!(seen(1.0, 0.3, 0.0).better_length(1.0, Method::Rk4), None);
+        assert_eq!(seen(1.0, 0.3, 0.0).better_length(1.0, 1.0, Method::Rk4), None);
     }
 
     #[test]
