@@ -314,9 +314,11 @@ impl World {
         (is_blow && !self.is_slow_asked_for()).then_some(Finding::Captured { energy, turned_over, slow })
     }
 
-    /// Whether the user says what counts as slow, or contacts carry impulses only: then what is stopped is to be.
+    /// Whether the user says what counts as slow, or how near bodies are that touch, in which what bounces by less has come
+    /// to rest, or contacts carry impulses only: then what is stopped is to be.
     fn is_slow_asked_for(&self) -> bool {
-        self.sentry.slow_is_given || self.rigid_settings().impulse_step.is_some()
+        let Sentry { slow_is_given, gap_is_given, .. } = self.sentry;
+        slow_is_given || gap_is_given || self.rigid_settings().impulse_step.is_some()
     }
 
     /// So many times as much is put up with.

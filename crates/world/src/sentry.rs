@@ -33,6 +33,8 @@ pub(crate) struct Sentry {
     pub(crate) scales: EnergyScales,
     /// The user says what counts as slow.
     pub(crate) slow_is_given: bool,
+    /// The user says at which gap bodies touch.
+    pub(crate) gap_is_given: bool,
     /// Since the start.
     pub(crate) turnover: Turnover,
     /// Segments that had been started at the last look.
@@ -79,6 +81,7 @@ impl Sentry {
             duration,
             scales,
             slow_is_given: settings.overrides.velocity_tol.is_some(),
+            gap_is_given: settings.overrides.target_gap.is_some(),
             turnover: Turnover::default(),
             looked: 0,
             looks: 0.0,
@@ -253,6 +256,28 @@ mod tests {
         assert!(
             matches!(finding, Finding::Captured { energy, slow: 10.0, .. } if (energy - 10.0).abs() < 1e-6)
         );
+    }
+
+    #[test]
+    fn what_bounces_by_less_than_the_gap_that_is_asked_for_comes_to_rest_however_often_somebody_looks() {
+        let overrides = ToleranceOverrides {
+            target_gap: Some(5e-3),
+            accuracy: Some(3e-3),
+            ..ToleranceOverrides::default()
+        };
+        let settings = WorldSettings { overrides, duration: Some(1.0), ..WorldSettings::default() };
+        let mut builder = WorldBuilder::new(settings);
+        let [block, floor] = [0.2, 10.0].map(|side| Shape::block(side, side).expect("a fine size"));
+        let state = BodyState { position: DVec2::new(0.0, 0.11), ..BodyState::default() };
+        let dropped = BodySpec { elasticity: 0.5, ..BodySpec::movable("block", block, 1.0, state) };
+        let body = builder.add(dropped);
+        builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -5.0)));
+        builder.add_gravity(body, DVec2::new(0.0, -10.0));
+        let mut world = builder.build().expect("it falls");
+        for piece in 1..=400 {
+            world.advance_to(f64::from(piece) / 400.0, &mut |_| ()).expect("it comes to rest");
+        }
+        assert!(world.ledger().captures < -1e-3, "{:?}", world.ledger());
     }
 
     #[test]

@@ -57,6 +57,11 @@ impl Comparison {
         Self { bodies, reach }
     }
 
+    /// A length [m] as a part of the size of the smallest body.
+    pub(super) fn part(&self, length: f64) -> f64 {
+        self.reach.iter().map(|reach| length / reach).fold(0.0, f64::max)
+    }
+
     /// At each common time [s]: the largest shift of any body, as a part of its own size.
     pub(super) fn shifts(&self, run: &Recording, tighter: &Recording) -> Vec<(f64, f64)> {
         let shift = |(a, b): (&Frame, &Frame)| {

@@ -5,9 +5,10 @@
 //! happens; then no tolerance helps for long, and the run is worth something only until the difference has
 //! grown to the size of the bodies.
 
-/// Part of its own size up to which a body is where it should be.
+/// Part of its own size up to which a body is where it should be, or so many usual differences.
 const WORTH: f64 = 1e-2;
-/// Differences beyond so many tolerances matter, although bodies are where they should be.
+const WORTH_OF_USUAL: f64 = 4.0;
+/// Differences beyond so many usual ones matter, although bodies are where they should be.
 const AMPLIFIED: f64 = 1e4;
 /// In the second half of the time an error that grows with the sixth power grows by this factor.
 const SECOND_HALF: f64 = 64.0;
@@ -20,9 +21,10 @@ pub(super) struct Growth {
     pub(super) trusted_until: Option<f64>,
 }
 
-/// Judges the differences at some times: pairs of time [s] and part of a body's size.
-pub(super) fn judge(shifts: &[(f64, f64)], tolerance: f64) -> Growth {
-    let small = |shift: f64| shift <= WORTH;
+/// Judges the differences at some times, pairs of time [s] and part of a body's size, where so large a one is usual: the
+/// tolerance, or the gap at which bodies touch.
+pub(super) fn judge(shifts: &[(f64, f64)], usual: f64) -> Growth {
+    let small = |shift: f64| shift <= WORTH.max(WORTH_OF_USUAL * usual);
     let lost = shifts.iter().position(|&(_, shift)| !small(shift));
     let trusted_until = lost.map(|index| shifts[index.saturating_sub(1)].0);
     let used = &shifts[..lost.map_or(shifts.len(), |index| index + 1)];
@@ -33,8 +35,8 @@ pub(super) fn judge(shifts: &[(f64, f64)], tolerance: f64) -> Growth {
     let largest = |until: f64| {
         used.iter().filter(|(time, _)| *time <= until).map(|(_, shift)| *shift).fold(0.0, f64::max)
     };
-    let (at_half, at_end) = (largest(half).max(tolerance), largest(last.0));
-    let matters = lost.is_some() || at_end > AMPLIFIED * tolerance;
+    let (at_half, at_end) = (largest(half).max(usual), largest(last.0));
+    let matters = lost.is_some() || at_end > AMPLIFIED * usual;
     let chaotic = matters && at_end > SECOND_HALF * at_half;
     Growth { chaotic, trusted_until }
 }
@@ -61,6 +63,14 @@ mod tests {
         // From 1e-8 to 1e-2 by exp(t/2): t = 2 ln(1e6) = 27.6.
         let chaos = shifts(|time| (1e-8 * (0.5 * time).exp()).min(3.0));
         assert_eq!(judge(&chaos, 1e-8), Growth { chaotic: true, trusted_until: Some(27.0) });
+    }
+
+    #[test]
+    fn what_touches_at_a_wide_gap_is_not_chaos() {
+        // A ball of 0.1 m whose zone is 5 mm away from the floor.
+        let shift = shifts(|time| if time > 40.0 { 0.1 } else { 1e-9 });
+        assert_eq!(judge(&shift, 5e-2), Growth { chaotic: false, trusted_until: None });
+        assert!(judge(&shift, 1e-8).chaotic);
     }
 
     #[test]

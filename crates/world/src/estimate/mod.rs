@@ -47,7 +47,7 @@ pub struct ErrorEstimate {
     pub impacts: [usize; 2],
     /// The difference grows faster than any power of the time that errors of integration grow with.
     pub chaotic: bool,
-    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, if
+    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, or four target gaps, if
     /// that is not the end: until then the answer is worth something.
     pub trusted_until: Option<f64>,
     /// Why the tighter run stopped early, if it did.
@@ -91,7 +91,9 @@ pub fn estimate_error(
 fn compare(world: &World, run: &Recording, tighter: &Recording, tolerance: f64) -> ErrorEstimate {
     let comparison = Comparison::new(world, run);
     let shifts = comparison.shifts(run, tighter);
-    let growth = growth::judge(&shifts, tolerance);
+    // What touches at a gap that is wide is off by that at once.
+    let usual = tolerance.max(comparison.part(world.tolerances().target_gap));
+    let growth = growth::judge(&shifts, usual);
     let trusted = growth.trusted_until.unwrap_or(f64::INFINITY);
     let times = [run, tighter].map(|recording| EventTimes::new(recording, trusted));
     let event_time = times[0].largest_difference(&times[1]);
