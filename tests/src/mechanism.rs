@@ -18,18 +18,22 @@ pub struct Workshop {
 }
 
 impl Workshop {
-    /// An empty one, at a tolerance.
+    /// An empty one.
+    #[must_use]
+    pub fn of(settings: WorldSettings) -> Self {
+        Self { builder: WorldBuilder::new(settings), gravity: DVec2::new(0.0, -GRAVITY) }
+    }
+
+    /// The same, at a tolerance.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        let settings = WorldSettings { tolerance, ..WorldSettings::default() };
-        Self { builder: WorldBuilder::new(settings), gravity: DVec2::new(0.0, -GRAVITY) }
+        Self::of(WorldSettings { tolerance, ..WorldSettings::default() })
     }
 
     /// The same where bodies pass through each other.
     #[must_use]
     pub fn passing(tolerance: f64) -> Self {
-        let settings = WorldSettings { tolerance, collisions: false, ..WorldSettings::default() };
-        Self { builder: WorldBuilder::new(settings), ..Self::new(tolerance) }
+        Self::of(WorldSettings { tolerance, collisions: false, ..WorldSettings::default() })
     }
 
     /// The same as a new one where nothing falls.

@@ -2,7 +2,7 @@
 
 use super::within;
 use halfgap::geometry::DVec2;
-use halfgap::{Anchor, BodyId, BodyState, ConnectorKind, SlotFrame, World};
+use halfgap::{Anchor, BodyId, BodyState, ConnectorKind, SlotFrame, Stabilization, World, WorldSettings};
 use halfgap_tests::mechanism::{Workshop, advance, block, connector_error, disc};
 
 const WORLD: BodyId = BodyId::WORLD;
@@ -123,25 +123,32 @@ fn a_kite_of_rods_opens_again_as_it_has_closed() {
     }
 }
 
+/// Between the ends of two rods of 1 m.
+const MIDDLE: DVec2 = DVec2::new(0.5, 0.0);
+
+/// A bar that goes round level on two rods of the same length, from such an angle of theirs: where they are flat, one
+/// could go on one way and the other the other.
+fn bar_on_two_rods(shop: &mut Workshop, start: f64) -> BodyId {
+    let arm = DVec2::from_angle(start);
+    let state = BodyState { position: MIDDLE + arm, velocity: SPIN * arm.perp(), ..BodyState::default() };
+    let bar = shop.inert("bar", disc(0.05), [1.0, 0.2], state);
+    for end in [DVec2::ZERO, DVec2::X] {
+        rod(shop, [WORLD, bar], [end, end + arm]);
+    }
+    bar
+}
+
 #[test]
 fn a_bar_on_two_equal_rods_goes_round_level() {
     for tolerance in TOLERANCES {
         let (mut off, mut turned): (f64, f64) = (0.0, 0.0);
         for start in (0..=24).map(|index| 0.5 + f64::from(index) / 12.0) {
             let mut shop = weightless(tolerance);
-            let arm = DVec2::from_angle(start);
-            let ends = [DVec2::ZERO, DVec2::X];
-            let middle = DVec2::new(0.5, 0.0);
-            let state =
-                BodyState { position: middle + arm, velocity: SPIN * arm.perp(), ..BodyState::default() };
-            let bar = shop.inert("bar", disc(0.05), [1.0, 0.2], state);
-            for end in ends {
-                rod(&mut shop, [WORLD, bar], [end, end + arm]);
-            }
+            let bar = bar_on_two_rods(&mut shop, start);
             let mut world = shop.build();
             advance(&mut world, DURATION);
             let state = world.state(bar);
-            off = off.max(state.position.distance(middle + DVec2::from_angle(start + SPIN * DURATION)));
+            off = off.max(state.position.distance(MIDDLE + DVec2::from_angle(start + SPIN * DURATION)));
             turned = turned.max(state.angle.abs());
         }
         within(&format!("bar on two rods at {tolerance}: place [m]"), off, tolerance.max(1e-9));
@@ -197,5 +204,25 @@ fn what_lies_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
         within(&format!("{what}: energy [J]"), world.energy().total() - energy, 10.0 * tolerance.max(1e-9));
         within(&format!("{what}: connectors [m]"), connector_error(&world), 1e-9);
         assert!(impacts < 2, "{what}: {impacts} impacts");
+    }
+}
+
+#[test]
+fn what_is_not_moved_onto_its_rows_is_not_led_either() {
+    // It keeps to nothing, but does not stop.
+    for start in (0..=11).map(|index| 0.5 + f64::from(index) / 6.0) {
+        let mut shop = Workshop::of(WorldSettings {
+            tolerance: 1e-9,
+            time_step: Some(2e-3),
+            stabilization: Stabilization::None,
+            collisions: false,
+            ..WorldSettings::default()
+        })
+        .without_gravity();
+        let bar = bar_on_two_rods(&mut shop, start);
+        let mut world = shop.build();
+        advance(&mut world, 5.0);
+        let speed = world.state(bar).velocity.length();
+        assert!((speed - SPIN).abs() < 1.0, "from {start} rad: {speed} m/s");
     }
 }

@@ -26,6 +26,7 @@ mod seams;
 mod simultaneous;
 mod stiff;
 mod unsolvable;
+mod zones;
 
 /// Tells how far off something is, and fails if that is more than allowed.
 #[track_caller]

@@ -121,8 +121,10 @@ impl RigidSystem {
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         let Some(step) = self.settings.impulse_step else { return 0.0 };
         let reach = bodies.map(|body| self.flyer(body).reach());
-        let slow = self.settings.tolerances.velocity_tol * step;
-        (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies)) + slow
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        let of_bodies = (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies));
+        // What is in the target zone is where it may be, and may sink from there.
+        of_bodies.max(accuracy / FIRST_SHARE) + velocity_tol * step
     }
 
     /// Gap [m] at which a contact without force fires that has a gap now and does not open. What has been

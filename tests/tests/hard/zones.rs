@@ -1,0 +1,37 @@
+//! Target zones that are wide, as scenes may ask for.
+
+use halfgap::geometry::DVec2;
+use halfgap::{ToleranceOverrides, WorldSettings};
+use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, disc};
+
+#[test]
+fn what_is_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_the_steps() {
+    for accuracy in [4.5e-3, 3e-3] {
+        for time_step in [2.5e-2, 5e-3, 1e-3, 5e-4] {
+            for elasticity in [0.0, 0.3, 0.8] {
+                let overrides = ToleranceOverrides {
+                    target_gap: Some(5e-3),
+                    accuracy: Some(accuracy),
+                    velocity_tol: Some(0.5),
+                };
+                let time_step = Some(time_step);
+                let mut shop = Workshop::of(WorldSettings {
+                    overrides,
+                    time_step,
+                    contacts: false,
+                    ..WorldSettings::default()
+                });
+                shop.fixed("floor", block(2.0, 0.5), DVec2::new(0.0, -0.25));
+                let body = shop.settler("disc", disc(0.1), 1.0, at_rest(0.0, 0.104), elasticity);
+                let mut world = shop.build();
+                let mut least = f64::INFINITY;
+                for piece in 1..=100 {
+                    advance(&mut world, 0.01 * f64::from(piece));
+                    least = least.min(world.state(body).position.y - 0.1);
+                }
+                let what = format!("disc in a zone of {accuracy} m, {time_step:?} s, e = {elasticity}");
+                assert!(least > 5e-3 - 1.5 * accuracy - 1e-3, "{what}: {least} m");
+            }
+        }
+    }
+}
