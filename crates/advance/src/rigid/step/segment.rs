@@ -146,8 +146,11 @@ impl Dynamics<'_> {
                 self.scale_errors(tools);
                 continue;
             }
+            // Without a tree a step that begins near such a point is the better the longer it is: it errs by rounding.
+            let has_tree = self.group.tree.is_used() || self.group.tree.is_left();
+            let most = if has_tree { step } else { natural };
             if placements < MOST_PLACEMENTS
-                && let Some(better) = self.group.kept.better_length(step, natural, method)
+                && let Some(better) = self.group.kept.better_length(step, most, method)
             {
                 (step, placements, is_led) = (better, placements + 1, true);
                 continue;

@@ -266,6 +266,16 @@ mod tests {
     }
 
     #[test]
+    fn a_step_that_may_be_longer_passes_a_point_rather_than_ending_before_it() {
+        let middle = METHOD.middle_between_stages().expect("it has stages");
+        let (length, point) = (0.5, 0.3);
+        let kept = seen(length, point, 0.0);
+        let [before, beyond] =
+            [length, 1.0].map(|most| kept.better_length(length, most, METHOD).expect("a stage is near"));
+        assert!(before < point && (beyond - point / middle).abs() < 1e-2, "{before}, {beyond}");
+    }
+
+    #[test]
     fn what_shorter_steps_do_not_mend_passes_astride() {
         const LOCAL_ERROR: f64 = 1e-9;
         let mut kept = seen(1.0, 0.46, 0.0);
