@@ -22,7 +22,7 @@ use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
-use joined::{ConnectorOff, require_small_errors, rows, worst_connector};
+use joined::{ConnectorOff, require_small_errors, worst_connector};
 use regain::regain_touches;
 use tight::TightPairs;
 use touching::{
@@ -35,8 +35,8 @@ const MOST_ROUNDS: u32 = 12;
 const MOST_SHORT_ROUNDS: u32 = 100;
 /// A round all the way that leaves more than this part of the connectors' error has come to the end of what can be had.
 const LEAST_GAIN: f64 = 0.5;
-/// What carries a body farther than so many times all that is to be made good, and than this part of the body, has left
-/// where it was to be: to first order faces have no ends, and it has passed one.
+/// What carries a body farther than so many times all that gaps lack, and than this part of its reach, has left where it
+/// was to be: to first order faces have no ends, and it has passed one.
 const FARTHEST: f64 = 10.0;
 const FARTHEST_OF_REACH: f64 = 0.1;
 
@@ -99,7 +99,7 @@ pub(crate) fn correct_start(
     let mut tight = TightPairs::default();
     let (mut rounds, mut known) = (Rounds::default(), KnownTouches::default());
     let mut lifted: Vec<Touch> = Vec::new();
-    let mut lacking = 0.0;
+    let mut farthest = f64::INFINITY;
     loop {
         // What has been moved may have come near others, and deeper into them.
         let pairs = rules.near_pairs(&mut near, bodies);
@@ -109,10 +109,13 @@ pub(crate) fn correct_start(
         if rounds.are_at_first() {
             lifted.clear();
             lifted.extend(records.iter().filter(|record| is_below_zone(record)).filter_map(touch));
-            lacking = all_lacking(bodies, &records, connectors);
         }
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
+        if rounds.are_at_first() {
+            // What connectors lack may be at the end of a long lever.
+            farthest = if error > rules.rounding { f64::INFINITY } else { FARTHEST * all_lacking(&records) };
+        }
         let is_done = too_near.is_none() && fits(error, rounds.have_stalled(error), rules);
         let overlap = if is_done { deep_overlap(bodies, pairs, rules.rounding, &ways) } else { None };
         if is_done && overlap.is_none() {
@@ -124,7 +127,7 @@ pub(crate) fn correct_start(
         if goes_on {
             known.complete(&mut records, bodies, rules);
             let share = correct_positions(bodies, &records, connectors);
-            if let Some(share) = share.filter(|_| are_near(bodies, &given, lacking)) {
+            if let Some(share) = share.filter(|_| are_near(bodies, &given, farthest)) {
                 rounds.note(share, error);
                 continue;
             }
@@ -199,19 +202,16 @@ fn fits(error: f64, has_stalled: bool, rules: &StartRules<'_>) -> bool {
     error <= rules.rounding || (has_stalled && error <= rules.contradiction)
 }
 
-/// Sum [m] of all that gaps below the zone and connectors lack.
-fn all_lacking(bodies: &[StartParts], records: &[Collision], connectors: &[Connector]) -> f64 {
+/// Sum [m] of all that gaps below the zone lack.
+fn all_lacking(records: &[Collision]) -> f64 {
     let gaps = records.iter().filter(|record| is_below_zone(record));
-    let off = rows(bodies, connectors).map(|(_, connector, sample)| {
-        if connector.is_bilateral() { sample.gap.abs() } else { (-sample.gap).max(0.0) }
-    });
-    gaps.map(|record| record.distance_to_target().abs()).chain(off).sum()
+    gaps.map(|record| record.distance_to_target().abs()).sum()
 }
 
-/// True if no body has gone farther than what is lacking in all [m] can ask for.
-fn are_near(bodies: &[StartParts], given: &[BodyState], lacking: f64) -> bool {
-    let farthest = |reach: f64| (FARTHEST * lacking).max(FARTHEST_OF_REACH * reach);
-    bodies.iter().zip(ways(bodies, given)).all(|((body, _, _), way)| way <= farthest(body.shape.reach()))
+/// True if no body has gone farther than so far [m], or than a part of its reach.
+fn are_near(bodies: &[StartParts], given: &[BodyState], farthest: f64) -> bool {
+    let is_near = |reach: f64, way: f64| way <= farthest.max(FARTHEST_OF_REACH * reach);
+    bodies.iter().zip(ways(bodies, given)).all(|((body, _, _), way)| is_near(body.shape.reach(), way))
 }
 
 /// How far [m] points of each body have moved at most.
