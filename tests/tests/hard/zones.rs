@@ -1,7 +1,9 @@
 //! Target zones that are wide, as scenes may ask for.
 
 use halfgap::geometry::DVec2;
-use halfgap::{ToleranceOverrides, WorldSettings};
+use halfgap::scene::Scene;
+use halfgap::{ToleranceOverrides, World, WorldSettings};
+use halfgap_tests::data;
 use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, disc};
 
 #[test]
@@ -34,4 +36,14 @@ fn what_is_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_
             }
         }
     }
+}
+
+#[test]
+fn a_corner_beside_the_end_of_a_tooth_is_no_gap() {
+    // Where a pin lets go of a tooth, its corner is beside the tooth's end and far below the line on which that lies.
+    let scene = Scene::read(data("music_box.json")).expect("a scene that can be read");
+    let mut world = World::from_scene(&scene).expect("a world that can be built");
+    advance(&mut world, 1.75);
+    let nearest = world.statistics().smallest_gap.expect("they touch");
+    assert!((3.9e-4..1.6e-3).contains(&nearest), "{nearest} m");
 }

@@ -315,7 +315,7 @@ impl RigidSystem {
         }
         self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
-        work.region.motions.iter().for_each(|&(gap, _)| self.counts.note_gap(gap));
+        self.note_gaps(&work.region);
         self.note_seen(&work.region, work.fired_open);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(work);
@@ -417,6 +417,23 @@ impl RigidSystem {
         let Region { touches, motions, .. } = region;
         motions.clear();
         motions.extend(touches.iter().map(|&touch| self.gap_at(touch, self.now)));
+    }
+
+    /// Notes the least gap of features of a region that lie opposite each other: beyond their ends gaps are of nothing.
+    fn note_gaps(&mut self, region: &Region) {
+        for (&Touch { bodies, features }, &(gap, _)) in region.touches.iter().zip(&region.motions) {
+            if self.counts.smallest_gap.is_some_and(|least| least <= gap) {
+                continue;
+            }
+            let pose = bodies.map(|body| self.flyer(body).moving_at(self.now).pose);
+            let [a, b] = [0, 1].map(|side| self.flyer(bodies[side]).body().shape.feature(features[side]));
+            let is_opposite = |sample: GapSample| {
+                sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= 0.0
+            };
+            if GapSample::measure(a, &pose[0], b, &pose[1]).is_some_and(is_opposite) {
+                self.counts.note_gap(gap);
+            }
+        }
     }
 
     /// Gap [m] and rate [m/s] at a time of what fires an event: a contact, a rope or a stop.

@@ -149,7 +149,8 @@ impl RigidSystem {
         }
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);
-            if record.parties.primary.site.is_some() {
+            // Beyond the end of a feature its gap is of nothing.
+            if record.parties.primary.site.is_some() && record.geometry.outside <= 0.0 {
                 self.counts.note_gap(record.geometry.distance);
             }
         }
