@@ -47,8 +47,9 @@ pub struct ErrorEstimate {
     pub impacts: [usize; 2],
     /// The difference grows faster than any power of the time that errors of integration grow with.
     pub chaotic: bool,
-    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, or four target gaps, if
-    /// that is not the end: until then the answer is worth something.
+    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, or to the part
+    /// that four target gaps are of the smallest one, if that is more; `None` if it was so to the end. Until then the
+    /// answer is worth something.
     pub trusted_until: Option<f64>,
     /// Why the tighter run stopped early, if it did.
     pub tighter_stopped: Option<String>,

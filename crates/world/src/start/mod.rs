@@ -106,13 +106,11 @@ pub(crate) fn correct_start(
         let ways = ways(bodies, &given);
         let mut records = touching(bodies, pairs, rules, &ways);
         records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
-        if rounds.are_at_first() {
-            lifted.clear();
-            lifted.extend(records.iter().filter(|record| is_below_zone(record)).filter_map(touch));
-        }
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
         if rounds.are_at_first() {
+            lifted.clear();
+            lifted.extend(records.iter().filter(|record| is_below_zone(record)).filter_map(touch));
             // What connectors lack may be at the end of a long lever.
             farthest = if error > rules.rounding { f64::INFINITY } else { FARTHEST * all_lacking(&records) };
         }

@@ -14,7 +14,7 @@ use crate::time::Time;
 use halfgap_collision::{
     Body, BodyId, BodyState, Collision, ConnectorId, Detector, GapKinematics, Tolerances, Zone,
 };
-use halfgap_geometry::{FeatureId, GapSample};
+use halfgap_geometry::{Feature, FeatureId, GapSample};
 
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
 const SEAM_ANGLE: f64 = 4e-9;
@@ -421,12 +421,12 @@ impl RigidSystem {
 
     /// Notes the least gap of features of a region that lie opposite each other: beyond their ends gaps are of nothing.
     fn note_gaps(&mut self, region: &Region) {
-        for (&Touch { bodies, features }, &(gap, _)) in region.touches.iter().zip(&region.motions) {
+        for (&touch, &(gap, _)) in region.touches.iter().zip(&region.motions) {
             if self.counts.smallest_gap.is_some_and(|least| least <= gap) {
                 continue;
             }
-            let pose = bodies.map(|body| self.flyer(body).moving_at(self.now).pose);
-            let [a, b] = [0, 1].map(|side| self.flyer(bodies[side]).body().shape.feature(features[side]));
+            let [a, b] = self.features_in(touch);
+            let pose = touch.bodies.map(|body| self.flyer(body).moving_at(self.now).pose);
             let is_opposite = |sample: GapSample| {
                 sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= 0.0
             };
@@ -448,10 +448,14 @@ impl RigidSystem {
         }
     }
 
+    fn features_in(&self, Touch { bodies, features }: Touch) -> [&Feature; 2] {
+        [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]))
+    }
+
     /// Gap [m] and rate [m/s] of two features at a time.
-    pub(crate) fn gap_at(&self, Touch { bodies, features }: Touch, time: Time) -> (f64, f64) {
-        let moving = bodies.map(|body| self.flyer(body).moving_at(time));
-        let [a, b] = [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]));
+    pub(crate) fn gap_at(&self, touch: Touch, time: Time) -> (f64, f64) {
+        let moving = touch.bodies.map(|body| self.flyer(body).moving_at(time));
+        let [a, b] = self.features_in(touch);
         let Some(sample) = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose) else {
             return (f64::INFINITY, 0.0);
         };

@@ -64,8 +64,9 @@ pub(crate) struct Group {
     pub(crate) held: HeldRows,
     /// In whose coordinates it is stepped, if it hangs together by pins alone.
     pub(crate) tree: JointTree,
-    /// Whether its connectors close any, and what rows of loops keep that depend on each other for a moment.
+    /// Whether its connectors close any.
     pub(crate) loops: Loops,
+    /// What rows of loops keep that depend on each other for a moment.
     pub(crate) kept: Kept,
     /// How many rows depend on others all along, where such rows share what they hold.
     pub(crate) dependent: usize,
@@ -143,6 +144,7 @@ impl Group {
     pub(crate) fn clear(&mut self) {
         let mut old = std::mem::take(self);
         old.tree.clear();
+        old.loops.clear();
         old.kept.clear();
         *self = Self {
             bodies: emptied(old.bodies),
@@ -227,12 +229,12 @@ mod tests {
         let system = resting_discs(&[0.0]);
         let mut used = system.group_of(BodyId(1)).expect("it rests").clone();
         assert!(used.free_acceleration > 0.0 && used.span > 0.0);
-        let (held, loops) = (used.held.clone(), used.loops.clone());
+        let held = used.held.clone();
         used.clear();
         let mut fresh = Group::default();
         // Whose rows are sorted how is found anew with each group.
         (fresh.held, fresh.tree, fresh.kept) = (held, used.tree.clone(), used.kept.clone());
-        fresh.loops = loops;
+        fresh.loops = used.loops.clone();
         assert_eq!(format!("{used:?}"), format!("{fresh:?}"));
     }
 }

@@ -14,12 +14,12 @@ pub(crate) struct Loops {
 }
 
 impl Loops {
-    /// There is none.
+    /// Forgets what was found.
     pub(crate) fn clear(&mut self) {
         self.is_closed = false;
     }
 
-    /// Finds whether there is one among so many bodies that are held by rows, of which `sides` are the places.
+    /// Finds whether connectors close one among so many bodies, from their rows and the places of the two bodies of each.
     pub(crate) fn find(&mut self, bodies: usize, rows: &[HeldRow], sides: &[[Option<u32>; 2]]) {
         self.is_closed = false;
         let is_first = |row: &HeldRow| row.bilateral && matches!(row.source, RowSource::Connector(_, 0));

@@ -147,8 +147,7 @@ impl Dynamics<'_> {
                 continue;
             }
             // Without a tree a step that begins near such a point is the better the longer it is: it errs by rounding.
-            let has_tree = self.group.tree.is_used() || self.group.tree.is_left();
-            let most = if has_tree { step } else { natural };
+            let most = if self.group.tree.exists() { step } else { natural };
             if placements < MOST_PLACEMENTS
                 && let Some(better) = self.group.kept.better_length(step, most, method)
             {

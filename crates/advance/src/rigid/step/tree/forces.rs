@@ -47,8 +47,8 @@ impl Dynamics<'_> {
         for &row in &tree.hung {
             let moment = self.physics.mechanism.measure_next(&rows[row], &self.stage.movings, &mut twin);
             // Of two bodies that one hangs on the other which comes later in the tree.
-            let link_of = |side: &usize| sides[row][*side].and_then(|place| tree.link_of[place as usize]);
-            let side = if link_of(&1) > link_of(&0) { 1 } else { 0 };
+            let link_of = |side: usize| sides[row][side].and_then(|place| tree.link_of[place as usize]);
+            let side = usize::from(link_of(1) > link_of(0));
             if let Some(place) = sides[row][side] {
                 forces[row] = given[place as usize].dot(direction(&moment.kinematics.jacobian, side));
             }

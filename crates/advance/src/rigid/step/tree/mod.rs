@@ -120,8 +120,13 @@ impl JointTree {
 
     /// Steps the group as it is, or as a tree again, if there is one; true if that is otherwise than before.
     pub(crate) fn leave(&mut self, is_left: bool) -> bool {
-        let is_left = is_left && !self.links.is_empty();
+        let is_left = is_left && self.exists();
         std::mem::replace(&mut self.is_left, is_left) != is_left
+    }
+
+    /// True if there is a tree, whether the group is stepped as one or not.
+    pub(crate) fn exists(&self) -> bool {
+        !self.links.is_empty()
     }
 
     /// True if there is a tree, but the group is stepped as it is for now.
@@ -132,7 +137,7 @@ impl JointTree {
     /// True if the group is stepped as a tree.
     #[inline]
     pub(crate) fn is_used(&self) -> bool {
-        !self.links.is_empty() && !self.is_left
+        self.exists() && !self.is_left
     }
 
     /// True if bodies that are where its coordinates say are where all rows hold them.
