@@ -112,14 +112,14 @@ impl RigidSystem {
     /// What comes now is no echo of what was: no storm, and no bounce that has become low.
     fn forget_past(&mut self, work: &EventWork) {
         for &body in &work.region.bodies {
-            self.recent[body.index()] = Recent::default();
-            let mut links = std::mem::take(&mut self.links);
+            self.limits.recent[body.index()] = Recent::default();
+            let mut links = std::mem::take(&mut self.search.links);
             links.clear();
             links.extend_from_slice(self.pairs.of_body(body));
             for link in &links {
                 self.pairs.seen_mut(link.pair).clear();
             }
-            self.links = links;
+            self.search.links = links;
         }
         self.forget_paces(&work.region.bodies);
     }

@@ -12,14 +12,16 @@
 //! | `limits` | what counts for nothing or would go on for ever: bounces, hops, storms, pace |
 //!
 //! `system` ties all to the event loop. `parts` is what a system is made of, `scales` what a tolerance means
-//! in a scene, `intervention` what somebody outside does to bodies, `ledger` the energy's books, `report`
-//! what the outside may ask for.
+//! in a scene, `intervention` what somebody outside does to bodies, `laws` the force laws, `ledger` the energy's books,
+//! `report` what the outside may ask for.
 
+mod by_body;
 mod ending;
 mod error;
 mod event;
 mod held;
 mod intervention;
+mod laws;
 mod ledger;
 mod limits;
 mod motion;

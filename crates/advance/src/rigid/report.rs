@@ -1,5 +1,7 @@
 //! What the outside may ask for: forces of rows, contacts that begin and end, the energy's books at any time.
 
+use super::error::AdvanceError;
+use super::event::impacts::ImpactReport;
 use super::event::region::Region;
 use super::held::settling::Settling;
 use super::step::dynamics::Dynamics;
@@ -35,6 +37,19 @@ impl RowForce {
     fn is_same(&self, other: &RowForce) -> bool {
         self.bodies == other.bodies && self.connector == other.connector && self.features == other.features
     }
+}
+
+/// What is told of the last event.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Told {
+    pub(crate) last_impact: ImpactReport,
+    /// There has been an impact in the event.
+    pub(crate) has_hit: bool,
+    pub(crate) changes: ContactChanges,
+    /// Why the event could not be handled.
+    pub(crate) failure: Option<AdvanceError>,
+    /// Buffer: which of what begins is no change.
+    goes_on: Vec<bool>,
 }
 
 /// Contacts that begin and end in one event.
@@ -86,7 +101,7 @@ impl RigidSystem {
     /// What began and ended in the last event.
     #[must_use]
     pub fn contact_changes(&self) -> &ContactChanges {
-        &self.changes
+        &self.told.changes
     }
 
     /// The forces of all held rows at a time of the present segments.
@@ -118,7 +133,7 @@ impl RigidSystem {
     pub(crate) fn note_ends(&mut self, group: &Group) {
         for (row, &force) in group.rows.iter().zip(&group.end_forces).filter(|(row, _)| !row.bilateral) {
             let told = self.row_force(row, &self.stage.movings, force);
-            self.changes.end.push(told);
+            self.told.changes.end.push(told);
         }
     }
 
@@ -129,9 +144,9 @@ impl RigidSystem {
                 bouncing: self.bouncing(region, settling),
                 ..told_of(&region.records[*index], row)
             };
-            self.changes.begin.push(told);
+            self.told.changes.begin.push(told);
         }
-        self.changes.drop_continued(&mut self.goes_on);
+        self.told.changes.drop_continued(&mut self.told.goes_on);
     }
 
     /// How long [s] a single contact that was just captured would have gone on bouncing.
@@ -142,7 +157,7 @@ impl RigidSystem {
         else {
             return None;
         };
-        let impact = self.last_impact.rows.first().filter(|_| self.last_impact.time == self.now)?;
+        let impact = self.told.last_impact.rows.first().filter(|_| self.told.last_impact.time == self.now)?;
         let elasticity = record.response.elasticity;
         let closing = (-impact.rate_before).max(0.0);
         (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))

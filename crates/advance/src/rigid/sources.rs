@@ -64,7 +64,7 @@ impl Sources {
 impl RigidSystem {
     fn sources(&self) -> Sources {
         let count = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
-        Sources { bodies: count(self.flyers.len()), connectors: count(self.connectors.len()) }
+        Sources { bodies: count(self.flyers.len()), connectors: count(self.connectors.all.len()) }
     }
 
     /// Under which number the queue knows what an event comes from.

@@ -5,25 +5,21 @@
 
 use super::error::AdvanceError;
 use super::event::cause::EventWork;
-use super::event::connectors::ConnectorState;
+use super::event::connectors::Connectors;
 use super::event::groups::Groups;
 use super::event::impacts::ImpactReport;
 use super::event::ticks::Ticks;
+use super::laws::Laws;
 use super::ledger::Ledger;
-use super::limits::pace::Pace;
-use super::limits::storms::Recent;
+use super::limits::memory::Memory;
 use super::motion::flyer::Flyer;
-use super::motion::lane::Lane;
 use super::motion::law::{ForceLaw, Snapshot};
 use super::parts::RigidParts;
-use super::report::ContactChanges;
-use super::search::boxes::Room;
-use super::search::by_body::ByBody;
-use super::search::marks::Marks;
-use super::search::pairs::{Link, PairId, Pairs, Prediction};
+use super::report::Told;
+use super::search::neighbourhood::Neighbourhood;
+use super::search::pairs::{PairId, Pairs, Prediction};
 use super::sources::Source;
 use super::step::brief::Steppers;
-use super::step::deferred::loners;
 use super::step::dynamics::{ExtraAcceleration, Stage};
 use super::step::rows::Mechanism;
 use super::step::segment::StepControl;
@@ -32,11 +28,8 @@ use crate::queue::{EventQueue, SourceId};
 use crate::system::EventDriven;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{
-    BodyId, BroadPhase, Connector, ConnectorId, Moving, RailHint, SearchSettings, Tolerances,
-};
+use halfgap_collision::{BodyId, ConnectorId, Moving, RailHint, SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
-use halfgap_geometry::FeatureId;
 use std::sync::Arc;
 
 /// How contacts are judged, impacts resolved, and motions integrated.
@@ -123,68 +116,33 @@ pub struct Handled {
 #[derive(Clone, Debug)]
 pub struct RigidSystem {
     pub(crate) settings: RigidSettings,
-    pub(crate) counts: Counts,
-    pub(crate) pairs: Pairs,
     pub(crate) flyers: Vec<Flyer>,
-    pub(crate) connectors: Vec<Connector>,
-    pub(crate) connectors_of: ByBody<ConnectorId>,
-    pub(crate) connector_states: Vec<ConnectorState>,
-    pub(crate) laws: Vec<Arc<dyn ForceLaw>>,
-    laws_of: ByBody<usize>,
-    /// Whether each law has a potential.
-    pub(crate) has_potential: Vec<bool>,
-    pub(crate) rooms: Vec<Room>,
-    /// What predictions read of each body.
-    pub(crate) lanes: Vec<Lane>,
-    pub(crate) broad: BroadPhase,
-    /// The first contact that is known of each body, or of the group that it leads.
-    pub(crate) first_contacts: Vec<Time>,
-    /// Pairs that never collide, the lesser id first, sorted.
-    pub(crate) excluded: Vec<(BodyId, BodyId)>,
-    /// Bodies that no other can collide with.
-    pub(crate) loners: Vec<bool>,
-    pub(crate) queue: EventQueue,
-    pub(crate) now: Time,
-    pub(crate) groups: Groups,
-    pub(crate) recent: Vec<Recent>,
-    /// When the velocity of each body was last changed at once.
-    pub(crate) struck: Vec<Option<Time>>,
+    pub(crate) connectors: Connectors,
+    pub(crate) laws: Laws,
     /// Nothing accelerates bodies but contacts and connectors.
     pub(crate) is_forceless: bool,
-    pub(crate) paces: Vec<Pace>,
-    /// For how long [s] the system will be advanced in all; 0 if nothing is known.
-    pub(crate) duration: f64,
-    pub(crate) ledger: Ledger,
-    pub(crate) ticks: Ticks,
     /// When the system started.
     pub(crate) start: Time,
-    /// Taken out while an event is handled.
-    pub(crate) work: Option<Box<EventWork>>,
+    /// Time of the last event handled.
+    pub(crate) now: Time,
+    pub(crate) queue: EventQueue,
+    pub(crate) pairs: Pairs,
+    pub(crate) search: Neighbourhood,
+    pub(crate) groups: Groups,
     /// Bodies of the group that was extended last.
     pub(crate) extended: Vec<BodyId>,
     pub(crate) stage: Stage,
     pub(crate) steppers: Steppers,
     pub(crate) error_scales: Vec<f64>,
-    pub(crate) last_impact: ImpactReport,
-    pub(crate) changes: ContactChanges,
-    /// Which of what begins is no change.
-    pub(crate) goes_on: Vec<bool>,
+    pub(crate) limits: Memory,
+    pub(crate) ticks: Ticks,
+    /// Taken out while an event is handled.
+    pub(crate) work: Option<Box<EventWork>>,
+    /// Buffer: pairs of which an event changes what is known.
     pub(crate) touched: Vec<PairId>,
-    /// Contacts that lie deep, and at which gap [m] they were to fire, while what the search is told is made anew.
-    pub(crate) deep: Vec<(PairId, [FeatureId; 2], f64)>,
-    /// When contacts have fired again and again without time going by.
-    pub(crate) last_insistent: Option<Time>,
-    /// When a group was ended as it was made, because a contact pulled.
-    pub(crate) last_pull: Option<Time>,
-    /// Why an event could not be handled.
-    failure: Option<AdvanceError>,
-    /// What is to be told of steps that will never come to an end: nothing else is wrong.
-    pub(crate) crawls: Option<AdvanceError>,
-    /// There has been an impact in the present event.
-    pub(crate) has_hit: bool,
-    pub(crate) links: Vec<Link>,
-    pub(crate) neighbours: Vec<BodyId>,
-    pub(crate) marks: Marks,
+    pub(crate) counts: Counts,
+    pub(crate) ledger: Ledger,
+    pub(crate) told: Told,
 }
 
 impl RigidSystem {
@@ -198,62 +156,34 @@ impl RigidSystem {
         let RigidParts { bodies, connectors, laws, excluded } = parts;
         let flyers: Vec<Flyer> =
             bodies.into_iter().map(|(body, law, state)| Flyer::new(body, law, state, start)).collect();
-        let skin = settings.tolerances.distance_tol();
-        let mut excluded: Vec<_> = excluded.iter().map(|&(a, b)| (a.min(b), a.max(b))).collect();
-        excluded.sort_unstable();
-        excluded.dedup();
         let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = flyers.len();
         let movable = flyers.iter().filter(|flyer| !flyer.body().is_fixed()).count();
-        let connector_ids = (0..).map(ConnectorId);
         let mut system = Self {
             settings,
-            counts: Counts { segments: movable as u64, ..Counts::default() },
-            pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
-            rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
-            lanes: flyers.iter().map(|flyer| Lane::new(flyer, settings.tolerances.target_gap)).collect(),
-            broad: BroadPhase::new(),
-            first_contacts: vec![Time::NEVER; count],
-            loners: loners(count, settings.collisions, &excluded),
-            excluded,
-            queue: EventQueue::new(),
-            now: start,
-            groups: Groups::new(count),
-            recent: vec![Recent::default(); count],
-            struck: vec![None; count],
             is_forceless: laws.is_empty()
                 && flyers.iter().all(|flyer| flyer.law().acceleration == DVec2::ZERO),
-            paces: vec![Pace::default(); count],
-            duration: 0.0,
-            ticks: Ticks::default(),
-            start,
             ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
-            has_potential: laws.iter().map(|law| law.potential(&snapshot).is_some()).collect(),
-            connectors_of: ByBody::new(count, connector_ids.zip(connectors.iter().map(Connector::bodies))),
-            laws_of: ByBody::new(count, laws.iter().map(|law| law.bodies()).enumerate()),
-            connector_states: vec![ConnectorState::default(); connectors.len()],
-            connectors,
-            laws,
+            laws: Laws::new(laws, count, &snapshot),
+            connectors: Connectors::new(connectors, count),
+            start,
+            now: start,
+            queue: EventQueue::new(),
+            pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
+            search: Neighbourhood::new(&flyers, excluded, &settings),
             flyers,
-            work: None,
+            groups: Groups::new(count),
             extended: Vec::new(),
             stage: Stage::new(movings),
             steppers: Steppers::new(settings.method),
             error_scales: Vec::new(),
-            last_impact: ImpactReport::default(),
-            changes: ContactChanges::default(),
-            goes_on: Vec::new(),
+            limits: Memory::new(count),
+            ticks: Ticks::default(),
+            work: None,
             touched: Vec::new(),
-            deep: Vec::new(),
-            last_insistent: None,
-            last_pull: None,
-            failure: None,
-            crawls: None,
-            has_hit: false,
-            links: Vec::new(),
-            neighbours: Vec::new(),
-            marks: Marks::default(),
+            counts: Counts { segments: movable as u64, ..Counts::default() },
+            told: Told::default(),
         };
         if settings.collisions {
             system.set_up_boxes();
@@ -294,20 +224,20 @@ impl RigidSystem {
     /// The last impact.
     #[must_use]
     pub fn last_impact(&self) -> &ImpactReport {
-        &self.last_impact
+        &self.told.last_impact
     }
 
     /// The impact of the event that could not be handled, if there was one before that was found out: it is
     /// in the ledger.
     #[must_use]
     pub fn untold_impact(&self) -> Option<&ImpactReport> {
-        (self.failure.is_some() && self.has_hit).then_some(&self.last_impact)
+        (self.told.failure.is_some() && self.told.has_hit).then_some(&self.told.last_impact)
     }
 
     /// Why the last event could not be handled: there is no going on from it.
     #[must_use]
     pub fn failure(&self) -> Option<&AdvanceError> {
-        self.failure.as_ref()
+        self.told.failure.as_ref()
     }
 
     /// Time of the last event handled.
@@ -322,13 +252,13 @@ impl RigidSystem {
     /// If there is no such law.
     #[must_use]
     pub fn has_potential(&self, law: usize) -> bool {
-        self.has_potential[law]
+        self.laws.has_potential[law]
     }
 
     /// The force laws.
     #[must_use]
     pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
-        &self.laws
+        &self.laws.all
     }
 
     /// Where on its path the point of a rail or of a rail's stop is looked for at a time, not before that of the last event;
@@ -341,7 +271,7 @@ impl RigidSystem {
     /// Pairs of bodies that pass through each other, the lesser id first, sorted.
     #[must_use]
     pub fn excluded(&self) -> &[(BodyId, BodyId)] {
-        &self.excluded
+        &self.search.excluded
     }
 
     /// A body whose segment is cut short, which counts.
@@ -359,23 +289,10 @@ impl RigidSystem {
         !body.is_world() && !self.pairs.is_fixed(body)
     }
 
-    /// Laws that act on a body.
-    pub(crate) fn laws_of(&self, body: BodyId) -> &[usize] {
-        self.laws_of.of(body)
-    }
-
-    /// Lists the laws that act on some bodies, each once, ascending.
-    pub(crate) fn list_laws(&self, bodies: &[BodyId], laws: &mut Vec<usize>) {
-        laws.clear();
-        laws.extend(bodies.iter().flat_map(|&body| self.laws_of(body)));
-        laws.sort_unstable();
-        laws.dedup();
-    }
-
     pub(crate) fn mechanism(&self) -> Mechanism<'_> {
         Mechanism {
             flyers: &self.flyers,
-            connectors: &self.connectors,
+            connectors: &self.connectors.all,
             tolerances: &self.settings.tolerances,
         }
     }
@@ -386,22 +303,22 @@ impl RigidSystem {
         time: Time,
         act: impl FnOnce(&mut Self) -> Result<bool, AdvanceError>,
     ) -> Result<Option<Handled>, AdvanceError> {
-        if let Some(failure) = &self.failure {
+        if let Some(failure) = &self.told.failure {
             return Err(failure.clone());
         }
         self.counts.events += 1;
-        self.has_hit = false;
+        self.told.has_hit = false;
         self.now = time;
-        self.changes.clear(time);
+        self.told.changes.clear(time);
         let outcome = act(self);
-        self.changes.time = self.now;
-        if outcome.as_ref().is_ok_and(|impact| !impact && self.changes.is_empty()) {
-            let Some(crawls) = self.crawls.take() else { return Ok(None) };
+        self.told.changes.time = self.now;
+        if outcome.as_ref().is_ok_and(|impact| !impact && self.told.changes.is_empty()) {
+            let Some(crawls) = self.limits.crawls.take() else { return Ok(None) };
             self.complete_dense();
             return Err(crawls);
         }
         self.complete_dense();
-        self.failure = outcome.as_ref().err().cloned();
+        self.told.failure = outcome.as_ref().err().cloned();
         outcome.map(|impact| Some(Handled { time: self.now, impact }))
     }
 
@@ -426,13 +343,13 @@ impl EventDriven for RigidSystem {
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
-        if self.failure.is_some() { Some(self.now) } else { self.queue.first().map(|entry| entry.time) }
+        if self.told.failure.is_some() { Some(self.now) } else { self.queue.first().map(|entry| entry.time) }
     }
 
     /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no
     /// going on from it, and it is told again whenever that is tried.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
-        if let Some(failure) = &self.failure {
+        if let Some(failure) = &self.told.failure {
             return Err(failure.clone());
         }
         let Some(event) = self.queue.first() else { return Ok(None) };

@@ -89,7 +89,7 @@ mod tests {
     fn a_contact_that_pulls_a_little_from_the_start_lets_go() {
         for late in [1e-8, 1e-6, 1e-3] {
             let mut system = resting_discs(&[0.0]);
-            system.laws = vec![Arc::new(Lift)];
+            system.laws.all = vec![Arc::new(Lift)];
             let group = stepped(system, |group| {
                 group.laws = vec![0];
                 group.start = Time::from_seconds(1.0 + late);

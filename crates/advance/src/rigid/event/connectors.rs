@@ -1,6 +1,7 @@
 //! Connectors among the events: their rows in a region, ropes that go taut.
 
 use super::region::Region;
+use crate::rigid::by_body::ByBody;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::limits::repeats::is_same_time;
 use crate::rigid::motion::path::Path;
@@ -17,6 +18,32 @@ use halfgap_collision::{
 
 /// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
 const LOOKS: u32 = 8;
+
+/// All connectors, the bodies that they are tied to, and what is known of each.
+#[derive(Clone, Debug)]
+pub(crate) struct Connectors {
+    pub(crate) all: Vec<Connector>,
+    /// Those of each body.
+    of: ByBody<ConnectorId>,
+    pub(crate) states: Vec<ConnectorState>,
+}
+
+impl Connectors {
+    /// Connectors between so many bodies.
+    pub(crate) fn new(all: Vec<Connector>, body_count: usize) -> Self {
+        let ids = (0..).map(ConnectorId);
+        Self {
+            of: ByBody::new(body_count, ids.zip(all.iter().map(Connector::bodies))),
+            states: vec![ConnectorState::default(); all.len()],
+            all,
+        }
+    }
+
+    /// Connectors that are tied to a body.
+    pub(crate) fn of(&self, body: BodyId) -> &[ConnectorId] {
+        self.of.of(body)
+    }
+}
 
 /// What is known of a connector beside its parts.
 #[derive(Clone, Debug, Default)]
@@ -63,18 +90,18 @@ impl ConnectorState {
 impl RigidSystem {
     /// True if rows of a connector that only keep gaps from closing were held until now.
     pub(super) fn is_held_unilaterally(&self, id: ConnectorId) -> bool {
-        let state = &self.connector_states[id.index()];
+        let state = &self.connectors.states[id.index()];
         state.held || state.corner.is_some()
     }
 
     pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
-        &self.connectors[id.index()]
+        &self.connectors.all[id.index()]
     }
 
     /// Adds the records of the connectors of a body of the region.
     pub(crate) fn collect_connectors(&self, region: &mut Region, place: usize, time: Time) {
         let body = region.bodies[place];
-        for &id in self.connectors_of.of(body) {
+        for &id in self.connectors.of(body) {
             let connector = self.connector(id);
             let [a, b] = connector.bodies();
             let other = if a == body { b } else { a };
@@ -104,7 +131,7 @@ impl RigidSystem {
 
     /// How many rows a connector has now: two where the point of a rail is in a corner.
     fn row_count(&self, id: ConnectorId) -> usize {
-        self.connector_states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
+        self.connectors.states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
     }
 
     /// The record of a row of a connector, whose bodies move as given at a time. The sides of a corner only
@@ -116,7 +143,7 @@ impl RigidSystem {
         moving: &[Moving; 2],
         time: Time,
     ) -> Collision {
-        let (connector, state) = (self.connector(id), &self.connector_states[id.index()]);
+        let (connector, state) = (self.connector(id), &self.connectors.states[id.index()]);
         let hint = self.hint_at(id, row, time);
         let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
         let row = u32::try_from(row).unwrap_or(u32::MAX);
@@ -156,11 +183,12 @@ impl RigidSystem {
     /// Notes which ropes and stops of a region are held from now on.
     pub(crate) fn note_held_connectors(&mut self, region: &Region, settling: &Settling) {
         for &body in &region.bodies {
-            for &id in self.connectors_of.of(body) {
-                if !self.connectors[id.index()].is_bilateral() {
+            let Connectors { all, of, states } = &mut self.connectors;
+            for &id in of.of(body) {
+                if !all[id.index()].is_bilateral() {
                     let mut held = settling.held.iter();
                     let is_held = held.any(|(_, row)| row.source == RowSource::Connector(id, 0));
-                    self.connector_states[id.index()].held = is_held;
+                    states[id.index()].held = is_held;
                 }
             }
         }
@@ -170,13 +198,13 @@ impl RigidSystem {
     pub(crate) fn predict_ropes(&mut self, region: &Region) {
         let sink = self.sink();
         for &body in &region.bodies {
-            for index in 0..self.connectors_of.of(body).len() {
-                let id = self.connectors_of.of(body)[index];
+            for index in 0..self.connectors.of(body).len() {
+                let id = self.connectors.of(body)[index];
                 let Some(rope) = rope_of(self.connector(id)) else { continue };
                 let [a, b] = self.connector(id).bodies().map(|body| self.moving_at(body, self.now));
                 let sample = self.connector(id).measure(0, &a, &b);
                 let slack = self.slack_of(&sample);
-                let state = &mut self.connector_states[id.index()];
+                let state = &mut self.connectors.states[id.index()];
                 state.slack = slack + f64::from(state.repeats_at(self.now)) * sink;
                 state.clear = self.now;
                 self.predict_rope(id, &rope);
@@ -187,9 +215,9 @@ impl RigidSystem {
     /// Searches on for the ropes of some bodies, whose motions are known for longer now.
     pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
         for &body in bodies {
-            for index in 0..self.connectors_of.of(body).len() {
-                let id = self.connectors_of.of(body)[index];
-                let is_known = self.connector_states[id.index()].taut.is_some();
+            for index in 0..self.connectors.of(body).len() {
+                let id = self.connectors.of(body)[index];
+                let is_known = self.connectors.states[id.index()].taut.is_some();
                 if let (Some(rope), false) = (rope_of(self.connector(id)), is_known) {
                     self.predict_rope(id, &rope);
                 }
@@ -199,15 +227,15 @@ impl RigidSystem {
 
     fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
         let source = self.source_id(Source::Connector(id));
-        self.connector_states[id.index()].taut = None;
-        if self.connector_states[id.index()].held || self.is_rope_watched(id) {
+        self.connectors.states[id.index()].taut = None;
+        if self.connectors.states[id.index()].held || self.is_rope_watched(id) {
             self.queue.clear(source);
             return;
         }
         let [a, b] = self.connector(id).bodies();
         let known = [a, b].map(|body| self.segment_end(body));
         let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
-        let mut from = self.connector_states[id.index()].clear.max(self.now);
+        let mut from = self.connectors.states[id.index()].clear.max(self.now);
         if until <= from {
             self.queue.clear(source);
             return;
@@ -215,7 +243,7 @@ impl RigidSystem {
         let mut found = self.search_rope(id, rope, from, until);
         if let Some(slack) = self.slackens(id, from, found) {
             // It comes back to where any rope goes taut.
-            self.connector_states[id.index()].slack = 0.0;
+            self.connectors.states[id.index()].slack = 0.0;
             from = slack;
             found = self.search_rope(id, rope, from, until);
         }
@@ -224,7 +252,7 @@ impl RigidSystem {
             RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
         };
         let searches_on = taut.is_none() && clear < until;
-        let state = &mut self.connector_states[id.index()];
+        let state = &mut self.connectors.states[id.index()];
         (state.clear, state.taut) = (clear, taut);
         if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
     }
@@ -232,7 +260,7 @@ impl RigidSystem {
     /// Searches from a time on for when a rope goes taut, as it is taken now.
     fn search_rope(&self, id: ConnectorId, rope: &Rope, from: Time, until: Time) -> RopeSearch {
         let [a, b] = self.connector(id).bodies();
-        let rope = Rope { length: rope.length + self.connector_states[id.index()].slack, ..*rope };
+        let rope = Rope { length: rope.length + self.connectors.states[id.index()].slack, ..*rope };
         let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
         let path = |body: BodyId| {
             if body.is_world() {
@@ -252,7 +280,7 @@ impl RigidSystem {
     /// When a rope that is taken longer than it is has gone slack by clearly more than that, on the way to
     /// where a search from a time on has come.
     fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
-        let slack = self.connector_states[id.index()].slack;
+        let slack = self.connectors.states[id.index()].slack;
         if slack <= 0.0 {
             return None;
         }
@@ -272,7 +300,7 @@ impl RigidSystem {
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
         // A rail's end that fires again without time going by lies beyond by more than its point sets out by: it
         // fires once that has sunk on.
-        let repeats = f64::from(self.connector_states[id.index()].repeats_at(self.now));
+        let repeats = f64::from(self.connectors.states[id.index()].repeats_at(self.now));
         let lies_beyond = connector.is_stop() && repeats > 0.0;
         let slack = if lies_beyond { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
         Stop { id, hint, slack: slack.max(self.slack_of(&sample)), is_noted: false }
@@ -289,12 +317,12 @@ impl RigidSystem {
     /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
         let now = self.now;
-        let is_taut = self.connector_states[id.index()].taut.is_some();
+        let is_taut = self.connectors.states[id.index()].taut.is_some();
         let slack = self.grazing_slack();
-        if is_taut && self.connector_states[id.index()].slack < slack && self.rope_grazes(id) {
-            self.connector_states[id.index()].slack = slack;
+        if is_taut && self.connectors.states[id.index()].slack < slack && self.rope_grazes(id) {
+            self.connectors.states[id.index()].slack = slack;
         } else if is_taut {
-            self.connector_states[id.index()].note_taut(now);
+            self.connectors.states[id.index()].note_taut(now);
             return true;
         }
         if let Some(rope) = rope_of(self.connector(id)) {

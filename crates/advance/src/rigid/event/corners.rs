@@ -34,12 +34,12 @@ impl RigidSystem {
     /// does: if that leads through the corner, it comes to it at once.
     pub(super) fn note_corners(&mut self) {
         let (now, fast) = (self.now, self.settings.tolerances.velocity_tol);
-        for index in 0..self.connectors.len() {
+        for index in 0..self.connectors.all.len() {
             let id = ConnectorId(u32::try_from(index).unwrap_or(u32::MAX));
             let ConnectorKind::Rail { path, .. } = &self.connector(id).kind else { continue };
             let within = self.settings.tolerances.accuracy;
             let corner = path.corner_at(self.point_on_rail(id, now), within);
-            self.connector_states[index].corner = corner;
+            self.connectors.states[index].corner = corner;
             let [before, after] = [0, 1].map(|side| match corner {
                 Some(_) => self.measure_connector(id, side, now).kinematics.rate.abs(),
                 None => 0.0,
@@ -54,7 +54,7 @@ impl RigidSystem {
     pub(super) fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
         // What is met again at once rests there: in the corner, which holds it as well.
         if let Some(stop) = self.stop_in_corner(id)
-            && self.connector_states[stop.index()].repeats_at(self.now) < MOST_AGAIN
+            && self.connectors.states[stop.index()].repeats_at(self.now) < MOST_AGAIN
         {
             return self.meet_stop(work, stop);
         }
@@ -67,17 +67,17 @@ impl RigidSystem {
     pub(super) fn meet_stop(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
         work.region.cause = Cause::Taut(id);
         if self.connector(id).is_stop() {
-            self.connector_states[id.index()].note_taut(self.now);
+            self.connectors.states[id.index()].note_taut(self.now);
         }
         self.handle_impact(work)
     }
 
     /// The stop that keeps the point of a rail on the piece along which it comes, where that ends in a corner.
     fn stop_in_corner(&self, rail: ConnectorId) -> Option<ConnectorId> {
-        let hint = self.connector_states[rail.index()].hint?;
+        let hint = self.connectors.states[rail.index()].hint?;
         let moving = self.connector(rail).bodies().map(|body| self.moving_at(body, self.now));
         let (accuracy, rest) = (self.settings.tolerances.accuracy, self.rest_speed());
-        let mut beside = self.connectors_of.of(self.connector(rail).bodies()[0]).iter().copied();
+        let mut beside = self.connectors.of(self.connector(rail).bodies()[0]).iter().copied();
         beside.find(|&id| {
             let stop = self.connector(id);
             if !stop.is_stop_of(self.connector(rail)) || !self.is_at_end(id, &hint) {
@@ -130,7 +130,7 @@ impl RigidSystem {
     /// for rounding of places makes such speeds again and again.
     pub(crate) fn stays_in_corner(&self, record: &Collision) -> bool {
         let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
-        is_slow && record.connector().is_some_and(|id| self.connector_states[id.index()].corner.is_some())
+        is_slow && record.connector().is_some_and(|id| self.connectors.states[id.index()].corner.is_some())
     }
 
     /// True for a point at rest in a corner on whose body nothing acts: it stays there until something does.
@@ -144,7 +144,7 @@ impl RigidSystem {
             .iter()
             .all(|other| !other.involves_body(body) || other.connector() == Some(corner.id));
         let flyer = self.flyer(body);
-        is_still && only_rows && self.laws_of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
+        is_still && only_rows && self.laws.of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
     }
 
     /// Stops what of the velocity of a point that leaves a corner is across its side: too slow for an impact.
@@ -183,7 +183,7 @@ impl RigidSystem {
 
     /// The point of a rail goes on along a side of the corner in which it is, if it is in one.
     pub(super) fn go_along(&mut self, id: ConnectorId, side: usize) {
-        let state = &mut self.connector_states[id.index()];
+        let state = &mut self.connectors.states[id.index()];
         let Some(sides) = state.corner.take() else { return };
         self.set_hint(id, sides[side].facing_left());
     }

@@ -121,7 +121,7 @@ impl RigidSystem {
                 }
                 let source = group.rows[row].source;
                 if group.made == self.now {
-                    self.last_pull = Some(self.now);
+                    self.limits.last_pull = Some(self.now);
                 }
                 if let RowSource::Connector(id, side @ (0 | 1)) = source {
                     self.go_along(id, 1 - side);
@@ -203,7 +203,7 @@ impl RigidSystem {
         if record.parties.detector != Detector::CornerCorner {
             return false;
         }
-        let halo = |body: BodyId| self.lanes[body.index()].halo;
+        let halo = |body: BodyId| self.search.lanes[body.index()].halo;
         let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
         let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
         let nearest = record.geometry.distance * across.abs() / libm::hypot(along, across);
@@ -274,7 +274,7 @@ impl RigidSystem {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
         work.region.in_storm = self.note_events(&work.region);
         let is_storm = work.region.in_storm || work.repeats > 0;
-        let mut report = std::mem::take(&mut self.last_impact);
+        let mut report = std::mem::take(&mut self.told.last_impact);
         let now = self.now;
         let is_lawful = !is_storm && work.region.cause != Cause::Tick;
         let manner = if is_lawful { Manner::Lawful } else { Manner::Inelastic };
@@ -282,17 +282,17 @@ impl RigidSystem {
         if outcome.is_ok() {
             self.book_impact(&report, if is_storm { Booking::Capture } else { Booking::BySpeed });
         }
-        self.last_impact = report;
+        self.told.last_impact = report;
         outcome?;
         // What comes to rest without closing is a contact that begins, not an impact.
         let (rest, at_joint) = (self.rest_speed(), work.region.cause == Cause::SmoothJoint);
-        let mut rows = self.last_impact.rows.iter();
+        let mut rows = self.told.last_impact.rows.iter();
         let happened = rows.any(|row| match row.collision.parties.bilateral {
             true => !at_joint && row.rate_before.abs() > rest,
             false => row.rate_before < -rest,
         });
         if happened {
-            self.has_hit = true;
+            self.told.has_hit = true;
             self.counts.impacts += 1;
             self.forget_paces(&work.region.bodies);
         }
@@ -319,7 +319,7 @@ impl RigidSystem {
         self.note_seen(&work.region, work.fired_open);
         self.regroup(&work.region, &work.settling)?;
         self.set_rules(work);
-        if self.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
+        if self.limits.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
             self.lower_insistent(&work.region);
         }
         for &body in &work.region.bodies {
@@ -335,7 +335,7 @@ impl RigidSystem {
     fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let EventWork { region, settling, .. } = &mut *work;
         settling.set_likely(region.records.iter().map(|record| self.is_likely(record)));
-        settling.expect_forces(region, &self.changes.end);
+        settling.expect_forces(region, &self.told.changes.end);
         let may_hop = work.region.cause != Cause::Start;
         self.settle_region(work, may_hop)?;
         for round in 1..=HOP_ROUNDS {

@@ -108,7 +108,7 @@ impl RigidSystem {
         act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
     ) -> T {
         let Self { flyers, connectors, laws, settings, stage, steppers, error_scales: scales, .. } = self;
-        let physics = Physics::of(flyers, connectors, laws, settings);
+        let physics = Physics::of(flyers, &connectors.all, &laws.all, settings);
         let (start, stepper) = (group.start, steppers.of(group.stepping()));
         act(&mut Dynamics { physics, group, stage, start }, &mut Tools { stepper, scales, settings })
     }
@@ -195,13 +195,13 @@ impl RigidSystem {
             self.couple_bodies(region, row.bodies.iter().copied());
         }
         for place in 0..count {
-            for index in 0..self.laws_of(region.bodies[place]).len() {
-                let law = self.laws[self.laws_of(region.bodies[place])[index]].clone();
+            for index in 0..self.laws.of(region.bodies[place]).len() {
+                let law = self.laws.all[self.laws.of(region.bodies[place])[index]].clone();
                 self.couple_bodies(region, law.bodies().iter().copied());
             }
         }
         for place in 0..count {
-            let mut connectors = self.connectors_of.of(region.bodies[place]).iter();
+            let mut connectors = self.connectors.of(region.bodies[place]).iter();
             self.groups.integrated[place] |= connectors.any(|&id| self.connector(id).is_stop());
         }
         self.couple_touching(region, settling);
@@ -265,7 +265,7 @@ impl RigidSystem {
         group.rows.extend(rows.filter(|row| !row.bilateral));
         self.list_idle(&mut group, of, members.touches(root));
         self.list_stops(&mut group);
-        self.list_laws(&group.bodies, &mut group.laws);
+        self.laws.list(&group.bodies, &mut group.laws);
         self.list_works(&mut group);
         self.foresee(&mut group);
         group.is_unwatched = self.is_unwatched(&group);
@@ -346,7 +346,7 @@ impl RigidSystem {
 
     fn list_stops(&self, group: &mut Group) {
         for index in 0..group.bodies.len() {
-            for &id in self.connectors_of.of(group.bodies[index]) {
+            for &id in self.connectors.of(group.bodies[index]) {
                 let source = RowSource::Connector(id, 0);
                 let is_held = group.rows.iter().any(|row| row.source == source);
                 let is_known = || group.stops.iter().any(|stop| stop.id == id);
@@ -383,7 +383,7 @@ impl RigidSystem {
     /// Lists the works of a group: those of laws in their order.
     fn list_works(&self, group: &mut Group) {
         group.works.clear();
-        let works = group.laws.iter().copied().filter(|&law| !self.has_potential[law]).map(Work::Law);
+        let works = group.laws.iter().copied().filter(|&law| !self.laws.has_potential[law]).map(Work::Law);
         group.works.extend(works);
         if group.bodies.iter().any(|&body| self.flyer(body).law().is_damped()) {
             group.works.push(Work::Damping);
@@ -524,7 +524,7 @@ impl RigidSystem {
             Ok(place) => body_state(&group.state, group.bodies.len(), place).position,
             Err(_) => self.moving_at(body, group.start).pose.position,
         };
-        let bodies = group.laws.iter().map(|&law| self.laws[law].bodies());
+        let bodies = group.laws.iter().map(|&law| self.laws.all[law].bodies());
         let mut pairs = bodies
             .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
             .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));

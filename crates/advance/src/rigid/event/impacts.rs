@@ -144,7 +144,7 @@ impl RigidSystem {
             self.book_damping(body, time);
             self.interrupt(body).cut(time, DVec2::new(x, y), spin);
             if [x, y, spin] != [0.0; 3] {
-                self.struck[body.index()] = Some(time);
+                self.limits.struck[body.index()] = Some(time);
             }
         }
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {

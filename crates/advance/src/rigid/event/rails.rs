@@ -22,7 +22,7 @@ impl RigidSystem {
     /// Where a row of a connector looks for its rail at a time: with how far the point is before a stop, for it may go round
     /// by more than half within the segment of its body.
     pub(crate) fn hint_at(&self, id: ConnectorId, row: usize, time: Time) -> Option<RailHint> {
-        let hint = self.connector_states.get(id.index())?.hint_of(row).copied()?;
+        let hint = self.connectors.states.get(id.index())?.hint_of(row).copied()?;
         Some(hint.with_left(self.followed(id, time).or(hint.left())))
     }
 
@@ -52,7 +52,7 @@ impl RigidSystem {
             return;
         }
         let left = self.within_lap(id, self.measure_connector(id, 0, time).gap);
-        let state = &mut self.connector_states[id.index()];
+        let state = &mut self.connectors.states[id.index()];
         state.hint = state.hint.map(|hint| hint.with_left(Some(left)));
     }
 
@@ -80,10 +80,10 @@ impl RigidSystem {
     /// Notes where on their rails the points of a region's connectors are.
     pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
         for &body in &region.bodies {
-            for index in 0..self.connectors_of.of(body).len() {
-                let id = self.connectors_of.of(body)[index];
+            for index in 0..self.connectors.of(body).len() {
+                let id = self.connectors.of(body)[index];
                 let Some(path) = self.connector(id).path() else { continue };
-                let state = &self.connector_states[id.index()];
+                let state = &self.connectors.states[id.index()];
                 if state.corner.is_some() {
                     continue;
                 }
@@ -93,12 +93,12 @@ impl RigidSystem {
                 if !self.connector(id).is_stop() {
                     self.set_hint(id, hint.staying());
                 } else if !self.is_led(id) {
-                    let left = self.connector_states[id.index()].hint.and_then(|hint| hint.left());
-                    self.connector_states[id.index()].hint = Some(hint.with_left(left));
+                    let left = self.connectors.states[id.index()].hint.and_then(|hint| hint.left());
+                    self.connectors.states[id.index()].hint = Some(hint.with_left(left));
                 }
             }
-            for index in 0..self.connectors_of.of(body).len() {
-                self.note_left(self.connectors_of.of(body)[index], time);
+            for index in 0..self.connectors.of(body).len() {
+                self.note_left(self.connectors.of(body)[index], time);
             }
         }
     }
@@ -106,12 +106,12 @@ impl RigidSystem {
     /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
     /// seems as near to them. They are seen along the piece, as if it went on: its end is an event.
     pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
-        self.connector_states[id.index()].hint = Some(hint);
-        for index in 0..self.connectors_of.of(self.connector(id).bodies()[0]).len() {
-            let stop = self.connectors_of.of(self.connector(id).bodies()[0])[index];
+        self.connectors.states[id.index()].hint = Some(hint);
+        for index in 0..self.connectors.of(self.connector(id).bodies()[0]).len() {
+            let stop = self.connectors.of(self.connector(id).bodies()[0])[index];
             if self.connector(stop).is_stop_of(self.connector(id)) {
-                let left = self.connector_states[stop.index()].hint.and_then(|hint| hint.left());
-                self.connector_states[stop.index()].hint = Some(hint.with_left(left));
+                let left = self.connectors.states[stop.index()].hint.and_then(|hint| hint.left());
+                self.connectors.states[stop.index()].hint = Some(hint.with_left(left));
             }
         }
     }
@@ -127,7 +127,7 @@ impl RigidSystem {
     /// True for a stop whose rail is there, too.
     fn is_led(&self, id: ConnectorId) -> bool {
         let stop = self.connector(id);
-        let beside = self.connectors_of.of(stop.bodies()[0]);
+        let beside = self.connectors.of(stop.bodies()[0]);
         beside.iter().any(|&rail| stop.is_stop_of(self.connector(rail)))
     }
 
@@ -142,7 +142,7 @@ impl RigidSystem {
     pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
         let Some(path) = self.connector(id).path() else { return false };
         let place =
-            path.nearest(self.point_on_rail(id, time), self.connector_states[id.index()].hint.as_ref());
+            path.nearest(self.point_on_rail(id, time), self.connectors.states[id.index()].hint.as_ref());
         let ends = path.knots().iter().flat_map(|knot| {
             let [before, after] = knot_rooms(path, knot, &place);
             [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
@@ -152,7 +152,7 @@ impl RigidSystem {
         let hint = path.hint_past(knot, forward).staying();
         let corner = (knot.turn != 0.0).then(|| path.corner_sides(knot));
         self.set_hint(id, hint);
-        self.connector_states[id.index()].corner = corner;
+        self.connectors.states[id.index()].corner = corner;
         corner.is_some()
     }
 
@@ -170,7 +170,7 @@ impl RigidSystem {
         };
         for stop in stops {
             stop.is_noted = false;
-            let left = self.connector_states[stop.id.index()].hint.and_then(|hint| hint.left());
+            let left = self.connectors.states[stop.id.index()].hint.and_then(|hint| hint.left());
             // Ropes that are watched like stops have no hints.
             let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_left(left));
             stop.hint = hint.map(|hint| if self.is_led(stop.id) { hint.staying() } else { hint });

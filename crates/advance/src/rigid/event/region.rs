@@ -150,7 +150,7 @@ impl RigidSystem {
             if region.place(other).is_some_and(|earlier| earlier < place) {
                 continue;
             }
-            let lanes = [&self.lanes[body.index()], &self.lanes[other.index()]];
+            let lanes = [&self.search.lanes[body.index()], &self.search.lanes[other.index()]];
             let reach = lanes[0].reach + lanes[1].reach + self.settings.tolerances.distance_tol();
             let offset = moving.pose.position - self.position_of(other, time);
             // What has fired may be farther away by rounding.
@@ -176,7 +176,7 @@ impl RigidSystem {
 
     /// Where the centre of mass of a body is [m] at a time of its present segment.
     fn position_of(&self, body: BodyId, time: Time) -> DVec2 {
-        let lane = &self.lanes[body.index()];
+        let lane = &self.search.lanes[body.index()];
         let flown = || self.flyer(body).moving_at(time).pose.position;
         if lane.kind == LaneKind::Other {
             return flown();

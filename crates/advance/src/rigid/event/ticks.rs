@@ -234,7 +234,7 @@ impl RigidSystem {
             *(if share == 1.0 { &mut full } else { &mut short }) += 1;
             self.ledger.projections += self.potential_of(&work.region) - before;
             for &body in &work.region.bodies {
-                self.lanes[body.index()].follow(&self.flyers[body.index()]);
+                self.search.lanes[body.index()].follow(&self.flyers[body.index()]);
             }
             work.seeds.clear();
             work.seeds.extend(&work.region.bodies);
@@ -309,9 +309,9 @@ impl RigidSystem {
             energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
         }
         let mut laws = std::mem::take(&mut self.ticks.laws);
-        self.list_laws(&region.bodies, &mut laws);
+        self.laws.list(&region.bodies, &mut laws);
         let now = Snapshot::new(self.now.seconds(), &self.stage.movings);
-        let of_laws = laws.iter().filter_map(|&law| self.laws[law].potential(&now)).sum::<f64>();
+        let of_laws = laws.iter().filter_map(|&law| self.laws.all[law].potential(&now)).sum::<f64>();
         self.ticks.laws = laws;
         energy + of_laws
     }

@@ -261,7 +261,7 @@ impl RigidSystem {
         for &body in &region.bodies {
             stage.movings[body.index()] = self.flyer(body).moving_at(time);
         }
-        self.list_laws(&region.bodies, &mut settling.laws);
+        self.laws.list(&region.bodies, &mut settling.laws);
         let physics = self.physics();
         let of_region = (region.bodies.as_slice(), settling.laws.as_slice());
         stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
@@ -330,7 +330,7 @@ impl RigidSystem {
         let source = self.source_of(record)?;
         let bodies = record.bodies();
         let hint = match source {
-            RowSource::Connector(id, index) => self.connector_states[id.index()].hint_of(index).copied(),
+            RowSource::Connector(id, index) => self.connectors.states[id.index()].hint_of(index).copied(),
             RowSource::Contact(_) => None,
         };
         // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to
@@ -390,7 +390,7 @@ impl RigidSystem {
 
     /// What the motion of groups is computed from.
     pub(crate) fn physics(&self) -> Physics<'_> {
-        Physics::of(&self.flyers, &self.connectors, &self.laws, &self.settings)
+        Physics::of(&self.flyers, &self.connectors.all, &self.laws.all, &self.settings)
     }
 }
 

@@ -238,7 +238,7 @@ mod tests {
         system.dissolve(BodyId(1));
         system.collect_region(&mut work.region, &[BodyId(2), BodyId(1)], system.now);
         work.settling.set_likely([None, None].into_iter());
-        work.settling.expect_forces(&work.region, &system.changes.end);
+        work.settling.expect_forces(&work.region, &system.told.changes.end);
         let [None, Some(force)] = work.settling.forces[..] else { panic!("{:?}", work.settling.forces) };
         assert!((force - 9.81).abs() < 1e-9, "{force} N");
     }

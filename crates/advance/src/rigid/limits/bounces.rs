@@ -126,7 +126,7 @@ impl RigidSystem {
     /// True if the velocity of a body of a pair was changed at once since a contact of it was seen: what has
     /// turned it is no force.
     fn is_struck_since(&self, pair: PairId, seen: &Seen) -> bool {
-        let strikes = self.pairs.bodies(pair).into_iter().filter_map(|body| self.struck[body.index()]);
+        let strikes = self.pairs.bodies(pair).into_iter().filter_map(|body| self.limits.struck[body.index()]);
         strikes.into_iter().any(|strike| strike > seen.time)
     }
 

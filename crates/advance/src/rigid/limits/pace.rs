@@ -62,24 +62,24 @@ impl RigidSystem {
     /// come to an end ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for
     /// ever. Nothing is wrong with a system that says so: for less time it goes on.
     pub fn set_duration(&mut self, duration: f64) {
-        self.duration = duration;
+        self.limits.duration = duration;
     }
 
     /// Notes the step that a group has begun; if such steps have become hopeless, that is told once the event is over.
     pub(crate) fn note_pace(&mut self, group: &Group) {
-        let pace = &mut self.paces[group.leader().index()];
+        let pace = &mut self.limits.paces[group.leader().index()];
         if let Some(mean) = pace.few.note(group.start) {
             pace.is_hasty = mean < HASTE * self.settings.resolution_time;
         }
         let mean = pace.all.note(group.start);
         if let Some(mean) = mean {
-            pace.hopeless = if mean * HOPELESS < self.duration { pace.hopeless + 1 } else { 0 };
+            pace.hopeless = if mean * HOPELESS < self.limits.duration { pace.hopeless + 1 } else { 0 };
         }
         let is_told = pace.hopeless >= PACES;
-        self.crawls = mean.filter(|_| is_told).map(|step| AdvanceError::Crawls {
+        self.limits.crawls = mean.filter(|_| is_told).map(|step| AdvanceError::Crawls {
             time: group.start.seconds(),
             step,
-            duration: self.duration,
+            duration: self.limits.duration,
             bodies: group.bodies.clone(),
             laws: self.names_of_laws(group),
         });
@@ -87,19 +87,19 @@ impl RigidSystem {
 
     /// Names of the laws that act on a group.
     pub(crate) fn names_of_laws(&self, group: &Group) -> Vec<String> {
-        group.laws.iter().map(|&law| self.laws[law].name().to_owned()).collect()
+        group.laws.iter().map(|&law| self.laws.all[law].name().to_owned()).collect()
     }
 
     /// Bodies have taken part in an impact: something happens.
     pub(crate) fn forget_paces(&mut self, bodies: &[BodyId]) {
-        bodies.iter().for_each(|body| self.paces[body.index()] = Pace::default());
+        bodies.iter().for_each(|body| self.limits.paces[body.index()] = Pace::default());
     }
 
     /// True if some body of a region has led a hasty group; it is then forgotten.
     pub(crate) fn take_haste(&mut self, region: &Region) -> bool {
         let mut any = false;
         for body in &region.bodies {
-            any |= std::mem::take(&mut self.paces[body.index()].is_hasty);
+            any |= std::mem::take(&mut self.limits.paces[body.index()].is_hasty);
         }
         any
     }

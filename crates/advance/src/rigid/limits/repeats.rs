@@ -16,7 +16,7 @@ const SAME_TIME: f64 = 4.0;
 impl RigidSystem {
     /// True if a contact has pulled as it was held at a time.
     pub(crate) fn has_pulled(&self, time: Time) -> bool {
-        self.last_pull.is_some_and(|last| is_same_time(last, time))
+        self.limits.last_pull.is_some_and(|last| is_same_time(last, time))
     }
 
     /// How often more than is calm a pair has fired at the present time.
@@ -36,7 +36,7 @@ impl RigidSystem {
         entry.last_contact = Some(now);
         let (events, [primary, normal]) = (entry.repeats, bodies);
         if events > CALM_REPEATS {
-            self.last_insistent = Some(now);
+            self.limits.last_insistent = Some(now);
         }
         if events > MOST_REPEATS {
             let between = Between { primary, normal };
@@ -82,7 +82,7 @@ mod tests {
         // The start has seen it at its target: a moment later it has been elsewhere.
         system.pairs.seen_mut(pair).clear();
         assert!(system.handle_contact(pair, features).expect("one row"));
-        assert_eq!(system.last_impact.rows[0].rate_after, 2.0);
+        assert_eq!(system.told.last_impact.rows[0].rate_after, 2.0);
     }
 
     #[test]
@@ -92,7 +92,7 @@ mod tests {
             system.note_repeat(pair).expect("not stuck yet");
         }
         assert!(system.handle_contact(pair, features).expect("one row"));
-        assert_eq!(system.last_impact.rows[0].rate_after, 0.0);
+        assert_eq!(system.told.last_impact.rows[0].rate_after, 0.0);
         assert_eq!(system.ledger.captures, -1.0);
     }
 

@@ -69,11 +69,11 @@ impl RigidSystem {
         let (wide, still) = (WIDE * target_gap, STILL * accuracy);
         let at_once = AT_ONCE * self.settings.steps.length / self.settings.steps.speed;
         // Of few events it does not matter.
-        let is_often = region.bodies.iter().any(|body| self.recent[body.index()].events > MANY);
+        let is_often = region.bodies.iter().any(|body| self.limits.recent[body.index()].events > MANY);
         let is_costly = is_often && self.is_costly(region);
         let mut most = 0;
         for &body in &region.bodies {
-            let recent = &mut self.recent[body.index()];
+            let recent = &mut self.limits.recent[body.index()];
             let wait = recent.last.map(|last| now.since(last));
             let way = wait.map(|wait| wait * speed);
             let is_still = way.is_some_and(|way| way < still) && wait.is_some_and(|wait| wait < at_once);
@@ -94,7 +94,7 @@ impl RigidSystem {
         if is_storm {
             self.counts.storms += 1;
             for &body in &region.bodies {
-                self.recent[body.index()].events = 0;
+                self.limits.recent[body.index()].events = 0;
             }
         }
         is_storm

@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn a_course_holds_what_an_integrator_finds() {
         let system = resting_discs(&[0.0]);
-        let (flyer, lane) = (system.flyer(BodyId(1)), &system.lanes[1]);
+        let (flyer, lane) = (system.flyer(BodyId(1)), &system.search.lanes[1]);
         assert_eq!(lane.kind, LaneKind::Other);
         let course = lane.course_from(flyer.start(), 1e-3);
         let position = flyer.state_at(flyer.start().plus(1e-3)).position;

@@ -135,6 +135,6 @@ impl RigidSystem {
 
     /// True if a body is held by a connector, whichever way it is pushed.
     pub(crate) fn is_tied(&self, body: BodyId) -> bool {
-        !body.is_world() && self.connectors_of.of(body).iter().any(|&id| self.connector(id).is_bilateral())
+        !body.is_world() && self.connectors.of(body).iter().any(|&id| self.connector(id).is_bilateral())
     }
 }

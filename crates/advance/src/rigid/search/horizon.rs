@@ -15,7 +15,7 @@ const WORTHWHILE: f64 = 0.5;
 impl RigidSystem {
     /// Until when, of the time up to `until`, two bodies are searched from a time on.
     pub(super) fn searched_until(&self, bodies: [BodyId; 2], from: Time, until: Time) -> Time {
-        let [a, b] = bodies.map(|body| self.first_contacts[self.slot(body)]);
+        let [a, b] = bodies.map(|body| self.search.first_contacts[self.slot(body)]);
         let ahead = |contact: Time| if contact > from { contact } else { Time::NEVER };
         let wait = ahead(a).min(ahead(b)).since(from) * (1.0 + BEYOND);
         if wait < WORTHWHILE * until.since(from) { from.plus(wait) } else { until }
@@ -25,7 +25,7 @@ impl RigidSystem {
     pub(super) fn note_contact_ahead(&mut self, bodies: [BodyId; 2], from: Time, contact: Time) {
         for body in bodies.into_iter().filter(|&body| !self.pairs.is_fixed(body)) {
             let slot = self.slot(body);
-            let first = &mut self.first_contacts[slot];
+            let first = &mut self.search.first_contacts[slot];
             // One that has gone by without a change of the motion is none.
             *first = if *first > from { contact.min(*first) } else { contact };
         }
@@ -33,7 +33,7 @@ impl RigidSystem {
 
     /// Forgets the contacts of a body, whose motion is another.
     pub(super) fn forget_contacts_ahead(&mut self, body: BodyId) {
-        self.first_contacts[body.index()] = Time::NEVER;
+        self.search.first_contacts[body.index()] = Time::NEVER;
     }
 
     /// Bodies of a group share an entry: what changes the motion of one changes that of all.

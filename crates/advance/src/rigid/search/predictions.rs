@@ -18,12 +18,12 @@ pub(crate) const LONGEST_SPAN: f64 = 1e6;
 impl RigidSystem {
     pub(crate) fn set_up_boxes(&mut self) {
         for body in self.bodies() {
-            if !self.loners[body.index()] {
+            if !self.search.loners[body.index()] {
                 self.place_box(body);
             }
         }
         for body in self.bodies() {
-            if !self.loners[body.index()] && self.is_movable(body) {
+            if !self.search.loners[body.index()] && self.is_movable(body) {
                 self.find_neighbours(body);
             }
         }
@@ -31,23 +31,23 @@ impl RigidSystem {
 
     /// Gives a body that goes on as before a box of its own.
     fn place_box(&mut self, body: BodyId) {
-        let (lane, flyer) = (&self.lanes[body.index()], &self.flyers[body.index()]);
-        let fat_box = self.rooms[body.index()].fat_box(lane, flyer, self.now);
-        self.broad.set(body, fat_box);
+        let (lane, flyer) = (&self.search.lanes[body.index()], &self.flyers[body.index()]);
+        let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.now);
+        self.search.broad.set(body, fat_box);
         self.predict_leaving(body);
     }
 
     /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
-        self.lanes[body.index()].follow(&self.flyers[body.index()]);
+        self.search.lanes[body.index()].follow(&self.flyers[body.index()]);
         self.forget_contacts_ahead(body);
         self.predict_leaving(body);
     }
 
     fn predict_leaving(&mut self, body: BodyId) {
-        let (flyer, room) = (&self.flyers[body.index()], &self.rooms[body.index()]);
-        let lane = &mut self.lanes[body.index()];
-        let fat_box = self.broad.bounds(body);
+        let (flyer, room) = (&self.flyers[body.index()], &self.search.rooms[body.index()]);
+        let lane = &mut self.search.lanes[body.index()];
+        let fat_box = self.search.broad.bounds(body);
         let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.now));
         lane.stay = stay.unwrap_or(Time::NEVER);
         let source = self.source_id(Source::Box(body));
@@ -59,34 +59,34 @@ impl RigidSystem {
 
     /// Pairs the body with all whose boxes overlap its own, and with no others.
     fn find_neighbours(&mut self, body: BodyId) {
-        let Some(fat_box) = self.broad.bounds(body).copied() else { return };
-        let mut near = std::mem::take(&mut self.neighbours);
-        self.broad.find_overlapping(&fat_box, &mut near);
-        self.marks.begin(self.flyers.len());
-        near.iter().for_each(|&other| self.marks.set(other));
-        self.links.clear();
-        self.links.extend_from_slice(self.pairs.of_body(body));
-        for index in 0..self.links.len() {
-            let Link { pair, other } = self.links[index];
+        let Some(fat_box) = self.search.broad.bounds(body).copied() else { return };
+        let mut near = std::mem::take(&mut self.search.neighbours);
+        self.search.broad.find_overlapping(&fat_box, &mut near);
+        self.search.marks.begin(self.flyers.len());
+        near.iter().for_each(|&other| self.search.marks.set(other));
+        self.search.links.clear();
+        self.search.links.extend_from_slice(self.pairs.of_body(body));
+        for index in 0..self.search.links.len() {
+            let Link { pair, other } = self.search.links[index];
             // What is left marked is new.
-            if !self.marks.take(other) {
+            if !self.search.marks.take(other) {
                 self.note_prediction(pair, (Prediction::Quiet, self.now));
                 self.pairs.remove(pair);
             }
         }
-        near.retain(|&other| self.marks.take(other));
+        near.retain(|&other| self.search.marks.take(other));
         near.retain(|&other| other != body && self.may_collide(body, other));
         near.sort_unstable();
         for &other in &near {
             self.pairs.add(body, other, self.now);
         }
-        self.rooms[body.index()].adapt(self.pairs.of_body(body).len());
-        self.neighbours = near;
+        self.search.rooms[body.index()].adapt(self.pairs.of_body(body).len());
+        self.search.neighbours = near;
     }
 
     fn may_collide(&self, a: BodyId, b: BodyId) -> bool {
         let any_movable = self.is_movable(a) || self.is_movable(b);
-        any_movable && self.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
+        any_movable && self.search.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
     }
 
     /// When the present segment of a body ends; `None` for a flight.
@@ -96,7 +96,7 @@ impl RigidSystem {
 
     /// Until when the present motion of a body is known and near.
     fn known_until(&self, body: BodyId) -> Time {
-        let stay = self.lanes[body.index()].stay;
+        let stay = self.search.lanes[body.index()].stay;
         self.segment_end(body).map_or(stay, |end| stay.min(end))
     }
 
@@ -120,7 +120,7 @@ impl RigidSystem {
     /// A body from a time on, if it is a disc in flight.
     #[inline]
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
-        let lane = &self.lanes[body.index()];
+        let lane = &self.search.lanes[body.index()];
         let is_plain = lane.kind == LaneKind::Disc && self.settings.search.depth == 0.0;
         let Lane { radius, halo, stay, .. } = *lane;
         is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
@@ -129,7 +129,7 @@ impl RigidSystem {
     /// The outlook of a pair of free discs; `None` of all else.
     #[inline]
     fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
-        let lane = &self.lanes[link.other.index()];
+        let lane = &self.search.lanes[link.other.index()];
         let tolerances = &self.settings.tolerances;
         let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
         if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
@@ -168,7 +168,7 @@ impl RigidSystem {
     /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near
     /// each other: in a heap, where steps are short, few of those that are neighbours do.
     fn stays_apart(&self, pair: PairId, from: Time, until: Time) -> bool {
-        let [a, b] = self.pairs.bodies(pair).map(|body| &self.lanes[body.index()]);
+        let [a, b] = self.pairs.bodies(pair).map(|body| &self.search.lanes[body.index()]);
         let span = until.since(from);
         let any_integrated = a.kind == LaneKind::Other || b.kind == LaneKind::Other;
         if self.pairs.get(pair).has_rules || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
@@ -216,7 +216,7 @@ impl RigidSystem {
         let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
-        let target_gap = self.lanes[a.index()].halo.min(self.lanes[b.index()].halo);
+        let target_gap = self.search.lanes[a.index()].halo.min(self.search.lanes[b.index()].halo);
         let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
         let sunk = self.may_have_sunk_by([a, b]);
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
@@ -259,9 +259,9 @@ impl RigidSystem {
         let now = self.now;
         for &body in bodies {
             let disc = self.disc_at(body, now);
-            self.pairs.enter_batch(body, !changed, &mut self.links);
-            for index in 0..self.links.len() {
-                let link = self.links[index];
+            self.pairs.enter_batch(body, !changed, &mut self.search.links);
+            for index in 0..self.search.links.len() {
+                let link = self.search.links[index];
                 if changed {
                     self.predict_from(now, disc.as_ref(), link);
                 } else {
@@ -339,7 +339,7 @@ mod tests {
         let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
         let expected = system.pairs.get(pair).clear;
         for lowered in [0.4, 0.0, -1.0, -4.4] {
-            system.lanes[0].halo = lowered * FINE.tolerances.target_gap;
+            system.search.lanes[0].halo = lowered * FINE.tolerances.target_gap;
             system.predict_all_of(&[BodyId(0)], true);
             let Pair { prediction, clear, .. } = *system.pairs.get(pair);
             assert!(matches!(prediction, Prediction::Contact(_)), "{lowered}: {prediction:?}");

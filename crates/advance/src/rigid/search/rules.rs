@@ -71,14 +71,14 @@ impl RigidSystem {
     /// that lie deep.
     fn take_rules(&mut self, region: &Region) {
         let deepest = self.deepest();
-        self.deep.clear();
+        self.search.deep.clear();
         for &body in &region.bodies {
             let pairs = self.pairs.of_body(body).iter().map(|link| link.pair);
             for pair in pairs.filter(|&pair| self.pairs.get(pair).has_rules) {
                 let targets =
                     self.pairs.rules(pair).iter().filter_map(|rule| Some((rule.features, rule.target?)));
                 let deep = targets.filter(|(_, target)| *target < deepest);
-                self.deep.extend(deep.map(|(features, target)| (pair, features, target)));
+                self.search.deep.extend(deep.map(|(features, target)| (pair, features, target)));
             }
             self.pairs.clear_rules_of(body);
         }
@@ -88,8 +88,8 @@ impl RigidSystem {
     /// but goes on to do so until it is out.
     fn give_back_deep(&mut self) {
         let deepest = self.deepest();
-        for index in 0..self.deep.len() {
-            let (pair, features, told) = self.deep[index];
+        for index in 0..self.search.deep.len() {
+            let (pair, features, told) = self.search.deep[index];
             let touch = Touch { bodies: self.pairs.bodies(pair), features };
             let (gap, rate) = self.gap_at(touch, self.now);
             // What lies deeper by far has gone round its body.
@@ -148,7 +148,7 @@ impl RigidSystem {
             });
             // What cannot move is in no region that would raise it again.
             for body in self.pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
-                self.lanes[body.index()].halo -= lower;
+                self.search.lanes[body.index()].halo -= lower;
             }
         }
         self.touched = insistent;
@@ -157,7 +157,7 @@ impl RigidSystem {
     /// True if a rule says of two discs what holds of them without it.
     fn is_idle(&self, touch: &Touch, rule: &FeatureRule) -> bool {
         let target = self.settings.tolerances.target_gap;
-        let mut lanes = touch.bodies.iter().map(|body| &self.lanes[body.index()]);
+        let mut lanes = touch.bodies.iter().map(|body| &self.search.lanes[body.index()]);
         rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
     }
 
@@ -168,7 +168,7 @@ impl RigidSystem {
     fn set_halos(&mut self, region: &Region) {
         let target = self.settings.tolerances.target_gap;
         for &body in &region.bodies {
-            self.lanes[body.index()].halo = target;
+            self.search.lanes[body.index()].halo = target;
         }
         let seam = SEAM_SHARE * self.settings.tolerances.accuracy;
         let least = target - self.settings.tolerances.accuracy;
@@ -177,7 +177,7 @@ impl RigidSystem {
                 continue;
             }
             for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
-                let halo = &mut self.lanes[body.index()].halo;
+                let halo = &mut self.search.lanes[body.index()].halo;
                 *halo = halo.min((gap - seam).max(least));
             }
         }
@@ -238,7 +238,7 @@ mod tests {
     fn a_floor_on_which_a_contact_insists_fires_elsewhere_as_before() {
         let mut system = resting_discs(&[0.0]);
         let [floor, disc] = [BodyId(0), BodyId(1)];
-        let before = system.lanes[floor.index()].halo;
+        let before = system.search.lanes[floor.index()].halo;
         let pair = system.pairs.between(floor, disc).expect("they touch");
         for _ in 0..CALM_REPEATS + 5 {
             system.note_repeat(pair).expect("not stuck yet");
@@ -248,7 +248,7 @@ mod tests {
         system.remeasure(&mut work.region, system.now);
         system.measure_touches(&mut work.region);
         system.lower_insistent(&work.region);
-        assert!(system.lanes[disc.index()].halo < before);
-        assert_eq!(system.lanes[floor.index()].halo, before);
+        assert!(system.search.lanes[disc.index()].halo < before);
+        assert_eq!(system.search.lanes[floor.index()].halo, before);
     }
 }

@@ -12,11 +12,11 @@ impl RigidSystem {
     /// True if nothing ends the segments of a group early.
     pub(crate) fn is_unwatched(&self, group: &Group) -> bool {
         let mechanism = self.mechanism();
-        let mut connectors = group.bodies.iter().flat_map(|&body| self.connectors_of.of(body));
-        group.bodies.iter().all(|body| self.loners[body.index()])
+        let mut connectors = group.bodies.iter().flat_map(|&body| self.connectors.of(body));
+        group.bodies.iter().all(|body| self.search.loners[body.index()])
             && connectors.all(|&id| self.connector(id).is_bilateral())
             && group.rows.iter().all(|row| row.bilateral && !mechanism.can_change(row))
-            && group.laws.iter().all(|&law| self.laws[law].switches() == 0)
+            && group.laws.iter().all(|&law| self.laws.all[law].switches() == 0)
     }
 
     /// The dense output of a group waits from now on.
