@@ -50,11 +50,11 @@ impl RigidSystem {
         &mut self,
         work: &mut EventWork,
         changes: &[VelocityChange],
-    ) -> Result<bool, AdvanceError> {
+    ) -> Result<(), AdvanceError> {
         work.seeds.clear();
         work.seeds.extend(changes.iter().map(|change| change.body).filter(|&body| self.is_movable(body)));
         if work.seeds.is_empty() {
-            return Ok(false);
+            return Ok(());
         }
         self.collect_region(&mut work.region, &work.seeds, self.now);
         work.before.clear();

@@ -12,13 +12,15 @@
 //! | `limits` | what counts for nothing or would go on for ever: bounces, hops, storms, pace |
 //!
 //! `system` ties all to the event loop. `parts` is what a system is made of, `scales` what a tolerance means
-//! in a scene, `intervention` what somebody outside does to bodies, `laws` the force laws, `ledger` the energy's books,
+//! in a scene, `intervention` what somebody outside does to bodies, `laws` the force laws, `by_body` and `forest` lists
+//! and sets of bodies, `ledger` the energy's books,
 //! `report` what the outside may ask for.
 
 mod by_body;
 mod ending;
 mod error;
 mod event;
+mod forest;
 mod held;
 mod intervention;
 mod laws;

@@ -297,11 +297,11 @@ impl RigidSystem {
         }
     }
 
-    /// Something happens at a time, which says whether it was an impact; `None` if nobody outside needs to know.
+    /// Runs an event at a time, and tells whether it was an impact; `None` if callers need not know of it.
     pub(crate) fn happen(
         &mut self,
         time: Time,
-        act: impl FnOnce(&mut Self) -> Result<bool, AdvanceError>,
+        act: impl FnOnce(&mut Self) -> Result<(), AdvanceError>,
     ) -> Result<Option<Handled>, AdvanceError> {
         if let Some(failure) = &self.told.failure {
             return Err(failure.clone());
@@ -312,17 +312,17 @@ impl RigidSystem {
         self.told.changes.clear(time);
         let outcome = act(self);
         self.told.changes.time = self.now;
-        if outcome.as_ref().is_ok_and(|impact| !impact && self.told.changes.is_empty()) {
+        if outcome.is_ok() && !self.told.has_hit && self.told.changes.is_empty() {
             let Some(crawls) = self.limits.crawls.take() else { return Ok(None) };
             self.complete_dense();
             return Err(crawls);
         }
         self.complete_dense();
         self.told.failure = outcome.as_ref().err().cloned();
-        outcome.map(|impact| Some(Handled { time: self.now, impact }))
+        outcome.map(|()| Some(Handled { time: self.now, impact: self.told.has_hit }))
     }
 
-    fn handle(&mut self, source: SourceId) -> Result<bool, AdvanceError> {
+    fn handle(&mut self, source: SourceId) -> Result<(), AdvanceError> {
         match self.source(source) {
             Source::Box(body) => self.leave_box(body),
             Source::Group(leader) => return self.handle_group(leader),
@@ -334,7 +334,7 @@ impl RigidSystem {
                 _ => self.predict(pair),
             },
         }
-        Ok(false)
+        Ok(())
     }
 }
 

@@ -51,7 +51,7 @@ impl RigidSystem {
     }
 
     /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
-    pub(super) fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
+    pub(super) fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
         // What is met again at once rests there: in the corner, which holds it as well.
         if let Some(stop) = self.stop_in_corner(id)
             && self.connectors.states[stop.index()].repeats_at(self.now) < MOST_AGAIN
@@ -64,7 +64,7 @@ impl RigidSystem {
     }
 
     /// A rope goes taut, or a point comes to the stop of its rail.
-    pub(super) fn meet_stop(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<bool, AdvanceError> {
+    pub(super) fn meet_stop(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
         work.region.cause = Cause::Taut(id);
         if self.connector(id).is_stop() {
             self.connectors.states[id.index()].note_taut(self.now);

@@ -49,7 +49,7 @@ impl RigidSystem {
             // What closes fast fires in its own time, unless that is now.
             let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
             work.region.records.retain(|record| !fast(record));
-            system.collide(work).map(|_| ())
+            system.collide(work)
         })
     }
 
@@ -76,15 +76,15 @@ impl RigidSystem {
         self.settings.impulse_step.is_none() && records.any(closes)
     }
 
-    /// Two bodies come into contact; true if there was an impact.
+    /// Handles two bodies that come into contact.
     pub(crate) fn handle_contact(
         &mut self,
         pair: PairId,
         features: [FeatureId; 2],
-    ) -> Result<bool, AdvanceError> {
+    ) -> Result<(), AdvanceError> {
         let bodies = self.pairs.bodies(pair);
         if self.sinks(pair, features) || self.passes_over(pair, features) || self.grazes(pair, features) {
-            return Ok(false);
+            return Ok(());
         }
         let touch = Touch::new(bodies, features);
         self.note_pressed(touch)?;
@@ -97,23 +97,23 @@ impl RigidSystem {
         })
     }
 
-    /// A group's segment ends, or something ends it early; true if that is an impact: at a stop or a corner of a rail.
-    pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<bool, AdvanceError> {
+    /// Handles the end of a group's segment, natural or early.
+    pub(crate) fn handle_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         if self.group_of(leader).is_some_and(|group| group.look.is_some()) {
             self.look_further(leader);
-            return Ok(false);
+            return Ok(());
         }
         if self.group_of(leader).is_some_and(|group| group.event.is_none()) {
-            return self.extend_naturally(leader).map(|()| false);
+            return self.extend_naturally(leader);
         }
         self.with_work(Cause::Other, |system, work| system.handle_group_with(leader, work))
     }
 
-    fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<bool, AdvanceError> {
-        let Some(group) = self.group_of(leader) else { return Ok(false) };
+    fn handle_group_with(&mut self, leader: BodyId, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let Some(group) = self.group_of(leader) else { return Ok(()) };
         work.seeds.clear();
         work.seeds.extend(&group.bodies);
-        let Some((_, end)) = group.event else { return Ok(false) };
+        let Some((_, end)) = group.event else { return Ok(()) };
         match end {
             SegmentEnd::Release(row) => {
                 if let Some(touch) = group.rows[row].touch() {
@@ -138,7 +138,7 @@ impl RigidSystem {
             },
             SegmentEnd::Sink(row) => {
                 // A contact that was touched without force has sunk.
-                let Some(touch) = group.idle[row].touch() else { return Ok(false) };
+                let Some(touch) = group.idle[row].touch() else { return Ok(()) };
                 work.region.cause = Cause::Fired(touch);
                 self.handle_impact(work)
             }
@@ -168,8 +168,8 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// A rope goes taut; true if there was an impact.
-    pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<bool, AdvanceError> {
+    /// Handles a rope that goes taut.
+    pub(crate) fn handle_rope(&mut self, id: ConnectorId) -> Result<(), AdvanceError> {
         self.with_work(Cause::Taut(id), |system, work| {
             work.seeds.clear();
             work.seeds.extend(system.connector(id).bodies());
@@ -177,8 +177,8 @@ impl RigidSystem {
         })
     }
 
-    /// What is held changes; true if there was an impact, of something else that closes within its target zone.
-    fn handle_change(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+    /// Handles a change of the held rows. Other contacts that close within their target zones make it an impact.
+    fn handle_change(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         self.collect_region(&mut work.region, &work.seeds, self.now);
         self.cut_groups(&mut work.region);
         self.remeasure(&mut work.region, self.now);
@@ -195,7 +195,7 @@ impl RigidSystem {
         if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
             return self.collide(work);
         }
-        self.go_on(work).map(|()| false)
+        self.go_on(work)
     }
 
     /// True if two corners pass each other before they come to where their bodies fire.
@@ -254,7 +254,7 @@ impl RigidSystem {
         }
     }
 
-    pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+    pub(crate) fn handle_impact(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let fired = work.region.cause.fired();
         self.collect_region(&mut work.region, &work.seeds, self.now);
         if !work.region.groups.is_empty() {
@@ -269,8 +269,8 @@ impl RigidSystem {
         self.collide(work)
     }
 
-    /// Resolves the impact of a region whose bodies are in flight, and goes on; true if any row closed.
-    pub(crate) fn collide(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
+    /// Resolves the impact of a region whose bodies are in flight, and goes on.
+    pub(crate) fn collide(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         // What was slow when it fired stays inelastic, whatever the speed it has gained since.
         work.region.in_storm = self.note_events(&work.region);
         let is_storm = work.region.in_storm || work.repeats > 0;
@@ -287,18 +287,17 @@ impl RigidSystem {
         // What comes to rest without closing is a contact that begins, not an impact.
         let (rest, at_joint) = (self.rest_speed(), work.region.cause == Cause::SmoothJoint);
         let mut rows = self.told.last_impact.rows.iter();
-        let happened = rows.any(|row| match row.collision.parties.bilateral {
+        let is_hit = rows.any(|row| match row.collision.parties.bilateral {
             true => !at_joint && row.rate_before.abs() > rest,
             false => row.rate_before < -rest,
         });
-        if happened {
+        if is_hit {
             self.told.has_hit = true;
             self.counts.impacts += 1;
             self.forget_paces(&work.region.bodies);
         }
         self.remeasure(&mut work.region, self.now);
-        self.go_on(work)?;
-        Ok(happened)
+        self.go_on(work)
     }
 
     /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new

@@ -4,15 +4,16 @@ use super::connectors::is_rope;
 use super::members::Members;
 use super::region::{Region, Touch};
 use crate::rigid::error::AdvanceError;
+use crate::rigid::forest::Forest;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::search::pairs::Prediction;
 use crate::rigid::sources::Source;
+use crate::rigid::step::attempt::StepFailure;
 use crate::rigid::step::brief::Past;
 use crate::rigid::step::dynamics::{Dynamics, Physics, body_state, set_body_state};
 use crate::rigid::step::extending::Tools;
 use crate::rigid::step::group::{Group, Work};
 use crate::rigid::step::rows::{HeldRow, RowSource};
-use crate::rigid::step::segment::StepFailure;
 use crate::rigid::system::RigidSystem;
 
 use halfgap_collision::{BodyId, ConnectorId};
@@ -33,8 +34,8 @@ pub(crate) struct Groups {
     pool: Vec<Box<Group>>,
     /// What is known of the last group of each body.
     pub(crate) past_of: Vec<Past>,
-    /// Union-find forest over the places of a region.
-    parents: Vec<usize>,
+    /// The places of a region, in sets that share their steps.
+    coupled: Forest,
     /// True for places of a region that need an integrator.
     integrated: Vec<bool>,
     /// Leader of the group whose dense output waits until somebody looks.
@@ -65,21 +66,6 @@ impl Groups {
     pub(crate) fn put(&mut self, group: Box<Group>) {
         let leader = group.leader();
         self.by_leader[leader.index()] = Some(group);
-    }
-
-    fn root(&mut self, place: usize) -> usize {
-        let mut root = place;
-        while self.parents[root] != root {
-            self.parents[root] = self.parents[self.parents[root]];
-            root = self.parents[root];
-        }
-        root
-    }
-
-    /// Joins two places; the lesser becomes the root.
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b)] = a.min(b);
     }
 }
 
@@ -151,9 +137,9 @@ impl RigidSystem {
         self.couple(region, settling);
         self.groups.made.clear();
         let mut members = std::mem::take(&mut self.groups.members);
-        members.list(region, settling, |place| self.groups.root(place));
+        members.list(region, settling, |place| self.groups.coupled.root(place));
         for place in 0..region.bodies.len() {
-            if self.groups.integrated[place] && self.groups.root(place) == place {
+            if self.groups.integrated[place] && self.groups.coupled.root(place) == place {
                 let group = self.make_group((region, settling), &members, place);
                 let leader = group.leader();
                 for &body in &group.bodies {
@@ -187,8 +173,7 @@ impl RigidSystem {
     /// Joins the places of a region that share their steps.
     fn couple(&mut self, region: &Region, settling: &Settling) {
         let count = region.bodies.len();
-        self.groups.parents.clear();
-        self.groups.parents.extend(0..count);
+        self.groups.coupled.reset(count);
         self.groups.integrated.clear();
         self.groups.integrated.resize(count, false);
         for (_, row) in &settling.held {
@@ -208,7 +193,7 @@ impl RigidSystem {
         // What is integrated is a matter of the whole class.
         for place in 0..count {
             if self.groups.integrated[place] {
-                let root = self.groups.root(place);
+                let root = self.groups.coupled.root(place);
                 self.groups.integrated[root] = true;
             }
         }
@@ -246,10 +231,8 @@ impl RigidSystem {
         let mut first = None;
         for place in bodies.filter_map(|body| region.place(body)) {
             self.groups.integrated[place] = true;
-            match first {
-                None => first = Some(place),
-                Some(first) => self.groups.join(first, place),
-            }
+            let first = *first.get_or_insert(place);
+            self.groups.coupled.join(first, place);
         }
     }
 

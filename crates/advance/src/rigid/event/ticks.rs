@@ -187,8 +187,8 @@ impl RigidSystem {
         if tick > self.now { tick } else { self.start.plus((self.ticks.count + 2.0) * step) }
     }
 
-    /// Stops and puts back what has sunk; true if there was an impact.
-    pub(crate) fn handle_tick(&mut self) -> Result<bool, AdvanceError> {
+    /// Stops and puts back bodies that have sunk.
+    pub(crate) fn handle_tick(&mut self) -> Result<(), AdvanceError> {
         self.queue.clear(self.source_id(Source::Tick));
         self.ticks.pressed = 0;
         for index in 0..self.ticks.waiting.len() {

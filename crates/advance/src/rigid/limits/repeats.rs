@@ -81,7 +81,9 @@ mod tests {
         let (mut system, pair, features) = meeting();
         // The start has seen it at its target: a moment later it has been elsewhere.
         system.pairs.seen_mut(pair).clear();
-        assert!(system.handle_contact(pair, features).expect("one row"));
+        system.told.has_hit = false;
+        system.handle_contact(pair, features).expect("one row");
+        assert!(system.told.has_hit);
         assert_eq!(system.told.last_impact.rows[0].rate_after, 2.0);
     }
 
@@ -91,7 +93,9 @@ mod tests {
         for _ in 0..=CALM_REPEATS {
             system.note_repeat(pair).expect("not stuck yet");
         }
-        assert!(system.handle_contact(pair, features).expect("one row"));
+        system.told.has_hit = false;
+        system.handle_contact(pair, features).expect("one row");
+        assert!(system.told.has_hit);
         assert_eq!(system.told.last_impact.rows[0].rate_after, 0.0);
         assert_eq!(system.ledger.captures, -1.0);
     }

@@ -499,7 +499,7 @@ impl Dynamics<'_> {
     /// the rows, and what is only rounding is left as it is, for it would come into each stage anew.
     pub(crate) fn passes_by_rows(&self) -> bool {
         let Group { tree, kept, held, .. } = &*self.group;
-        tree.is_left() || (!tree.is_used() && !held.is_soft() && kept.is_near_singular())
+        tree.is_bypassed() || (!tree.is_used() && !held.is_soft() && kept.is_near_singular())
     }
 
     /// Rates of the group's state; `constrain` adds what the rows do to accelerations in the stage.

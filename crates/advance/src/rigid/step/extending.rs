@@ -1,7 +1,7 @@
 //! A group's next segment as it is used: a step that keeps to the held rows, projected, with what ends it early.
 
+use super::attempt::StepFailure;
 use super::dynamics::Dynamics;
-use super::segment::StepFailure;
 use crate::ode::{Stepper, StiffnessEstimate};
 use crate::rigid::system::RigidSettings;
 

@@ -5,7 +5,7 @@
 use super::dynamics::{Dynamics, body_state};
 use super::rows::{HeldRow, RowSource};
 use super::segment::StepControl;
-use halfgap_collision::Moving;
+use halfgap_collision::{Moving, first_closing_time};
 
 /// By how much of h^2 a velocity errs, after a step h of the method of order 5, per jump of the derivative of
 /// its acceleration: between what the error estimate sees of it and what it can be, the largest values
@@ -41,19 +41,15 @@ impl Dynamics<'_> {
         let acceleration = rates.velocity + arm.perp() * rates.angular_velocity - arm * (spin * spin);
         let joint = path.joint_ahead(hint, velocity)?;
         let way = joint.tangent.dot(joint.point - point);
-        let wait = first_arrival(way, joint.tangent.dot(velocity), joint.tangent.dot(acceleration))?;
+        if way <= 0.0 {
+            return None;
+        }
+        let wait = first_closing_time(way, -joint.tangent.dot(velocity), -joint.tangent.dot(acceleration))?;
         let speed = velocity.length();
         let over_piece = joint.width / speed;
         let error = KERNEL * joint.jump * speed.powi(3) * over_piece * over_piece;
         Some(if error > allowed { wait } else { over_piece * (allowed / error) })
     }
-}
-
-/// When a point arrives at a distance, by its speed and acceleration towards it; `None` if it turns back before.
-fn first_arrival(way: f64, speed: f64, acceleration: f64) -> Option<f64> {
-    let square = speed * speed + 2.0 * acceleration * way;
-    let sum = speed + square.max(0.0).sqrt();
-    (way > 0.0 && square >= 0.0 && sum > 0.0).then(|| 2.0 * way / sum)
 }
 
 #[cfg(test)]

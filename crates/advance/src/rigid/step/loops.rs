@@ -1,50 +1,41 @@
-//! Whether connectors close a loop: only then may what they hold come to depend on each other as they move.
+//! Whether connectors close a loop: only then may their rows come to depend on each other as they move.
 //!
-//! A group's connectors are edges between its bodies and all that cannot move, which is one. Contacts do not count: where
-//! two of them, or one and a connector, come to hold the same, one of them lets go.
+//! A group's connectors are the edges of a graph whose nodes are its bodies, and one node for all that cannot move.
+//! Contacts do not count: where rows of two contacts, or of a contact and a connector, become dependent, one lets go.
 
 use super::rows::{HeldRow, RowSource};
+use crate::rigid::forest::Forest;
 
-/// Bodies as sets that are joined; the last stands for all that cannot move.
+/// Whether the connectors of a group close a loop.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loops {
-    /// Another body of the same set, or itself.
-    next: Vec<usize>,
+    /// Bodies that connectors join; the last place stands for all that cannot move.
+    joined: Forest,
     is_closed: bool,
 }
 
 impl Loops {
-    /// Forgets what was found.
+    /// Forgets the loops of another group.
     pub(crate) fn clear(&mut self) {
         self.is_closed = false;
     }
 
-    /// Finds whether connectors close one among so many bodies, from their rows and the places of the two bodies of each.
+    /// Finds whether connectors close a loop among a number of bodies, from the rows and the places of the two bodies of
+    /// each; `None` for a body that cannot move.
     pub(crate) fn find(&mut self, bodies: usize, rows: &[HeldRow], sides: &[[Option<u32>; 2]]) {
         self.is_closed = false;
         let is_first = |row: &HeldRow| row.bilateral && matches!(row.source, RowSource::Connector(_, 0));
         let first_rows = rows.iter().zip(sides).filter(|(row, _)| is_first(row));
-        self.next.clear();
-        self.next.extend(0..=bodies);
+        self.joined.reset(bodies + 1);
         for (_, sides) in first_rows {
-            let [a, b] = sides.map(|place| self.root(place.map_or(bodies, |place| place as usize)));
-            self.is_closed |= a == b;
-            self.next[a] = b;
+            let [a, b] = sides.map(|place| place.map_or(bodies, |place| place as usize));
+            self.is_closed |= !self.joined.join(a, b);
         }
     }
 
     /// True if connectors close a loop.
     pub(crate) fn any(&self) -> bool {
         self.is_closed
-    }
-
-    /// The body that stands for the set of another, to which the way becomes shorter each time.
-    fn root(&mut self, mut body: usize) -> usize {
-        while self.next[body] != body {
-            self.next[body] = self.next[self.next[body]];
-            body = self.next[body];
-        }
-        body
     }
 }
 

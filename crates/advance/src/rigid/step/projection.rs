@@ -2,7 +2,8 @@
 
 use super::dynamics::Dynamics;
 use super::group::Group;
-use super::segment::{ROUNDING_SHARE, StepControl};
+use super::measures::ROUNDING_SHARE;
+use super::segment::StepControl;
 
 /// Newton steps of one projection.
 const PROJECTIONS: usize = 5;

@@ -88,11 +88,15 @@ impl Kept {
         }
     }
 
-    /// What rows keep is measured otherwise from the next step on, which begins where the last one did; or as at
-    /// first again.
-    pub(crate) fn measure_otherwise(&mut self, is_otherwise: bool) {
+    /// Tells that rows keep parts of another measure from the next step on, which begins where the last one did.
+    pub(crate) fn change_measure(&mut self) {
         let first = self.stages.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        (self.known, self.unit) = (first.map(|stage| stage.1).filter(|_| is_otherwise), None);
+        (self.known, self.unit) = (first.map(|stage| stage.1), None);
+    }
+
+    /// Tells that rows keep parts of the first measure again.
+    pub(crate) fn restore_measure(&mut self) {
+        (self.known, self.unit) = (None, None);
     }
 
     /// Makes the roots of a step comparable with those from before they were measured otherwise.
@@ -320,14 +324,14 @@ mod tests {
         step(&mut kept, 2.0);
         let (most, least, point) = (kept.most, kept.least, kept.point());
         for _ in 0..2 {
-            kept.measure_otherwise(true);
+            kept.change_measure();
             step(&mut kept, 1e-4);
             assert!((kept.least / least - 1.0).abs() < 1e-12 && kept.most == most, "{kept:?}");
         }
         // As long as it lasts, and no longer.
         step(&mut kept, 1e-4);
         assert!((kept.least / least - 1.0).abs() < 1e-12);
-        kept.measure_otherwise(false);
+        kept.restore_measure();
         step(&mut kept, 2.0);
         assert_eq!((kept.most, kept.least, kept.point()), (most, least, point));
     }

@@ -1,11 +1,11 @@
 //! How long a step of bodies in contact may be, so that what their contacts do along it is sampled well: their
 //! forces, which no error estimate sees where nothing accelerates, and the gaps of those without force.
 
+use super::attempt::STEADY_GROWTH;
 use super::dynamics::{Dynamics, body_state};
 use super::rows::{HeldRow, RowSource, moving_of};
-use super::segment::STEADY_GROWTH;
 use glam::DVec2;
-use halfgap_collision::{GapKinematics, Moving};
+use halfgap_collision::{GapKinematics, Moving, first_closing_time};
 use halfgap_geometry::GapKind;
 
 /// Part of its reach by which a body with contacts may move in one step, as its contacts see it; the same as an
@@ -97,8 +97,7 @@ impl Dynamics<'_> {
     }
 }
 
-/// When a way, or an angle, is done at a speed and an acceleration; infinite if there is neither.
+/// Time [s] in which a way, or an angle, is done at a speed and an acceleration; infinite without either.
 fn wait(way: f64, speed: f64, acceleration: f64) -> f64 {
-    let sum = speed + (speed * speed + 2.0 * acceleration * way).sqrt();
-    if sum > 0.0 { 2.0 * way / sum } else { f64::INFINITY }
+    first_closing_time(way, -speed, -acceleration).unwrap_or(f64::INFINITY)
 }

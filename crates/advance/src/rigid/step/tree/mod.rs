@@ -106,8 +106,8 @@ pub(crate) struct JointTree {
     inner: Vec<[DVec2; SegmentPolynomial::INNER.len()]>,
     /// Link of each body of the group.
     link_of: Vec<Option<usize>>,
-    /// The group is stepped as it is for a while.
-    is_left: bool,
+    /// The group is stepped as it is for now, although there is a tree.
+    is_bypassed: bool,
 }
 
 impl JointTree {
@@ -115,13 +115,19 @@ impl JointTree {
         self.links.clear();
         self.numbers.0.clear();
         self.rest.rows.clear();
-        self.is_left = false;
+        self.is_bypassed = false;
     }
 
-    /// Steps the group as it is, or as a tree again, if there is one; true if that is otherwise than before.
-    pub(crate) fn leave(&mut self, is_left: bool) -> bool {
-        let is_left = is_left && self.exists();
-        std::mem::replace(&mut self.is_left, is_left) != is_left
+    /// Lets the group be stepped as it is from now on; true if it was stepped as a tree.
+    pub(crate) fn bypass(&mut self) -> bool {
+        let was_used = self.is_used();
+        self.is_bypassed = self.exists();
+        was_used
+    }
+
+    /// Lets the group be stepped as a tree again; true if it was not.
+    pub(crate) fn use_again(&mut self) -> bool {
+        std::mem::take(&mut self.is_bypassed)
     }
 
     /// True if there is a tree, whether the group is stepped as one or not.
@@ -130,14 +136,14 @@ impl JointTree {
     }
 
     /// True if there is a tree, but the group is stepped as it is for now.
-    pub(crate) fn is_left(&self) -> bool {
-        self.is_left
+    pub(crate) fn is_bypassed(&self) -> bool {
+        self.is_bypassed
     }
 
     /// True if the group is stepped as a tree.
     #[inline]
     pub(crate) fn is_used(&self) -> bool {
-        self.exists() && !self.is_left
+        self.exists() && !self.is_bypassed
     }
 
     /// True if bodies that are where its coordinates say are where all rows hold them.
