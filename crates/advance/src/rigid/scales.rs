@@ -46,15 +46,15 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// Takes in all that lies within some bounds [m].
-    pub fn spread(&mut self, bounds: Aabb) {
+    /// Sets `coordinate` and `extent` to those of a scene within some bounds [m].
+    pub fn set_bounds(&mut self, bounds: Aabb) {
         self.coordinate = bounds.min.abs().max(bounds.max.abs()).max_element();
         self.extent = bounds.size().length().min(self.coordinate);
     }
 
-    /// Takes in the radius [m] of an arc, after the bounds: however short the arc, its gaps are measured from
-    /// its centre.
-    pub fn round_off(&mut self, radius: f64) {
+    /// Raises `coordinate` to the radius [m] of an arc, after the bounds are set: however short the arc, its gaps are
+    /// measured from its centre.
+    pub fn include_radius(&mut self, radius: f64) {
         self.coordinate = self.coordinate.max(radius);
     }
 
@@ -190,7 +190,7 @@ mod tests {
     fn what_happens_far_away_is_no_faster() {
         let speed_at = |place: DVec2| {
             let mut scales = Scales { acceleration: 10.0, ..Scales::default() };
-            scales.spread(Aabb { min: place - 4.0, max: place + 4.0 });
+            scales.set_bounds(Aabb { min: place - 4.0, max: place + 4.0 });
             assert!(scales.coordinate >= place.max_element());
             scales.speed_scale()
         };

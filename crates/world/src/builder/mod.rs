@@ -378,8 +378,8 @@ impl WorldBuilder {
                 scales.slow = Some(scales.slow.map_or(slow, |least| least.min(slow)));
             }
         }
-        bounds.into_iter().for_each(|bounds| scales.spread(bounds));
-        self.bodies.iter().for_each(|body| scales.round_off(largest_radius(&body.shape)));
+        bounds.into_iter().for_each(|bounds| scales.set_bounds(bounds));
+        self.bodies.iter().for_each(|body| scales.include_radius(largest_radius(&body.shape)));
         // Where nothing moves or acts somebody will push: what is usual then crosses all of it in the run.
         let crossing = scales.coordinate / self.settings.duration.unwrap_or(TIME_TO_MOVE);
         if scales.speed_scale() <= f64::EPSILON * crossing {

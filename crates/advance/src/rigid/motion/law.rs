@@ -75,9 +75,9 @@ impl<'a> Wrenches<'a> {
 
 /// A force law.
 ///
-/// A law must not change branch inside a step: where it does, it says so by a switching function, whose sign
-/// changes are located like impacts. Nor must anybody outside change its numbers meanwhile, but for a moment at
-/// which its bodies begin anew, as after an intervention on one of them: one that changes no velocity will do.
+/// A law must be smooth inside a step: where it changes branch, it says so by a switching function, whose sign changes are
+/// located like impacts. Change the parameters of a law only together with an intervention on one of its bodies, which
+/// restarts their steps; a change of velocity by zero will do.
 pub trait ForceLaw: Debug + Send + Sync {
     /// What the law is called in messages and in the energy ledger.
     fn name(&self) -> &str;
@@ -90,20 +90,20 @@ pub trait ForceLaw: Debug + Send + Sync {
     /// often as it takes, and not in the order of time.
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
 
-    /// Potential energy [J] of which the forces are the gradient; `None` if there is none: its work is then integrated.
-    /// One that depends on the time is none, for what it gains by itself is no work of the forces.
+    /// Potential energy V [J], with force = -dV/dposition and torque = -dV/dangle; `None` if there is none: the law's work
+    /// is then integrated. V must not depend on the time: what it gains by itself is no work of the forces.
     fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None
     }
 
-    /// The two points between which the law acts, for whoever shows it; `None` if there are no such.
+    /// The two points between which the law acts, for pictures; `None` if it does not act between two points.
     fn ends(&self) -> Option<[Anchor; 2]> {
         None
     }
 
-    /// Length [m] over which the forces vary by as much as they are, where that may be less than bodies are
-    /// large; `None` if it may not.
+    /// Length [m] over which the forces vary by their own size, |F| / |dF/dposition|, where that may be less than the size
+    /// of the bodies; `None` if it may not.
     fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None
@@ -114,8 +114,8 @@ pub trait ForceLaw: Debug + Send + Sync {
         0
     }
 
-    /// The value of a switching function; the forces are smooth while its sign does not change. Where it is zero they may
-    /// be those of either branch.
+    /// Value of a switching function, in any unit; the forces are smooth while its sign does not change. Where it is zero
+    /// they may be those of either branch.
     fn switch(&self, index: usize, now: &Snapshot<'_>) -> f64 {
         let _ = (index, now);
         1.0
