@@ -117,7 +117,7 @@ pub enum SolveError {
     /// No forces whatever satisfy the rows; the certificate proves it.
     #[error("{0}")]
     Infeasible(Box<Infeasibility>),
-    /// The method stopped without an answer that passes the check. The problem can be written to a file and replayed.
+    /// The method stopped without an answer that passes the check.
     #[error("{method} found no acceptable answer in {iterations} iterations: {residuals}")]
     Unsolved {
         /// The method that gave up.
@@ -137,6 +137,17 @@ pub enum SolveError {
     },
 }
 
+impl SolveError {
+    /// Index of the row at which a contradiction showed; `None` for other errors.
+    #[must_use]
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            Self::Infeasible(infeasibility) => Some(infeasibility.row),
+            Self::Unsolved { .. } | Self::NotApplicable { .. } => None,
+        }
+    }
+}
+
 /// Proof that a problem has no solution.
 ///
 /// `direction` is a combination z of the rows, z ≥ 0 on unilateral rows, that no admissible forces can accelerate: Aᵀz is
@@ -145,7 +156,7 @@ pub enum SolveError {
 /// semidefinite, A z = 0 then.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "no forces satisfy the contacts: row {row} cannot be kept from closing (contradiction {contradiction:e} of the scale)"
+    "no forces satisfy the rows: they contradict each other at row {row}, by {contradiction:e} of the scale"
 )]
 pub struct Infeasibility {
     /// The row at which it showed.

@@ -89,6 +89,20 @@ pub enum ImpactError {
     },
 }
 
+impl ImpactError {
+    /// Index of the row that the error is about; `None` if it is about all of them.
+    #[must_use]
+    pub fn row(&self) -> Option<usize> {
+        match *self {
+            Self::BadRow { row, .. }
+            | Self::Immovable { row, .. }
+            | Self::Infeasible { row, .. }
+            | Self::Unfinished { row, .. } => Some(row),
+            Self::Unsolved { .. } => None,
+        }
+    }
+}
+
 /// Part of a bound on rates that is rounding of the bound itself. What a solve leaves of a rate, times the
 /// row's scale and the problem's scale, is the rate again but for four products and quotients and a root,
 /// each wrong by half a unit in the last place.
