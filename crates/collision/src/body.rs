@@ -58,7 +58,8 @@ impl Body {
         self.inverse_mass == 0.0 && self.inverse_moment == 0.0
     }
 
-    /// Kinetic energy \[J\] in a state. A motion whose inverse mass or inverse moment is 0 has none.
+    /// Kinetic energy \[J\] in a state. Translation counts as 0 if the inverse mass is 0, rotation if the inverse
+    /// moment is.
     #[must_use]
     pub fn kinetic_energy(&self, state: &BodyState) -> f64 {
         let part = |square: f64, inverse: f64| if inverse > 0.0 { 0.5 * square / inverse } else { 0.0 };

@@ -66,7 +66,7 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// Largest size of the difference between a vector of one ball and a vector of the other.
+    /// Largest size of the difference between a vector of this ball and one of the other, in the unit of the quantity.
     #[must_use]
     #[inline]
     pub fn largest_difference(&self, other: &Ball) -> f64 {
@@ -87,7 +87,7 @@ impl Ball {
         Ball { center: -self.center, radius: self.radius }
     }
 
-    /// Largest size of a vector of the ball.
+    /// Largest size of a vector of the ball, in the unit of the quantity.
     #[must_use]
     #[inline]
     pub fn largest(&self) -> f64 {

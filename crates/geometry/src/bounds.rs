@@ -12,7 +12,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that is one point.
+    /// The box that holds only one point [m].
     #[must_use]
     pub fn around(point: DVec2) -> Self {
         Self { min: point, max: point }
@@ -24,7 +24,7 @@ impl Aabb {
         Self { min: center - DVec2::splat(radius), max: center + DVec2::splat(radius) }
     }
 
-    /// The least box around this one and a point.
+    /// The least box around this one and a point [m].
     #[must_use]
     pub fn including(self, point: DVec2) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }

@@ -34,7 +34,7 @@ pub enum FeatureKind {
     Vertex,
     /// An arc that bulges outwards.
     ConvexArc,
-    /// An arc that is hollow.
+    /// An arc that bulges inwards: the solid lies outside of its circle.
     ConcaveArc,
     /// A straight edge.
     Line,
@@ -244,7 +244,7 @@ impl DirectionRange {
         (direction - from).length_squared().min((direction - to).length_squared()).sqrt()
     }
 
-    /// The two ends; `None` for all directions.
+    /// The unit vectors at the first and at the last end; `None` for all directions.
     #[must_use]
     #[inline]
     pub fn ends(&self) -> Option<[DVec2; 2]> {

@@ -11,7 +11,7 @@ use glam::DVec2;
 const FIT: f64 = 1e-6;
 /// Radius, in multiples of the chord [-], beyond which a minor arc is made a straight edge.
 ///
-/// The rise of such an arc is less than 1.25e-8 chords; the rounding of a center as far away would cost as much.
+/// The rise of such an arc is less than 1.25e-8 chords; the rounding of a center that far away would be as large.
 const FLATTEST: f64 = 1e7;
 /// Distance up to which vertices count as one point, as a fraction of the outline's size [-].
 const COINCIDENT: f64 = 1e-9;
@@ -147,7 +147,7 @@ impl Path {
         &self.edges
     }
 
-    /// Smallest axis-aligned box around the path.
+    /// Smallest axis-aligned box [m] around the path.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         let start = Aabb::around(self.edges[0].from());

@@ -27,14 +27,14 @@ impl Rotation {
         Self { cos, sin }
     }
 
-    /// Turns a vector.
+    /// Turns a vector by the rotation.
     #[must_use]
     #[inline]
     pub fn apply(self, v: DVec2) -> DVec2 {
         DVec2::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
     }
 
-    /// Turns a vector back.
+    /// Turns a vector back: the inverse of [`apply`](Self::apply).
     #[must_use]
     #[inline]
     pub fn unapply(self, v: DVec2) -> DVec2 {

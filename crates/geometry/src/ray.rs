@@ -13,9 +13,9 @@ use crate::shape::Shape;
 use crate::tree::Node;
 use glam::DVec2;
 
-/// Rounding, as a fraction of the coordinates [-]. Times origin plus centre distance plus radius, over the slope of the
-/// crossing, it is the distance [m] by which an arc may miss the meeting point; boxes grow by it times origin distance
-/// plus reach.
+/// Rounding of a meeting point, as a fraction of the lengths involved [-]: for an arc, the distances of the ray's
+/// origin and the arc's centre from the body's origin plus the radius, over the slope of the crossing; for a box, the
+/// distance of the ray's origin from the body's origin plus that from the farthest side of the box.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A ray in body coordinates.

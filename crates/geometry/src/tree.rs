@@ -12,7 +12,7 @@ use glam::DVec2;
 /// A node of the tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// Box around all features below, in body coordinates.
+    /// Box around all features below, in body coordinates [m].
     pub bounds: Aabb,
     /// Centre of a circle around all features below, in body coordinates [m].
     pub center: DVec2,

@@ -12,9 +12,13 @@ const SOUND_CORRECTION: f64 = 0.5;
 /// The cubic Q(u) = from + u (slope + u (bend + u twist)) [m] for u from 0 to `width` [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cubic {
+    /// Point at u = 0 [m].
     pub(super) from: DVec2,
+    /// First derivative at u = 0 [-].
     pub(super) slope: DVec2,
+    /// Half of the second derivative at u = 0 [1/m].
     pub(super) bend: DVec2,
+    /// A sixth of the third derivative [1/m^2].
     pub(super) twist: DVec2,
     /// Width of the piece in the parameter [m]: the distance of the points that it joins.
     pub(super) width: f64,
