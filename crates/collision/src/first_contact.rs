@@ -11,8 +11,7 @@ use crate::motion::{BodyState, Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Pose, Shape, pair_kind};
 
-/// Lean of a corner off a line (angle times the corner's lever) at which it still fires, as a fraction of the accuracy
-/// [-].
+/// Lean of a corner off a line (angle times lever) at which it still fires, as a fraction of the accuracy [-].
 const LEAN_SHARE: f64 = 1.0 / 16.0;
 
 /// Distance beyond the end of a line at which a contact still fires, as a fraction of the accuracy [-]. The end is then

@@ -11,8 +11,7 @@ const PARALLEL: f64 = 1e-6;
 /// Sine of the angle between two normals [-] below which they count as one if one of the contacts lies beyond its edge.
 const OVERHANG: f64 = 0.1;
 
-/// Angle by which the normal of two corners may differ from another, as a multiple of the rounding of its direction
-/// [-].
+/// Angle by which the normal of two corners may differ from another, in multiples of its rounding [-].
 const UNKNOWN_SHARE: f64 = 4.0;
 
 /// Distance outside of its features at which a contact counts as within, as a fraction of the accuracy [-].

@@ -85,7 +85,7 @@ impl Arc {
         let across = chord.perp() / chord.length();
         let height = across.dot(center - middle);
         let exact_center = middle + across * height;
-        // For more than half a turn a shift of the center moves the far side as much as itself.
+        // For more than half a turn a shift of the center moves the far side of the arc by as much.
         let beyond_half = clockwise == (height > 0.0);
         let moved = (exact_center - center).length();
         let off = (from_radius - to_radius).abs();

@@ -46,7 +46,7 @@ fn line_line(a: &Line, b: &Line) -> Option<DVec2> {
     if from_a == to_a || from_b == to_b || from_a * to_a > 0.0 || from_b * to_b > 0.0 {
         return None;
     }
-    // An end that lies on the other line is returned exactly.
+    // At an end of `a` that lies on the other line the fraction is exactly 0 or 1.
     let point = a.from() + (a.to() - a.from()) * (from_a / (from_a - to_a));
     // The sides of lines that are parallel to rounding are noise, and the point may be anywhere.
     let off = (b.nearest(point) - point).length();

@@ -213,7 +213,8 @@ impl GapSample {
                 Self::of_line(round, pose_b, line, pose_a, false)
             }
             (_, Feature::Round(a), Feature::Round(b)) => {
-                // The concave arc is the normal side; otherwise the vertex is the primary side.
+                // A concave arc is the normal side; otherwise the feature of lesser radius, such as a vertex, is the
+                // primary side.
                 let primary_is_a =
                     if kind == PairKind::Inner { b.radius < 0.0 } else { a.radius <= b.radius };
                 if primary_is_a {

@@ -89,11 +89,11 @@ fn neighbours_meet(a: &Edge, b: &Edge, common: [Option<DVec2>; 2], tol: f64) -> 
     let is_common = |p: DVec2| common.iter().flatten().any(|&vertex| (p - vertex).length() <= tol);
     let is_on = |edge: &Edge, p: DVec2| (edge.nearest(p) - p).length() <= tol;
     if let [Some(_), Some(_)] = common {
-        // Two lines with both ends in common are one.
+        // Two lines with both ends in common coincide.
         if let (Edge::Line(line), Edge::Line(_)) = (a, b) {
             return Some(0.5 * (line.from() + line.to()));
         }
-        // Two arcs with both ends in common are one if their middles are.
+        // Two arcs with both ends in common coincide if their middles do.
         let middle = middle_of(a);
         return is_on(b, middle).then_some(middle);
     }

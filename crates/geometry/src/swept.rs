@@ -104,7 +104,7 @@ fn round_extent(round: &RoundFeature, axes: &DirectionRange) -> f64 {
     let of_inside =
         candidates.filter(|&axis| round.range.contains(axis)).map(|axis| center.dot(axis) + radius);
     let of_inside = of_inside.fold(f64::NEG_INFINITY, f64::max);
-    // About its own center a whole circle reaches as far along any axis.
+    // A whole circle about the body's origin reaches equally far along all axes.
     let of_circle =
         if away.is_none() && round.range == DirectionRange::Full { radius } else { f64::NEG_INFINITY };
     of_ends.max(of_inside).max(of_circle)
