@@ -14,10 +14,10 @@
 //! # Code map
 //!
 //! `pose` places a body, by the `sine` of its angle; `line`, `arc` and `edge` are the edges, `crossing` and
-//! `edge_distance` what two of them have to do with each other; `path` chains them, `outline` orients paths,
-//! `simple` refuses those that meet, `mass` integrates over them; `shape` bundles outline, features and tree,
-//! `pool` keeps equal ones once; `build` and `build_mechanism` are the ready-made shapes. `feature` and `gap`
-//! answer how far apart two features are; `tree` finds the features near a place. The queries on shapes are
+//! `edge_distance` the common points and the distance of two edges; `path` chains edges, `outline` orients paths,
+//! `simple` refuses paths that meet, `mass` integrates over their inside; `shape` bundles outline, features and tree,
+//! `pool` keeps equal shapes once; `build` and `build_mechanism` are the ready-made shapes. `feature` and `gap`
+//! measure how far apart two features are; `tree` finds the features near a place. The queries on shapes are
 //! `inside`, `nearest`, `ray`, `distance` (of two shapes), `bounds` and `swept` (boxes).
 //!
 //! # Examples

@@ -7,43 +7,43 @@ use crate::error::{ArcError, LineError, ShapeError};
 use crate::line::Line;
 use glam::DVec2;
 
-/// End points and arc radii may be off by this part of the outline's size; they are then made exact.
+/// Largest accepted error of end points and arc radii, as a fraction of the outline's size [-]; they are made exact.
 const FIT: f64 = 1e-6;
-/// A minor arc whose radius is more than this many chords is a straight edge.
+/// Radius, in multiples of the chord [-], beyond which a minor arc is made a straight edge.
 ///
-/// Its rise is then less than 1.25e-8 chords; the rounding of so far a center would cost as much.
+/// The rise of such an arc is less than 1.25e-8 chords; the rounding of a center that far away would be as large.
 const FLATTEST: f64 = 1e7;
-/// Vertices closer than this part of the outline's size are one point.
+/// Distance up to which vertices count as one point, as a fraction of the outline's size [-].
 const COINCIDENT: f64 = 1e-9;
 
-/// An edge as a person writes it: it starts where the last one ended.
+/// Specification of an edge, which starts at the end of the edge before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EdgeSpec {
     /// A straight edge.
     Line {
-        /// Where it ends [m].
+        /// End point [m].
         to: DVec2,
     },
     /// An arc about a center.
     Arc {
-        /// Where it ends [m].
+        /// End point [m].
         to: DVec2,
         /// Center of the circle [m].
         center: DVec2,
-        /// Which way it runs.
+        /// True for an arc that runs clockwise, false for one that runs counter-clockwise.
         clockwise: bool,
     },
     /// An arc given by its bulge, the tangent of a quarter of its sweep; positive counter-clockwise, 0 a straight edge.
     Bulge {
-        /// Where it ends [m].
+        /// End point [m].
         to: DVec2,
-        /// Tangent of a quarter of the sweep.
+        /// Tangent of a quarter of the sweep [-], positive counter-clockwise.
         bulge: f64,
     },
 }
 
 impl EdgeSpec {
-    /// Where the edge ends [m].
+    /// End point of the edge [m].
     #[must_use]
     pub fn to(&self) -> DVec2 {
         match *self {
@@ -51,7 +51,7 @@ impl EdgeSpec {
         }
     }
 
-    /// Center and radius of an arc of half a turn or more that starts at `from`.
+    /// Center and radius [m] of an arc of half a turn or more that starts at `from`; `None` for other edges.
     fn major_circle(&self, from: DVec2) -> Option<(DVec2, f64)> {
         let chord = self.to() - from;
         match *self {
@@ -78,10 +78,10 @@ impl EdgeSpec {
     }
 }
 
-/// A closed path as a person writes it: the last edge ends at `start`.
+/// Specification of a closed path, whose last edge ends at `start`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathSpec {
-    /// Where the first edge starts and the last one ends [m].
+    /// Start of the first edge and end of the last one [m].
     pub start: DVec2,
     /// The edges in order.
     pub edges: Vec<EdgeSpec>,
@@ -98,28 +98,28 @@ impl PathSpec {
         Self { start, edges }
     }
 
-    /// The full counter-clockwise circle about `center` [m].
+    /// The full counter-clockwise circle about `center` [m] of the given radius [m].
     #[must_use]
     pub fn circle(center: DVec2, radius: f64) -> Self {
         let start = center + DVec2::X * radius;
         Self { start, edges: vec![EdgeSpec::Arc { to: start, center, clockwise: false }] }
     }
 
-    /// Index of the first edge with a coordinate that is not finite.
+    /// Index of the first edge with a number that is not finite; 0 if the start is not.
     pub(crate) fn first_not_finite(&self) -> Option<usize> {
         let edge = self.edges.iter().position(|edge| !edge.is_finite());
         if self.start.is_finite() { edge } else { Some(0) }
     }
 
-    /// Box around all end points and the circles of all arcs of half a turn or more, and of one that is all of the path:
-    /// what "the size of the outline" is measured on.
+    /// Box around all end points, the circles of all arcs of half a turn or more, and that of a path of a single arc.
+    /// The size of the outline is measured on these boxes.
     fn rough_bounds(&self) -> Aabb {
         let mut from = self.start;
         let mut bounds = Aabb::around(from);
         for edge in &self.edges {
             bounds = bounds.including(edge.to());
             let circle = match *edge {
-                // It closes, whichever side of its start rounding has its end.
+                // A single arc is a full circle, on whichever side of its start rounding puts its end.
                 EdgeSpec::Arc { center, .. } if self.edges.len() == 1 => {
                     Some((center, (from - center).length()))
                 }
@@ -147,14 +147,14 @@ impl Path {
         &self.edges
     }
 
-    /// Smallest axis-aligned box around the path.
+    /// Smallest axis-aligned box [m] around the path.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         let start = Aabb::around(self.edges[0].from());
         self.edges.iter().fold(start, |bounds, edge| bounds.union(edge.bounds()))
     }
 
-    /// True if the path runs around the point, whichever way. On the path itself the answer is either.
+    /// True if the path runs around the point [m], in either direction. On the path itself the answer is either.
     #[must_use]
     pub fn surrounds(&self, point: DVec2) -> bool {
         self.edges.iter().map(|edge| winding(edge, point)).sum::<i32>() != 0
@@ -175,12 +175,12 @@ pub(crate) fn outline_size(specs: &[PathSpec]) -> f64 {
     boxes.reduce(Aabb::union).map_or(0.0, |bounds| bounds.size().max_element())
 }
 
-/// Two points are one when closer than this [m], in an outline of the given size [m].
+/// Distance [m] up to which two points of an outline of the given size [m] count as one.
 pub(crate) fn coincidence_tol(size: f64) -> f64 {
     COINCIDENT * size
 }
 
-/// Builds the path with index `path`, whose numbers are finite, of an outline of the given size [m].
+/// Builds the path with index `path` of an outline of the given size [m]; the numbers of `spec` must be finite.
 pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path, ShapeError> {
     let Some(last) = spec.edges.len().checked_sub(1) else {
         return Err(ShapeError::EmptyPath { path });
@@ -258,11 +258,12 @@ impl EdgeFault {
     }
 }
 
-/// Crossings of the ray from `point` towards +x by the edge, upward ones counted +1 and downward ones -1.
+/// Number of crossings of the edge with the ray from `point` towards +x, upward ones counted +1 and downward ones -1.
 ///
-/// An arc is its chord plus the circular segment between them, around which it winds once or not at all.
+/// An arc counts as its chord plus the border of the circular segment between the two, which winds around the point
+/// once or not at all.
 ///
-/// A point on a chord counts as just to the right of it and above, for chord and segment alike.
+/// A point on a chord counts as lying just beyond it towards +x, and above its ends, for chord and segment alike.
 pub(crate) fn winding(edge: &Edge, point: DVec2) -> i32 {
     let (from, to) = (edge.from() - point, edge.to() - point);
     // Positive if the point is on the left of the chord.
