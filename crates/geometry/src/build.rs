@@ -1,7 +1,8 @@
 //! Ready-made shapes.
 
+use crate::edge_spec::EdgeSpec;
 use crate::error::ShapeError;
-use crate::path::{EdgeSpec, PathSpec};
+use crate::path::PathSpec;
 use crate::shape::Shape;
 use glam::DVec2;
 

@@ -1,8 +1,9 @@
 //! Ready-made shapes for mechanisms: capsules, regular polygons, sectors, slotted blocks.
 
 use crate::build::check_length;
+use crate::edge_spec::EdgeSpec;
 use crate::error::ShapeError;
-use crate::path::{EdgeSpec, PathSpec};
+use crate::path::PathSpec;
 use crate::shape::Shape;
 use glam::DVec2;
 use std::f64::consts::TAU;

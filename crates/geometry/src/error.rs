@@ -45,6 +45,17 @@ pub enum ArcError {
     },
 }
 
+/// Reason why an edge could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EdgeError {
+    /// A straight edge cannot be built.
+    #[error(transparent)]
+    Line(#[from] LineError),
+    /// An arc cannot be built.
+    #[error(transparent)]
+    Arc(#[from] ArcError),
+}
+
 /// Reason why a shape could not be built. Paths and edges are counted from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

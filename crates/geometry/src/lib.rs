@@ -43,6 +43,7 @@ mod crossing;
 mod distance;
 mod edge;
 mod edge_distance;
+mod edge_spec;
 mod error;
 mod feature;
 mod gap;
@@ -67,7 +68,8 @@ pub use crossing::edge_crossings;
 pub use distance::{Relation, ShapeDistance};
 pub use edge::Edge;
 pub use edge_distance::{ClosestPair, edge_distance};
-pub use error::{ArcError, LineError, ShapeError};
+pub use edge_spec::EdgeSpec;
+pub use error::{ArcError, EdgeError, LineError, ShapeError};
 pub use feature::{
     DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
@@ -76,7 +78,7 @@ pub use glam::DVec2;
 pub use line::Line;
 pub use mass::MassProperties;
 pub use nearest::NearestPoint;
-pub use path::{EdgeSpec, Path, PathSpec};
+pub use path::{Path, PathSpec};
 pub use pool::ShapePool;
 pub use pose::{Pose, Rotation};
 pub use ray::{Ray, RayHit};

@@ -1,82 +1,14 @@
-//! Closed paths of edges, and the specification from which they are made.
+//! Closed paths of edges, and the specification from which they are made. That of an edge is in `edge_spec`.
 
 use crate::arc::Arc;
 use crate::bounds::Aabb;
 use crate::edge::Edge;
-use crate::error::{ArcError, LineError, ShapeError};
-use crate::line::Line;
+use crate::edge_spec::EdgeSpec;
+use crate::error::{EdgeError, LineError, ShapeError};
 use glam::DVec2;
 
-/// Largest accepted error of end points and arc radii, as a fraction of the outline's size [-]; they are made exact.
-const FIT: f64 = 1e-6;
-/// Radius, in multiples of the chord [-], beyond which a minor arc is made a straight edge.
-///
-/// The rise of such an arc is less than 1.25e-8 chords; the rounding of a center that far away would be as large.
-const FLATTEST: f64 = 1e7;
 /// Distance up to which vertices count as one point, as a fraction of the outline's size [-].
 const COINCIDENT: f64 = 1e-9;
-
-/// Specification of an edge, which starts at the end of the edge before it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EdgeSpec {
-    /// A straight edge.
-    Line {
-        /// End point [m].
-        to: DVec2,
-    },
-    /// An arc about a center.
-    Arc {
-        /// End point [m].
-        to: DVec2,
-        /// Center of the circle [m].
-        center: DVec2,
-        /// True for an arc that runs clockwise, false for one that runs counter-clockwise.
-        clockwise: bool,
-    },
-    /// An arc given by its bulge, the tangent of a quarter of its sweep; positive counter-clockwise, 0 a straight edge.
-    Bulge {
-        /// End point [m].
-        to: DVec2,
-        /// Tangent of a quarter of the sweep [-], positive counter-clockwise.
-        bulge: f64,
-    },
-}
-
-impl EdgeSpec {
-    /// End point of the edge [m].
-    #[must_use]
-    pub fn to(&self) -> DVec2 {
-        match *self {
-            EdgeSpec::Line { to } | EdgeSpec::Arc { to, .. } | EdgeSpec::Bulge { to, .. } => to,
-        }
-    }
-
-    /// Center and radius [m] of an arc of half a turn or more that starts at `from`; `None` for other edges.
-    fn major_circle(&self, from: DVec2) -> Option<(DVec2, f64)> {
-        let chord = self.to() - from;
-        match *self {
-            EdgeSpec::Line { .. } => None,
-            EdgeSpec::Arc { center, clockwise, .. } => {
-                let left = chord.perp_dot(center - from);
-                let major = if clockwise { left >= 0.0 } else { left <= 0.0 };
-                major.then(|| (center, (from - center).length()))
-            }
-            EdgeSpec::Bulge { bulge, .. } => (bulge.abs() >= 1.0).then(|| {
-                let center = bulge_center(from, chord, bulge);
-                (center, (from - center).length())
-            }),
-        }
-    }
-
-    fn is_finite(&self) -> bool {
-        self.to().is_finite()
-            && match *self {
-                EdgeSpec::Line { .. } => true,
-                EdgeSpec::Arc { center, .. } => center.is_finite(),
-                EdgeSpec::Bulge { bulge, .. } => bulge.is_finite(),
-            }
-    }
-}
 
 /// Specification of a closed path, whose last edge ends at `start`.
 #[derive(Clone, Debug, PartialEq)]
@@ -186,7 +118,7 @@ pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path
         return Err(ShapeError::EmptyPath { path });
     };
     let gap = (spec.edges[last].to() - spec.start).length();
-    if gap > FIT * size {
+    if gap > EdgeSpec::FIT * size {
         return Err(ShapeError::OpenPath { path, edge: last, gap });
     }
     if let [EdgeSpec::Arc { center, clockwise, .. }] = spec.edges[..] {
@@ -202,58 +134,20 @@ pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path
         if length <= coincidence_tol(size) {
             return Err(ShapeError::CoincidentVertices { path, edge, length });
         }
-        edges.push(build_edge(from, to, part, FIT * size).map_err(|error| error.at(path, edge))?);
+        let built = part.edge_between(from, to, EdgeSpec::FIT * size);
+        edges.push(built.map_err(|error| path_error(error, path, edge))?);
         from = to;
     }
     Ok(Path { edges })
 }
 
-fn build_edge(from: DVec2, to: DVec2, spec: &EdgeSpec, fit_tol: f64) -> Result<Edge, EdgeFault> {
-    let arc = match *spec {
-        EdgeSpec::Line { .. } => return Ok(Edge::Line(Line::new(from, to)?)),
-        EdgeSpec::Bulge { bulge, .. } if 4.0 * FLATTEST * bulge.abs() < 1.0 => {
-            return Ok(Edge::Line(Line::new(from, to)?));
-        }
-        EdgeSpec::Arc { center, clockwise, .. } => Arc::between(from, to, center, clockwise, fit_tol)?,
-        EdgeSpec::Bulge { bulge, .. } => {
-            let center = bulge_center(from, to - from, bulge);
-            Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)?
-        }
-    };
-    let flat = FLATTEST * arc.sweep_angle().abs() < 1.0;
-    Ok(if flat { Edge::Line(Line::new(from, to)?) } else { Edge::Arc(arc) })
-}
-
-/// Center of the arc over a chord: on the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
-fn bulge_center(from: DVec2, chord: DVec2, bulge: f64) -> DVec2 {
-    from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge))
-}
-
-enum EdgeFault {
-    Line(LineError),
-    Arc(ArcError),
-}
-
-impl From<LineError> for EdgeFault {
-    fn from(error: LineError) -> Self {
-        EdgeFault::Line(error)
-    }
-}
-
-impl From<ArcError> for EdgeFault {
-    fn from(error: ArcError) -> Self {
-        EdgeFault::Arc(error)
-    }
-}
-
-impl EdgeFault {
-    fn at(self, path: usize, edge: usize) -> ShapeError {
-        match self {
-            EdgeFault::Arc(source) => ShapeError::Arc { path, edge, source },
-            EdgeFault::Line(LineError::NotFinite) => ShapeError::NotFinite { path, edge },
-            EdgeFault::Line(LineError::ZeroLength(..)) => {
-                ShapeError::CoincidentVertices { path, edge, length: 0.0 }
-            }
+/// The error of a path whose edge with index `edge` cannot be built.
+fn path_error(error: EdgeError, path: usize, edge: usize) -> ShapeError {
+    match error {
+        EdgeError::Arc(source) => ShapeError::Arc { path, edge, source },
+        EdgeError::Line(LineError::NotFinite) => ShapeError::NotFinite { path, edge },
+        EdgeError::Line(LineError::ZeroLength(..)) => {
+            ShapeError::CoincidentVertices { path, edge, length: 0.0 }
         }
     }
 }

@@ -5,12 +5,8 @@ use super::edge_piece::EdgePiece;
 use super::error::RailError;
 use super::path::{Foot, RailHint, RailKnot, RailPlace};
 use glam::DVec2;
-use halfgap_geometry::{Aabb, Arc, Edge, EdgeSpec, Line};
+use halfgap_geometry::{Aabb, Arc, Edge, EdgeError, EdgeSpec};
 
-/// Largest accepted error of end points and arc radii, as a fraction of the path's size [-]; they are made exact.
-const FIT: f64 = 1e-6;
-/// Size of a bulge [-] below which it is a straight edge: the arc's rise would be less than 1.25e-8 chords.
-const FLATTEST_BULGE: f64 = 2.5e-8;
 /// Turn of a joint [rad] below which it is smooth.
 const SMOOTH_TURN: f64 = 1e-6;
 
@@ -249,7 +245,7 @@ fn build_edges(start: DVec2, specs: &[EdgeSpec]) -> Result<Vec<Edge>, RailError>
     let mut from = start;
     let mut edges = Vec::with_capacity(specs.len());
     for (index, spec) in specs.iter().enumerate() {
-        let returns = (spec.to() - start).length() <= FIT * size;
+        let returns = (spec.to() - start).length() <= EdgeSpec::FIT * size;
         let to = if index == last && returns { start } else { spec.to() };
         edges.push(build_edge(index, from, to, spec, size)?);
         from = to;
@@ -270,25 +266,17 @@ fn path_size(start: DVec2, specs: &[EdgeSpec]) -> f64 {
 }
 
 fn build_edge(index: usize, from: DVec2, to: DVec2, spec: &EdgeSpec, size: f64) -> Result<Edge, RailError> {
-    let straight = || {
-        let line = Line::new(from, to).map_err(|source| RailError::Line { edge: index, source })?;
-        Ok(Edge::Line(line))
-    };
-    let arc = match *spec {
-        EdgeSpec::Line { .. } => return straight(),
-        EdgeSpec::Bulge { bulge, .. } if bulge.abs() < FLATTEST_BULGE => return straight(),
-        EdgeSpec::Arc { center, clockwise, .. } if (to - from).length() <= FIT * size => {
-            Arc::circle(center, from, clockwise)
+    let fit_tol = EdgeSpec::FIT * size;
+    let edge = match *spec {
+        EdgeSpec::Arc { center, clockwise, .. } if (to - from).length() <= fit_tol => {
+            Arc::circle(center, from, clockwise).map(Edge::Arc).map_err(EdgeError::from)
         }
-        EdgeSpec::Arc { center, clockwise, .. } => Arc::between(from, to, center, clockwise, FIT * size),
-        EdgeSpec::Bulge { bulge, .. } => {
-            // On the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
-            let chord = to - from;
-            let center = from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
-            Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)
-        }
+        _ => spec.edge_between(from, to, fit_tol),
     };
-    arc.map(Edge::Arc).map_err(|source| RailError::Arc { edge: index, source })
+    edge.map_err(|error| match error {
+        EdgeError::Line(source) => RailError::Line { edge: index, source },
+        EdgeError::Arc(source) => RailError::Arc { edge: index, source },
+    })
 }
 
 /// The joints of pieces, also those without any jump: a hint that stays on a piece must be moved to the next. An open
