@@ -20,9 +20,9 @@ impl HeldRows {
     /// of a row's square than the 1e-6 by which soft rows are raised.
     ///
     /// The squares of these rows are raised by 1e-6 of themselves, and [`solve`](Self::solve) makes up for the missing
-    /// force by refinement. Forces therefore do not jump when other rows become dependent along a motion, and a motion
-    /// that violates the rows by rounding causes no forces from their disagreement alone. A violation by more than
-    /// about 1e-7 of a length does: callers farther off must move the bodies onto the rows first.
+    /// force by refinement. Forces therefore do not jump when the dependence among these rows changes along a motion,
+    /// and a motion that violates the rows by rounding causes no forces from their disagreement alone. A violation by
+    /// more than about 1e-7 of a length does: callers farther off must move the bodies onto the rows first.
     pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
         for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
             *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
