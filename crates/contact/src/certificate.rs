@@ -23,7 +23,8 @@ use crate::settings::Settings;
 use crate::system::System;
 use crate::twofold::{Number, Twofold};
 
-/// δ, in units of the unit diagonal of Â: each step leaves δ/(δ + λ) of û in the direction of an eigenvalue λ of Â.
+/// δ, in units of the diagonal of Â, which is 1: each step leaves δ/(δ + λ) of û in the direction of an eigenvalue λ of
+/// Â.
 const TERM: f64 = 1e-11;
 
 /// Cap on the steps.

@@ -11,6 +11,7 @@ use crate::settings::DOUBTFUL;
 use crate::skyline::Skyline;
 use crate::system::System;
 
+/// Position of an open row.
 const OPEN: u32 = u32::MAX;
 
 /// Fraction of the raise of the diagonal: a Schur complement up to it counts as dependent, as rounding may have taken
@@ -45,9 +46,9 @@ pub(crate) struct ClosedRows {
     pub(crate) force: Vec<f64>,
     /// Scaled acceleration of every row.
     pub(crate) acceleration: Vec<f64>,
-    /// Largest sum of terms of an acceleration at the last evaluation, or a bound on it.
+    /// Largest sum of absolute terms of an acceleration at the last evaluation, or a bound on it.
     pub(crate) terms: f64,
-    /// Whether `terms` is only a bound, Σ|f̂|, for no entry of Â exceeds 1.
+    /// Whether `terms` is only the bound Σ|f̂|, as no entry of Â exceeds 1.
     pub(crate) terms_bound: bool,
     /// L⁻¹ Â_Cd of the row d last [considered](Self::consider).
     reach: Vec<f64>,
@@ -59,18 +60,18 @@ pub(crate) struct ClosedRows {
     pub(crate) step: Vec<f64>,
     /// Scaled Schur complement up to which a row depends on the closed rows.
     dependence: f64,
-    /// Whether a row of which no more than rounding is left counts as dependent, too.
+    /// Whether a row whose remainder may be rounding counts as dependent, too.
     doubts: bool,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
-    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed;
-    /// what forces then lack is left to refinement.
+    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; refinement
+    /// removes the error of the forces.
     pub(crate) spread: f64,
     /// Whether the factor was raised so in the last solve.
     pub(crate) was_spread: bool,
 }
 
-/// How a row relates to the closed rows.
+/// Relation of a row to the closed rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Relation {
     /// Schur complement Â_dd - Â_dC Â_CC⁻¹ Â_Cd: the remainder of the row's square, 1, that the closed rows leave.

@@ -20,6 +20,7 @@ const TIE: f64 = 4.5e4;
 /// Number of roundings of the terms of an entry: an entry up to this is zero.
 const LEFT: f64 = 64.0;
 
+/// Column of a w that is basic.
 const NONE: u32 = u32::MAX;
 
 /// Basic variables as affine functions of the nonbasic ones.

@@ -66,7 +66,7 @@ pub enum ProblemError {
         /// Number of rows of the problem.
         rows: usize,
     },
-    /// A matrix given as symmetric is not.
+    /// A matrix that was given as symmetric is not.
     #[error(
         "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference:e}"
     )]
@@ -114,7 +114,7 @@ pub enum ProblemError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// No forces whatever satisfy the rows; the certificate proves it.
+    /// No forces satisfy the rows, by the enclosed proof.
     #[error("{0}")]
     Infeasible(Box<Infeasibility>),
     /// The method stopped without an answer that passes the check. The problem can be written to a file and replayed.
@@ -124,10 +124,10 @@ pub enum SolveError {
         method: Method,
         /// Residuals of its last forces.
         residuals: Residuals,
-        /// Pivots or iterations made.
+        /// Number of pivots or iterations made.
         iterations: usize,
     },
-    /// The method does not serve this kind of problem.
+    /// The method does not apply to this kind of problem.
     #[error("{method} does not apply: {reason}")]
     NotApplicable {
         /// The method.

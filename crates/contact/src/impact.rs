@@ -10,12 +10,12 @@
 //! close or rest, but not rows that open. Only without elasticity, with b' = 0 for all rows, may it hold any row: it is
 //! then the projection onto the admissible motions in the energy norm.
 //!
-//! | module | what |
+//! | module | contents |
 //! |---|---|
 //! | `law` | the laws, the order of rows, errors |
 //! | `together`, `serial` | all rows in one problem, or one after another |
 //! | `patience` | the end of ricochets |
-//! | `pair_problem`, `few_rows`, `many_rows` | one or two rows in closed form, up to eight directly; more by the active-set method |
+//! | `pair_problem`, `few_rows`, `many_rows` | up to two rows in closed form, up to eight directly, more by the active-set method |
 //! | `couplings` | the Delassus matrix |
 //! | `shuffle` | random orders |
 

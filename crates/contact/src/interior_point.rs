@@ -27,7 +27,7 @@ const FEASIBLE: f64 = 1e-9;
 const NEAR: f64 = 1e-8;
 /// Least error that known forces are taken to have, in units of the scale.
 const LEAST_WRONG: f64 = 1e-6;
-/// Cap on steps.
+/// Cap on the number of steps.
 const STEPS: usize = 50;
 /// Largest fraction of the way to the boundary that a step goes, far from the end.
 const WITHIN: f64 = 0.995;

@@ -7,6 +7,7 @@ use crate::error::Infeasibility;
 use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 
+/// No row, or not in the island.
 const NONE: u32 = u32::MAX;
 
 /// Number of islands that are kept as problems and have solvers of their own; all later islands share the last ones.

@@ -103,23 +103,23 @@ pub struct ContactFile {
 pub enum MatrixField {
     /// All rows, with all entries.
     Dense(Vec<Vec<f64>>),
-    /// Entries that are not zero.
+    /// The nonzero entries only.
     Sparse {
         /// Number of rows and columns.
         n: usize,
-        /// Row, column, value; values at one place add up.
+        /// Row, column, value [1/kg]; values at the same place add up.
         triplets: Vec<(usize, usize, f64)>,
     },
 }
 
-/// Rows J of bodies.
+/// The rows J of bodies, sparse.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RowsField {
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// Row, column, coefficient; coefficients at one place add up.
+    /// Row, column, coefficient (x and y \[1\], rotation \[m\]); coefficients at the same place add up.
     pub triplets: Vec<(usize, usize, f64)>,
 }
 
@@ -260,11 +260,11 @@ fn triplets(matrix: &SparseMatrix) -> Vec<(usize, usize, f64)> {
     (0..matrix.rows()).flat_map(row).collect()
 }
 
-/// The contents of an answer file, format Name of the format, `halfgap-solution-1`.
+/// The contents of an answer file, format `halfgap-solution-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SolutionFile {
-    /// `halfgap-solution-1`.
+    /// Name of the format, `halfgap-solution-1`.
     pub format: String,
     /// Outcome: `solved`, `infeasible` or `failed`.
     pub status: String,

@@ -224,7 +224,8 @@ impl ProximalNewton {
             values.clear();
             values.resize(columns, 0.0);
         }
-        // The factor stays if only b has changed; from an earlier answer its proximal term is as good as another.
+        // The factor stays if only b has changed; with an earlier answer, its proximal term serves as well as
+        // `WARM_TERM`.
         if !same || warm.is_none() {
             self.inside.clear();
             self.inside.resize(n, false);

@@ -1,13 +1,15 @@
 //! The scaled problem that symmetric solvers work on.
 //!
 //! With s_i = sqrt(A_ii) (1 where A_ii = 0): f̂ = s f, â = a/s, b̂ = b/s, Â_ij = A_ij/(s_i s_j), so that Â has a unit
-//! diagonal and nothing depends on units. For rows of bodies Â = Ĵ Ĵᵀ with Ĵ_ik = J_ik sqrt(M⁻¹_k)/s_i, and Â is never
-//! formed: an entry costs at most six products and a product Â f̂ costs twelve per row. Columns without mass drop out.
+//! diagonal and nothing depends on units. For rows of bodies Â = Ĵ Ĵᵀ with Ĵ_ik = J_ik sqrt(M⁻¹_k)/s_i. The entries of
+//! Â are formed only if the same pattern of rows comes again (see `entries`); without them an entry costs at most six
+//! products, and a product Â f̂ costs twelve per row. Immovable columns drop out.
 
 use crate::entries::Entries;
 use crate::matrix::{BodyRows, Matrix, SparseMatrix};
 use crate::problem::Problem;
 
+/// The end of a list, or the position of an open row.
 const NONE: u32 = u32::MAX;
 
 /// Scaled rows. The closed rows are listed per column, so that Â_dC takes time proportional to the contacts of the

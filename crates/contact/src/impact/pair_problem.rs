@@ -1,8 +1,8 @@
 //! The complementarity problem of one or two rows, in closed form.
 //!
 //! A f + b >= 0, f >= 0, f.(A f + b) = 0: for two rows there are four cases of which rows carry a force, and for a
-//! positive semidefinite A one of them fits; a bilateral row always carries one. Dependent rows (a seam between two
-//! blocks) share what one of them needs.
+//! positive semidefinite A one of them fits; a bilateral row always carries one. Of two dependent rows (a seam between
+//! two blocks) one carries the force for both.
 
 /// Fraction of the product of the diagonal of a 2 x 2 matrix: a determinant below it is rounding, and the two rows are
 /// dependent.
