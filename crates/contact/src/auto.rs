@@ -367,7 +367,7 @@ mod tests {
         assert!(10 * found.iterations < pivoted.iterations, "{}, {}", found.iterations, pivoted.iterations);
         let errors = found.acceleration.iter().zip(&pivoted.acceleration).map(|(a, b)| (a - b).abs());
         assert!(errors.fold(0.0, f64::max) < 1e-9);
-        // Forces that are to be those of independent rows are moved to such.
+        // With `Vertex`, forces are moved to independent rows.
         let settings = Settings { selection: ForceSelection::Vertex, ..Settings::default() };
         let mut auto = Auto::new(settings).expect("fine settings");
         auto.solve(&problem, &mut found).expect("forces of a pyramid");

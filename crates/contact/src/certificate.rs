@@ -185,7 +185,7 @@ mod tests {
 
     const DISCS: usize = 5;
 
-    /// Discs of unlike masses in a column between a floor and a lid, which would come so much nearer to each other.
+    /// Discs of unlike masses in a column between a floor and a lid that approach each other by a given amount.
     fn column(nearer: f64) -> Result<Problem, ProblemError> {
         let mut rows = Vec::new();
         for disc in 0..DISCS {
@@ -203,14 +203,14 @@ mod tests {
         let proof = solver.refine_proof(&column(1.0)?, &rough).expect("discs that are squeezed");
         assert!(proof.direction.iter().all(|z| (z / proof.direction[0] - 1.0).abs() < 1e-15), "{proof:?}");
         assert!(proof.contradiction > 0.01 && proof.leakage < 1e-15, "{proof:?}");
-        // What comes no nearer has room.
+        // A lid that does not approach leaves the discs room.
         assert_eq!(solver.refine_proof(&column(-1.0)?, &rough), None);
         Ok(())
     }
 
     #[test]
     fn rows_that_nearly_cancel_each_other_prove_nothing() -> Result<(), ProblemError> {
-        // A wedge that slips out of its slot, of next to no angle, by A z of 1e-16.
+        // A wedge that slips out of its slot, of nearly no angle, with A z of 1e-16.
         let rows = [(0, 1, 1.0), (1, 0, 1e-8), (1, 1, -1.0)];
         let problem = Problem::from_rows(&rows, &[1.0, 1.0], &[-1.0, -1.0])?;
         assert_eq!(ProximalNewton::default().refine_proof(&problem, &[1.0, 1.0]), None);

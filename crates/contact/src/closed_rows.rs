@@ -368,7 +368,7 @@ mod tests {
         closed.load(&problem, 1e-11, false);
         closed.spread = 1e-9;
         assert!(closed.close_flagged(&[true, true]));
-        // What takes a pass over the factor for each row was not looked at.
+        // The rounding, which takes a pass over the factor for each row, was not computed.
         assert_eq!((closed.len(), closed.shares.len()), (2, 0));
         Ok(())
     }

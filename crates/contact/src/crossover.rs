@@ -156,8 +156,8 @@ mod tests {
     use crate::solver::Solver;
     use crate::test_problems::pyramid;
 
-    /// Moves the forces that the proximal method shares among the rows of a pyramid of which every so many-th row
-    /// is bilateral.
+    /// Moves the forces that the proximal method shares among the rows of a pyramid, in which every n-th row is
+    /// bilateral.
     fn check(layers: usize, every: usize) {
         let mut problem = pyramid(layers, 0.5);
         let bilateral: Vec<bool> = (0..problem.len()).map(|row| row % every == every - 1).collect();
@@ -168,7 +168,7 @@ mod tests {
         dual.cross_over(&problem, &mut moved).expect("the same forces on other rows");
         let carrying = |solution: &Solution| solution.force.iter().filter(|force| **force != 0.0).count();
         assert!(carrying(&moved) < carrying(&shared), "{} of {}", carrying(&moved), carrying(&shared));
-        // Those that carry force are independent: all of them can be closed at once.
+        // The rows that carry force are independent: all of them can be closed at once.
         let flags: Vec<bool> = moved.force.iter().map(|force| *force != 0.0).collect();
         dual.closed.open_all();
         dual.closed.close_independent(&flags, 0.0);

@@ -577,9 +577,9 @@ mod tests {
 
     #[test]
     fn rows_that_all_but_depend_on_each_other_do_not_swap_for_ever() {
-        /// How much farther out the second row acts [m]: the square is what it has to itself.
+        /// Distance [m] by which the second row acts farther out; its square is the remainder of the row.
         const FARTHER: f64 = 2.5e-6;
-        /// Forces [N] of the two.
+        /// Forces [N] of the two rows.
         const FORCES: [f64; 2] = [4.0, 6.0];
         let mut problem = Problem::new();
         let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 };

@@ -296,7 +296,7 @@ mod tests {
 
     const INERTIA: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
-    /// A = J M⁻¹ Jᵀ and M⁻¹ Jᵀ f the plain way.
+    /// M⁻¹ Jᵀ f and A f, computed the plain way.
     fn accelerations(
         inertia: &[InverseInertia],
         rows: &[[Option<u32>; 2]],
@@ -334,7 +334,7 @@ mod tests {
         let (expected, rates) = accelerations(inertia, rows, jacobians, &force);
         let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
         for row in 0..rows.len() {
-            // Dependent rows are taken as such with up to a root of the threshold left of them.
+            // Rows count as dependent with up to the root of the threshold left of them.
             let rounding = if held.is_dependent(row) { 1e-4 } else { 1e-11 };
             let left = rates[row] + offset[row];
             assert!(
@@ -389,7 +389,7 @@ mod tests {
         assert!(force.iter().all(|force| force.abs() < 20.0), "{force:?}");
     }
 
-    /// The offsets that rows have when the bodies accelerate so.
+    /// The offsets of the rows for given accelerations of the bodies.
     fn offsets(rows: &[[Option<u32>; 2]], jacobians: &[[f64; 6]], motion: &[[f64; 3]]) -> Vec<f64> {
         let sum = |(sides, row): (&[Option<u32>; 2], &[f64; 6])| {
             (0..6).filter_map(|k| Some(row[k] * motion[sides[k / 3]? as usize][k % 3])).sum()

@@ -246,7 +246,7 @@ mod tests {
             let forces = method.force.iter().zip(&method.acceleration);
             let kept = forces.clone().filter(|(force, acceleration)| force > acceleration).count();
             assert!(kept < method.force.len());
-            // What carries force does not open, and what opens carries none.
+            // Rows that carry force do not open, and rows that open carry none.
             assert!(forces.into_iter().all(|(force, acceleration)| force.min(*acceleration) < 1e-6));
         }
     }

@@ -194,12 +194,12 @@ mod tests {
             (DualActiveSet::default(), Solution::new(), WarmStart::new());
         let problem = pyramid(8, 0.5);
         solver.solve(&problem, &mut solution).expect("forces of a pyramid");
-        // 36 blocks that rise and turn: so many rows can be independent.
+        // Each of the 36 blocks can rise and turn, so two rows per block can be independent.
         let independent = 2 * 36;
         assert!(solution.iterations == 0 && solution.active.len() > independent);
         let ground: f64 = solution.force[..16].iter().sum();
         assert!((ground - 36.0 / 0.8 * 9.81).abs() < 1e-10, "the floor carries {ground} N of 36 blocks");
-        // Wider blocks have another J, as redundant as this one; the next step of the same ones, the same factor.
+        // Wider blocks have another J, as redundant as this one; the next step of the same blocks has the same factor.
         warm.remember(&problem, &solution);
         let wider = pyramid(8, 0.51);
         for next in [&wider, &wider, &problem] {
@@ -225,7 +225,7 @@ mod tests {
         warm.remember(&problem, &solution);
         solver.solve_from(&problem, &warm, &mut solution).expect("forces of a pyramid");
         let closed = solver.closed.len();
-        // As if the last ones were spread, these rows are not, and two connectors had been closed first.
+        // A state in which the last solve was spread, this one is not, and two connectors were closed first.
         (solver.closed.was_spread, solver.closed.spread, solver.closed.kept) = (true, 0.0, 2);
         assert!(!solver.is_still_spread());
         assert_eq!((solver.closed.len(), solver.closed.spread), (closed, 0.0));

@@ -288,7 +288,8 @@ mod tests {
 
     #[test]
     fn connectors_do_not_come_first_where_pivots_would_not_end() {
-        // A chain on a floor, whose links touch it with both ends: what depended on each other is off by a thousandth.
+        // A chain on a floor, whose links touch it with both ends: rows that depended on each other are off by a
+        // thousandth.
         const LINKS: usize = 500;
         let off = |k: usize| 1.0 + 1e-3 * (k as f64 * 2.4).sin();
         let mut problem = Problem::new();

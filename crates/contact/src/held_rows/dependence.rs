@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::problem::InverseInertia;
 
-    /// Two rows that pin a body, or two at one place, at arms of both.
+    /// The two rows of a pin between two bodies at the given arms; the second may be immovable.
     fn pin(arm: [f64; 2], other: [f64; 2]) -> [[f64; 6]; 2] {
         [[1.0, 0.0, -arm[1], -1.0, 0.0, other[1]], [0.0, 1.0, arm[0], 0.0, -1.0, -other[0]]]
     }
@@ -160,7 +160,8 @@ mod tests {
             held.solve(&offset, &mut force);
             let mut change = [[0.0, -9.81, 0.0]; 2];
             held.respond(&force, &mut change);
-            // The pins of a massless bar and of what hangs from it: the lower one goes along the bar at no rate.
+            // The light body is nearly a massless bar from which the heavy one hangs: the rows of the lower pin keep a
+            // rate of zero.
             let rate = |row: &[f64; 6]| (0..6).map(|k| row[k] * change[k / 3][k % 3]).sum::<f64>();
             assert!(rows[2..].iter().all(|row| rate(row).abs() < 1e-3), "{heavy:e}: {change:?}");
         }

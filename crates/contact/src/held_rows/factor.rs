@@ -244,7 +244,7 @@ mod tests {
             let first = first_columns(count);
             let mut factor = Factor::default();
             factor.lay_out(first.iter().copied());
-            // Once more, over what the first time has left.
+            // The second time over the entries that the first has left.
             for _ in 0..2 {
                 factor.clear();
                 for (row, &first_of_row) in first.iter().enumerate() {

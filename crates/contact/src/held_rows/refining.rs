@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_light_body_passes_on_what_a_heavy_one_weighs_to_rounding() {
-        // A light body on two contacts, and a heavy one on it, by all that rounding may make of their arms.
+        // A light body on two contacts and a heavy one on it, with several roundings of their arms.
         let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 6.0 / mass };
         let sides = [[Some(0), None], [Some(0), None], [Some(1), Some(0)], [Some(1), Some(0)]];
         for heavy in [1e5, 1e6, 1e9] {
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_light_disc_on_two_long_arms_is_held_to_rounding() {
-        // Nearly all of each row's square is the turning of the disc; what softness adds is more than all the rest.
+        // Nearly all of each row's square is the turning of the disc; the raise by softness exceeds all the rest.
         let (block, disc) = (
             InverseInertia { inverse_mass: 0.505, inverse_moment: 2.448 },
             InverseInertia { inverse_mass: 0.748, inverse_moment: 394_127.0 },

@@ -97,7 +97,7 @@ mod tests {
             (held, dependent)
         }
 
-        /// What forces do to the planks.
+        /// Accelerations of the planks under the forces.
         fn change(&self, force: &[f64]) -> Vec<[f64; 3]> {
             let mut change = vec![[0.0; 3]; self.inertia.len()];
             self.held().0.respond(force, &mut change);
@@ -115,8 +115,8 @@ mod tests {
         }
     }
 
-    /// Spares rows until none depends on others; returns what is left, with the forces, and how often all was
-    /// eliminated.
+    /// Spares rows until none depends on others. Returns the pile of the rows left, their forces, and the number of
+    /// factorizations.
     fn spare_all(mut pile: Pile, mut force: Vec<f64>) -> (Pile, Vec<f64>, usize) {
         let mut eliminations = 1;
         let mut spared = Vec::new();

@@ -281,7 +281,7 @@ mod tests {
     use crate::problem::InverseInertia;
     use halfgap_collision::BodyId;
 
-    /// Ends an impact of a row that nothing moves and that closes, where rates up to `noise` [m/s] are rounding.
+    /// Ends an impact of a closing row between immovable bodies, where rates up to `noise` [m/s] are rounding.
     fn finish_at(closing: f64, noise: f64, largest_change: f64) -> Result<(), ImpactError> {
         let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
@@ -328,7 +328,7 @@ mod tests {
             finish_at((1.0 + 1e-14) * bound, bound, 0.0),
             Err(ImpactError::Unfinished { row: 0, .. })
         ));
-        // The least number there is, in an impact so weak that all parts of its speed are 0.
+        // The least positive number, in an impact so weak that all fractions of its speed are 0.
         assert_eq!(finish_at(f64::from_bits(1), 0.0, 0.0), Ok(()));
         assert!(finish_at(2.1 * NOISE, NOISE, 1.0).is_err());
     }

@@ -317,8 +317,7 @@ mod tests {
 
     #[test]
     fn a_body_on_two_rails_that_lead_into_the_floor_at_a_millionth_stops() -> Result<(), ImpactError> {
-        // The rails are parallel to the floor but for 1e-6: the body goes along them at 7 m/s and comes down
-        // at 1e-5 m/s.
+        // The rails are parallel to the floor up to 1e-6: the body goes along them at 7 m/s and comes down at 1e-5 m/s.
         let (body, fixed) = (
             InverseInertia { inverse_mass: 0.46, inverse_moment: 25.0 },
             InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 },
@@ -344,8 +343,8 @@ mod tests {
 
     #[test]
     fn what_resists_small_impulses_is_held_by_large_ones() -> Result<(), ImpactError> {
-        // A light body on two rails that are parallel but for 1e-4 is pinned by long arms to a heavy one and
-        // to another, which hits the heavy one and touches a third.
+        // A light body on two rails that are parallel up to 1e-4 is pinned by long arms to a heavy one and to another,
+        // which hits the heavy one and touches a third.
         let inertias = [
             (1.966_996_099_768_953_3, 199_516.372),
             (0.345_544_057_994_402_8, 1.450_1),
@@ -396,9 +395,8 @@ mod tests {
 
     #[test]
     fn pins_in_line_with_an_impact_do_not_pull_each_other_apart() -> Result<(), ImpactError> {
-        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the
-        // pins nearly depend on each other: what the fourth seems to have left of its square is rounding, but
-        // far more of it than usual.
+        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the pins nearly
+        // depend on each other: the remainder of the fourth row's square is rounding, but far larger than usual.
         let inertias = [(6.9e-4, 0.0138), (13.597459369453698, 81.58475621672218), (0.21, 1.24), (0.0, 0.0)];
         let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, elasticity| {
             let inertia = bodies.map(|body| {

@@ -232,7 +232,7 @@ mod tests {
             CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 0.0, 1e-3, false)
         };
         let mut impact = Impact::new();
-        // A trial has time for as much.
+        // A trial has enough pivots for this.
         for resolve in [Impact::resolve_inelastic, Impact::try_inelastic] {
             impact.set_rows((0..8).map(|place| row(place, if place == 0 { -1.0 } else { 1e-3 })));
             resolve(&mut impact)?;
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn what_was_held_is_struck_with_the_rest_though_it_opens_by_rounding() -> Result<(), ImpactError> {
-        // A disc strikes another, which a third lies against.
+        // A disc strikes another one, against which a third lies.
         let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
         let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
         let row = |place: u32, rate| {
@@ -262,7 +262,7 @@ mod tests {
             at_rest.iter().zip(opening).all(|(rest, opening)| (rest - opening).abs() < 1e-6),
             "{opening:?}"
         );
-        // What opens in earnest, or was not held, is driven together later, and parts.
+        // A row that opens faster than `velocity_tol`, or was not held, is driven to close later, and opens.
         assert!(strike(1e-5, true)?[1] > 0.5 && strike(1e-7, false)?[1] > 0.5);
         Ok(())
     }
