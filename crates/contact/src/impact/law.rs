@@ -158,8 +158,8 @@ impl ImpactLaw {
 }
 
 impl Impact {
-    /// Resolves all rows in one problem without elasticity: the bodies get the admissible motion that is nearest to
-    /// their own in the energy norm. Ends storms of events.
+    /// Resolves all rows together without elasticity: the bodies get the admissible motion that is nearest to their own
+    /// in the energy norm. Ends storms of events.
     ///
     /// # Errors
     /// Those of [`ImpactLaw::resolve`].
