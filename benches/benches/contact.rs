@@ -161,7 +161,12 @@ fn measure_impacts() {
 fn impact_row(bodies: [WorldBody; 2], jacobian: [f64; 6], rate: f64, bilateral: bool) -> CollisionRow {
     let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
     let inertia = bodies.map(|body| if body.is_world() { fixed } else { BLOCK });
-    CollisionRow::new(bodies, jacobian, inertia, rate, 1.0, 1e-9, bilateral)
+    CollisionRow {
+        elasticity: 1.0,
+        velocity_tol: 1e-9,
+        bilateral,
+        ..CollisionRow::new(bodies, jacobian, inertia, rate)
+    }
 }
 
 /// A corner that comes down on a floor.

@@ -159,12 +159,6 @@ impl Impact {
         self.solves
     }
 
-    /// Number of rows whose impulse is not 0.
-    #[must_use]
-    pub fn active_rows(&self) -> usize {
-        self.impulses.iter().filter(|&&impulse| impulse != 0.0).count()
-    }
-
     /// Adds an impulse along one row and brings all rates up to date.
     fn apply(&mut self, row: usize, impulse: f64) {
         self.impulses[row] += impulse;

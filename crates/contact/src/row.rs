@@ -32,36 +32,33 @@ impl CollisionRow {
     /// Makes the row of a collision record, with the `inertia` of its primary and normal body.
     #[must_use]
     pub fn of_collision(collision: &Collision, inertia: [InverseInertia; 2]) -> Self {
-        let jacobian = collision.motion.kinematics.jacobian;
+        let motion = &collision.motion;
         Self {
-            bodies: collision.bodies(),
-            jacobian,
-            response: response(&jacobian, inertia),
             elasticity: collision.response.elasticity,
             velocity_tol: collision.tolerances.velocity_tol,
             bilateral: collision.parties.bilateral,
-            held: false,
-            rate: collision.motion.normal_velocity,
+            ..Self::new(collision.bodies(), motion.kinematics.jacobian, inertia, motion.normal_velocity)
         }
     }
 
-    /// Makes a row that comes from no collision record, such as that of a connector.
+    /// Makes a row that comes from no collision record, such as that of a connector: unilateral, without restitution, and
+    /// not held before.
     ///
-    /// Arguments are as the fields of [`CollisionRow`]: `jacobian` [1, 1, m, 1, 1, m], `rate` [m/s] (negative when
-    /// closing), `elasticity` [-], `velocity_tol` [m/s]. The background ([`BodyId::WORLD`]) and other immovable bodies
+    /// `jacobian` [1, 1, m, 1, 1, m], `inertia` and `rate` [m/s] (negative when closing) are as the fields of
+    /// [`CollisionRow`] tell; the other fields can be set. The background ([`BodyId::WORLD`]) and other immovable bodies
     /// have an inertia of zeros.
     #[must_use]
-    pub fn new(
-        bodies: [BodyId; 2],
-        jacobian: [f64; 6],
-        inertia: [InverseInertia; 2],
-        rate: f64,
-        elasticity: f64,
-        velocity_tol: f64,
-        bilateral: bool,
-    ) -> Self {
-        let response = response(&jacobian, inertia);
-        Self { bodies, jacobian, response, elasticity, velocity_tol, bilateral, held: false, rate }
+    pub fn new(bodies: [BodyId; 2], jacobian: [f64; 6], inertia: [InverseInertia; 2], rate: f64) -> Self {
+        Self {
+            bodies,
+            jacobian,
+            response: response(&jacobian, inertia),
+            elasticity: 0.0,
+            velocity_tol: 0.0,
+            bilateral: false,
+            held: false,
+            rate,
+        }
     }
 
     /// True if the row's elasticity acts when it closes at `speed` [m/s]: that speed, or the closing speed at the start
@@ -91,13 +88,6 @@ impl CollisionRow {
     #[must_use]
     pub(crate) fn shares(&self) -> [f64; 2] {
         [0, 3].map(|first: usize| (first..first + 3).map(|k| self.jacobian[k] * self.response[k]).sum())
-    }
-
-    /// True if both rows act on a common movable body.
-    #[must_use]
-    pub fn shares_movable_body(&self, other: &CollisionRow) -> bool {
-        let theirs = other.movable_bodies();
-        self.movable_bodies().iter().any(|body| body.is_some() && theirs.contains(body))
     }
 
     /// The bodies that an impulse along the row moves; `None` for an immovable one and for the background.

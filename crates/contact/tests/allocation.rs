@@ -135,7 +135,12 @@ fn impact_rows(boxes: u32, step: u32) -> impl Iterator<Item = CollisionRow> {
         let rate = if row < 2 { -1.0 - 0.1 * f64::from(step % 3) } else { 0.0 };
         let jacobian = [0.0, 1.0, arm, 0.0, -1.0, -arm];
         let bilateral = row % 5 == 4;
-        CollisionRow::new([upper, lower], jacobian, [upper, lower].map(inertia), rate, 0.5, 1e-9, bilateral)
+        CollisionRow {
+            elasticity: 0.5,
+            velocity_tol: 1e-9,
+            bilateral,
+            ..CollisionRow::new([upper, lower], jacobian, [upper, lower].map(inertia), rate)
+        }
     })
 }
 

@@ -301,7 +301,10 @@ mod tests {
         let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
         let bodies = [BodyId(0), BodyId::WORLD];
         let mut impact = Impact::new();
-        impact.set_rows([CollisionRow::new(bodies, jacobian, [fixed; 2], -closing, 0.0, 1e-3, false)]);
+        impact.set_rows([CollisionRow {
+            velocity_tol: 1e-3,
+            ..CollisionRow::new(bodies, jacobian, [fixed; 2], -closing)
+        }]);
         (impact.noise, impact.largest_change) = (noise, largest_change);
         impact.finish(0.0)
     }
@@ -311,7 +314,11 @@ mod tests {
         let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 };
         let row = |rate: f64, arm: f64, elasticity: f64| {
             let jacobian = [0.0, 1.0, arm, 0.0, -1.0, 0.0];
-            CollisionRow::new([BodyId(0), BodyId(1)], jacobian, [disc; 2], rate, elasticity, 1e-3, false)
+            CollisionRow {
+                elasticity,
+                velocity_tol: 1e-3,
+                ..CollisionRow::new([BodyId(0), BodyId(1)], jacobian, [disc; 2], rate)
+            }
         };
         let of_negative_mass =
             CollisionRow { response: [0.0, -0.5, 0.0, 0.0, 0.5, 0.0], ..row(-1.0, 0.0, 0.5) };

@@ -293,7 +293,7 @@ mod tests {
         let (on_ring, on_wall) = ([BodyId(0), BodyId(1)], [BodyId(1), BodyId::WORLD]);
         let row = |bodies: [BodyId; 2], jacobian, rate| {
             let inertia = if bodies == on_ring { [ring, flake] } else { [flake, fixed] };
-            CollisionRow::new(bodies, jacobian, inertia, rate, 0.0, 5e-8, false)
+            CollisionRow { velocity_tol: 5e-8, ..CollisionRow::new(bodies, jacobian, inertia, rate) }
         };
         let mut impact = Impact::new();
         impact.set_rows([
@@ -329,7 +329,11 @@ mod tests {
         let row = |[x, y, turn]: [f64; 3], bilateral| {
             let rate = x * along + y * down + turn * spin;
             let jacobian = [x, y, turn, -x, -y, 0.0];
-            CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, fixed], rate, 0.0, 6e-5, bilateral)
+            CollisionRow {
+                velocity_tol: 6e-5,
+                bilateral,
+                ..CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, fixed], rate)
+            }
         };
         let mut impact = Impact::new();
         impact.set_rows([row(first, true), row(second, true), row([0.0, 1.0, 0.0], false)]);
@@ -359,7 +363,11 @@ mod tests {
             });
             let bodies = bodies.map(|body| if body == 4 { BodyId::WORLD } else { BodyId(body) });
             let jacobian = [x, y, turns[0], -x, -y, turns[1]];
-            CollisionRow::new(bodies, jacobian, inertia, rate, 0.0, 3e-5, bilateral)
+            CollisionRow {
+                velocity_tol: 3e-5,
+                bilateral,
+                ..CollisionRow::new(bodies, jacobian, inertia, rate)
+            }
         };
         let mut impact = Impact::new();
         impact.set_rows([
@@ -406,7 +414,12 @@ mod tests {
             let bodies = bodies.map(|body| if body == 3 { BodyId::WORLD } else { BodyId(body) });
             let jacobian = [x, y, turns[0], -x, -y, turns[1]];
             let is_pin = bodies == [BodyId(1), BodyId(2)];
-            CollisionRow::new(bodies, jacobian, inertia, rate, elasticity, 0.015, is_pin)
+            CollisionRow {
+                elasticity,
+                velocity_tol: 0.015,
+                bilateral: is_pin,
+                ..CollisionRow::new(bodies, jacobian, inertia, rate)
+            }
         };
         let half = std::f64::consts::FRAC_1_SQRT_2;
         for turn in 1..100 {
@@ -452,7 +465,10 @@ mod tests {
                 };
                 let rate = fall + hop * (2.9 * contact as f64).cos();
                 let (bodies, jacobian) = ([BodyId(index as u32), other], [x, y, 0.0, -x, -y, 0.0]);
-                CollisionRow::new(bodies, jacobian, [disc, theirs], rate, 0.0, 1e-3, false)
+                CollisionRow {
+                    velocity_tol: 1e-3,
+                    ..CollisionRow::new(bodies, jacobian, [disc, theirs], rate)
+                }
             })
         };
         let mut impact = Impact::new();
@@ -482,7 +498,7 @@ mod tests {
             let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
             let rows = rows.iter().map(|&(jacobian, rate, other)| {
                 let (other, theirs) = if other == 0 { (BodyId::WORLD, fixed) } else { (BodyId(other), inertia) };
-                CollisionRow::new([BodyId(0), other], jacobian, [inertia, theirs], rate, 0.0, 1e-3, false)
+                CollisionRow { velocity_tol: 1e-3, ..CollisionRow::new([BodyId(0), other], jacobian, [inertia, theirs], rate) }
             });
             let mut direct = Impact::new();
             direct.set_rows(rows);

@@ -140,7 +140,12 @@ fn rows_that_no_impulses_hold_are_not_driven() {
         let mut impact = Impact::new();
         impact.set_rows(ROWS.map(|(bodies, [x, y], turns, rate, slow, bilateral)| {
             let jacobian = [x, y, turns[0], -x, -y, turns[1]];
-            CollisionRow::new(bodies.map(BodyId), jacobian, bodies.map(inertia), rate, 1.0, slow, bilateral)
+            CollisionRow {
+                elasticity: 1.0,
+                velocity_tol: slow,
+                bilateral,
+                ..CollisionRow::new(bodies.map(BodyId), jacobian, bodies.map(inertia), rate)
+            }
         }));
         law.resolve(&mut impact, ImpactOrder::Fastest, 0).expect("they can be stopped");
         let rows = impact.rows().iter().zip(impact.impulses()).zip(impact.rates());
