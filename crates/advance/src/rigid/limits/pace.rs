@@ -60,8 +60,8 @@ impl<const STEPS: u32> Count<STEPS> {
 }
 
 impl RigidSystem {
-    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)
-    /// is never returned. That error leaves the system valid: advancing to an earlier time still works.
+    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] is never returned. That error
+    /// leaves the system valid: advancing to an earlier time still works.
     pub fn set_duration(&mut self, duration: f64) {
         self.limits.duration = duration;
     }

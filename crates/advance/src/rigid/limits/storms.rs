@@ -2,19 +2,18 @@
 //!
 //! The resolution time is the time that forces take to make `velocity_tol`, or to move a body through the half-width of
 //! the target zone, whichever is longer; without forces, the time in which the fastest body crosses the target gap. The
-//! events of each body within that time add up to a storm load. Events between which bodies go far beyond the target
-//! gap (wide ones) are resolved in space all the same, and events in which much energy would be lost (costly ones) must
-//! not be cut off lightly, so many more of them are allowed: still more if they are both. A light body that heavy ones
-//! close on takes up all their energy before it turns them back, and to do so it must hit them about as often as the
-//! root of the masses' ratio; a die that jams in its slot is turned back by blows between which it moves by a gap or
-//! two.
+//! events of each body within that time add up to a storm load. Wide events, between which bodies go far beyond the
+//! target gap, are resolved in space all the same, so more of them are allowed. The same number is allowed of costly
+//! ones, in which much energy would be lost, and still more of events that are both. A light body that heavy ones close
+//! on takes up all their energy before it turns them back, and to do so it must hit them about as often as the root of
+//! the masses' ratio; a die that jams in its slot is turned back by blows between which it moves by a gap or two.
 
 use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::Tolerances;
 
-/// Number of events of a body within the resolution time that are no storm yet, of those that are neither wide nor costly.
+/// Number of events of a body within the resolution time that are no storm yet, if they are neither wide nor costly.
 const CALM_EVENTS: usize = 20;
 /// Number of such events that each row of the region allows beyond them.
 const CALM_EVENTS_PER_ROW: usize = 10;
@@ -24,20 +23,20 @@ const LOAD_OF_BOTH: usize = 1;
 const LOAD_OF_ONE: usize = 100;
 /// Storm load of an event that is neither; a storm is more than this times (20 + 10 x rows).
 const LOAD_OF_NEITHER: usize = 50 * LOAD_OF_ONE;
-/// Storm load of a body above which events are examined for their cost: below it that does not matter.
+/// Storm load of a body up to which no event is examined for its cost: so few events make no storm.
 const LOAD_WITHOUT_COST: usize = 10 * LOAD_OF_ONE;
 /// An event is wide if its bodies came towards each other by more than this multiple of the target gap since the one
 /// before: a light body between heavy ones that close on it rattles ever faster until it has turned them back.
 const WIDE: f64 = 10.0;
 /// An event is costly if stopping its contact would take more than this fraction of the kinetic energy of its bodies.
 const COSTLY: f64 = 1e-3;
-/// An event is still if its bodies came towards each other by less than this fraction of the half-width of the target
-/// zone since the one before, and [`AT_ONCE`] holds. Still events are counted on beyond the resolution time, however
-/// long they go on: forces that the start did not show press contacts together, of which now the one, now the other
-/// gives way.
+/// An event is still if it follows the one before at once, and its bodies came towards each other in between by less
+/// than this fraction of the half-width of the target zone. Such events are counted on beyond the resolution time,
+/// however long they go on: forces that the start did not show press contacts together, of which now the one, now the
+/// other gives way.
 const STILL: f64 = 1e-6;
-/// Still events follow each other within this fraction of the time in which a body of the scene's speed crosses the
-/// smallest body.
+/// An event follows another at once if the time between is less than this fraction of the time in which a body of the
+/// scene's speed crosses the radius of the smallest body.
 const AT_ONCE: f64 = 1e-8;
 
 /// Rows are at rest in a storm if they move within the resolution time by no more than this fraction of the half-width
@@ -58,8 +57,9 @@ pub(crate) struct Recent {
 }
 
 impl RigidSystem {
-    /// Rate [m/s] up to which a row is at rest in a storm. Contacts that are pressed, but of which rounding lets now the
-    /// one, now the other open, would go on for ever; at this rate none leaves the target zone before the storm is over.
+    /// Rate [m/s] up to which a row is at rest in a storm. Contacts that are pressed, but of which rounding lets now
+    /// the one, now the other open, would go on for ever; at this rate none leaves the target zone before the storm is
+    /// over.
     pub(crate) fn storm_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         let slow = (STORM_WAY * accuracy / self.settings.resolution_time).min(STORM_SLOW * velocity_tol);
@@ -105,8 +105,8 @@ impl RigidSystem {
         is_storm
     }
 
-    /// True if stopping one of the contacts that close in a region would take more than [`COSTLY`] of the kinetic energy
-    /// of its bodies.
+    /// True if stopping one of the contacts that close in a region would take more than [`COSTLY`] of the kinetic
+    /// energy of its bodies.
     fn is_costly(&self, region: &Region) -> bool {
         let closing = region.records.iter().map(|record| {
             let row = self.row_of(record);
