@@ -69,7 +69,7 @@ impl Levers {
 
 impl RigidSystem {
     /// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
-    /// need forces far larger than all loads, while the rest of the body has not yet come to rest. True if any have
+    /// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
     /// been left out.
     pub(super) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
         let Settling { candidates, passing, levers, .. } = settling;

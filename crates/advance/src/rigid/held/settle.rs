@@ -24,7 +24,8 @@ const SEEN: f64 = 1e-4;
 /// Depth below its zone from which a row is lifted, as a multiple of the distance by which a contact sinks at a time: a
 /// row that has just been lifted may sink once.
 const SUNK: f64 = 1.5;
-/// Penetration from which a contact is lifted, and to which it is, as a multiple of the target gap.
+/// Largest penetration of a held contact whose zone cannot be seen, as a multiple of the target gap: a deeper one is
+/// lifted to it.
 pub(crate) const DEEPEST: f64 = 0.5;
 /// Distance beyond its end at which a rope or a stop is held when it is lifted, as a fraction of its `accuracy`.
 const ROPE_SHARE: f64 = 0.5;

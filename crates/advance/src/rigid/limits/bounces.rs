@@ -18,11 +18,11 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
 
-/// Multiple of the scene's acceleration with which forces may press bodies together.
+/// Multiple of the scene's acceleration with which forces may press bodies together: a pair that closes no faster than
+/// this makes it within its zone may be a low bounce.
 const FORCED: f64 = 1e3;
-/// Multiple of the scene's acceleration with which forces may press together a pair of which a body has been struck
-/// within the zone, as in a heap that many bodies deep. A faster pair bounces: else the energy of a blow would be lost,
-/// which an elastic body passes on and gets back at once.
+/// That multiple for a pair of which a body has been struck meanwhile, as in a heap that many bodies deep. A faster
+/// pair bounces: else the energy of a blow would be lost, which an elastic body passes on and gets back at once.
 const STRUCK: f64 = 1e2;
 /// Number of feature pairs that are remembered for a pair of bodies.
 const MOST_SEEN: usize = 16;

@@ -6,8 +6,8 @@
 //! simulated would take a hopeless number of them.
 //!
 //! A group may also be hasty, making short steps because contacts that count as resting take turns: holding one stops
-//! the slow opening of another, which is moved along and then pulls or closes. In a hasty group contacts that open,
-//! however slowly, are let go.
+//! its slow opening, and another, which is moved along, pulls or closes. In a hasty group contacts that open are let
+//! go, even if they open much more slowly than counts as rest elsewhere.
 
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::region::Region;

@@ -22,8 +22,8 @@ impl Loops {
         self.is_closed = false;
     }
 
-    /// Finds whether connectors close a loop among a number of bodies, from the rows and the places of the two bodies of
-    /// each; `None` for a body that cannot move.
+    /// Finds whether connectors close a loop among a number of bodies, from the rows and the places of the two bodies
+    /// of each; `None` for a body that cannot move.
     pub(crate) fn find(&mut self, bodies: usize, rows: &[HeldRow], sides: &[[Option<u32>; 2]]) {
         self.is_closed = false;
         let is_first = |row: &HeldRow| row.bilateral && matches!(row.source, RowSource::Connector(_, 0));

@@ -2,15 +2,16 @@
 //! that of a parallelogram linkage does when it lies flat.
 //!
 //! Such a configuration is a bifurcation point: two branches of motion meet there, and the velocities decide on which
-//! one the loop goes on. The *kept share* of a row is the fraction of its diagonal entry of the Delassus matrix J M^-1
-//! J^T that elimination of the other rows leaves. Its root is the sine of the angle between the row and the span of the
-//! others, in the metric of the masses; it falls linearly with the distance to the bifurcation point. Forces are found
-//! by division by the share, so near the point the rates are all rounding, and errors of the loop decide on the branch.
-//! Far from it none of that shows. So steps are placed such that no stage comes near the point: they go astride of it,
-//! with the point in the middle of the widest interval between stages, and the stages are moved onto the rows
-//! (`on_rows`). A stage off the rows by e makes accelerations of e over the cube of the distance from the point,
-//! however small e is: a step that is too short amplifies rounding. Whether a loop passes a bifurcation point, or only
-//! comes near one, shows in how well the rows are kept along the step (`extending`).
+//! one the loop goes on. The *kept share* of a row is the fraction of its square, the diagonal entry of the Delassus
+//! matrix J M^-1 J^T, that elimination of the rows before it leaves. Its root is the sine of the angle between the row
+//! and the span of those, in the metric of the masses; it falls linearly with the distance to the bifurcation point.
+//!
+//! Forces are found by division by the share, so near the point the rates are all rounding, and errors of the loop
+//! decide on the branch. Far from it none of that shows. So steps are placed such that no stage comes near the point:
+//! they go astride of it, with the point in the middle of the widest interval between stages, and the stages are moved
+//! onto the rows (`on_rows`). A stage off the rows by e makes accelerations of e over the cube of the distance from the
+//! point, however small e is: a step that is too short amplifies rounding. Whether a loop passes a bifurcation point,
+//! or only comes near one, shows in how well the rows are kept along the step (`extending`).
 
 use crate::ode::Method;
 

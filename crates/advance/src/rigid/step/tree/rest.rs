@@ -11,7 +11,7 @@ use crate::rigid::step::dynamics::{Dynamics, Stage};
 use crate::rigid::step::group::Group;
 use glam::DVec2;
 
-/// Kept share of a row down to which a tree is given up as redundant when it is made: its rows depend on each other.
+/// Kept share of a row at or below which a new tree is given up: its rows depend on each other.
 const SINGULAR: f64 = 1e-6;
 
 /// Softness that is added to a kept share of 0. Loops pass bifurcation points, where their rows depend on each other
