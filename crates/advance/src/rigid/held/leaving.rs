@@ -1,8 +1,8 @@
-//! Contacts that run off their features at once: of a corner at the very end of an edge, along which it moves.
+//! Contacts that run off their features at once: those of a corner at the very end of an edge, along which it moves.
 //!
-//! Such a contact is over before it has done anything, but as long as it is held to be one its gap bends with
-//! the edge, continued: where a lid opens, the corner of the box below its hinge would be pressed into the
-//! lid. It is left out where no forces are found with it.
+//! Such a contact ends before it has had any effect, but as long as it is held its gap follows the continuation of the
+//! edge: as a lid opens, the corner of the box below its hinge would be pressed into the lid. It is left out if no
+//! forces are found with it.
 
 use super::settling::Settling;
 use crate::rigid::event::region::Region;
@@ -13,12 +13,13 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Pose, Rotation};
 
-/// What leaves does so within so many resolution times: what slides more slowly stays.
+/// Multiple of the resolution time within which a leaving contact slides by `accuracy`; one that slides more slowly
+/// stays.
 const SOON: f64 = 1e3;
 
 impl RigidSystem {
-    /// Leaves out the candidates that run off their features while they move by what a contact may be off;
-    /// true if there are any. The bodies are in the stage.
+    /// Leaves out the candidates that run off their features while they slide by `accuracy`; true if there are any. The
+    /// bodies are in the stage.
     pub(crate) fn drop_leaving(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         let before = settling.candidates.len();
         settling.candidates.retain(|&index| !self.leaves_at_once(&region.records[index], stage));
@@ -37,7 +38,7 @@ impl RigidSystem {
     }
 }
 
-/// A body a little later [s].
+/// The motion of a body after a time `wait` [s], at constant velocities.
 fn after(moving: &Moving, wait: f64) -> Moving {
     let Moving { pose, velocity, angular_velocity } = *moving;
     let turn = Rotation::from_angle(angular_velocity * wait);

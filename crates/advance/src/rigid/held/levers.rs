@@ -1,9 +1,9 @@
-//! Levers: what connectors leave of a row.
+//! Levers: the part of a contact's row that connectors do not hold already.
 //!
-//! A contact beside the hinge of a lid acts on the lid by a lever that vanishes as it falls shut: its row is
-//! then nearly a sum of those of the pin. What is left of a row, in the metric of the masses, is found by
-//! orthogonalising it against theirs, twice, which is exact to rounding of the row (W. Kahan and B. Parlett,
-//! in B. Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
+//! A contact beside the hinge of a lid acts on the lid by a lever that vanishes as the lid falls shut: its row is then
+//! nearly a linear combination of the pin's rows. The rest of a row, in the metric of the masses, is found by
+//! orthogonalising it against those rows, twice, which is exact to rounding of the row (W. Kahan and B. Parlett, in B.
+//! Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
 
 use super::settling::Settling;
 use crate::rigid::event::region::{Region, Touch};
@@ -11,21 +11,21 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::InverseInertia;
 
-/// A bilateral row of which others leave less than this part depends on them.
+/// A bilateral row depends on others if they leave less than this fraction of its square.
 const DEPENDENT: f64 = 1e-12;
-/// A lever that is less than this part of what it would be without the connectors is next to none.
+/// A lever is next to none below this fraction of what it would be without the connectors.
 const LEVER: f64 = 1e-3;
 
-/// The rows of a region's connectors, orthonormal.
+/// Orthonormal basis of the rows of a region's connectors, in the metric of the masses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Levers {
-    /// Row after row, with three numbers for each body.
+    /// The basis, row by row, with three entries for each body of the region.
     basis: Vec<f64>,
     row: Vec<f64>,
 }
 
 impl Levers {
-    /// Takes in the connectors of a region.
+    /// Builds the basis from the connectors of a region.
     fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> InverseInertia) {
         self.basis.clear();
         for record in region.records.iter().filter(|record| record.parties.bilateral) {
@@ -36,8 +36,8 @@ impl Levers {
         }
     }
 
-    /// The part of a record's square that the connectors leave, which is the square of its lever in parts of
-    /// what it would be without them; 0 if nothing moves it.
+    /// Fraction of a record's square that the connectors leave: the square of its lever relative to that without them.
+    /// 0 if neither body can move.
     fn left_of(
         &mut self,
         region: &Region,
@@ -68,9 +68,9 @@ impl Levers {
 }
 
 impl RigidSystem {
-    /// Leaves out the candidates that hold by next to no lever a body that connectors hold: near a dead point
-    /// they would take forces far larger than all loads, while the rest of the body has not come to where it
-    /// lies. True if there are any.
+    /// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
+    /// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
+    /// been left out.
     pub(super) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
         let Settling { candidates, passing, levers, .. } = settling;
         levers.load(region, |body| self.inertia(body));

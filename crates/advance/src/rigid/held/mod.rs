@@ -1,5 +1,6 @@
-//! What is held after an event: `settle` poses the problem of the candidates and chooses, `settling` are its
-//! buffers and its solver, `levers` what connectors leave of a row, `redundant` which contacts can be spared, `leaving` contacts that are over at once.
+//! Choice of the rows that are held after an event. `settle` poses the problem of the candidates and chooses among
+//! them, `settling` has its buffers and solvers. `levers` finds contacts that connectors leave next to no lever,
+//! `redundant` contacts that can be spared, `leaving` contacts that end at once.
 
 pub(super) mod leaving;
 pub(super) mod levers;

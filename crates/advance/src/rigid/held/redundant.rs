@@ -1,6 +1,5 @@
-//! Contacts of which one can be spared: where rows depend on each other, their forces leave open which of them
-//! carries how much. The forces of what is held are found by elimination, which leaves out one of them; if
-//! that is the wrong one, others pull.
+//! Redundant contacts: where rows depend on each other, their forces are not unique. The forces of held rows are found
+//! by elimination, which gives one of the dependent rows no force; if that is the wrong one, other contacts pull.
 
 use super::settling::Settling;
 use crate::rigid::event::cause::Cause;
@@ -9,7 +8,7 @@ use crate::rigid::step::dynamics::Stage;
 use crate::rigid::system::RigidSystem;
 use halfgap_contact::{HeldRows, InverseInertia};
 
-/// Buffers: the rows of the candidates, and their forces [N].
+/// Buffers for the rows of the candidates and their forces.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Redundant {
     held: HeldRows,
@@ -17,19 +16,19 @@ pub(super) struct Redundant {
     sides: Vec<[Option<u32>; 2]>,
     jacobians: Vec<[f64; 6]>,
     forces: Vec<f64>,
-    /// Forces [N] as they are found of what is held.
+    /// Forces [N] that elimination finds for held rows.
     as_held: Vec<f64>,
-    /// Rows to be left out.
+    /// Rows to be spared.
     spared: Vec<usize>,
 }
 
-/// Part of the largest force of a contact that another may pull by rounding.
+/// Fraction of the largest contact force by which a contact may pull by rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl RigidSystem {
-    /// Spares candidates until none depends on the others, such that the forces of those that are left do
-    /// not pull, if those that were found did not. What jams contradicts itself: of that none is spared. At the
-    /// start, where nobody has seen them pull, none is spared unless one would.
+    /// Spares candidates until none depends on the others, such that the remaining contacts do not pull if none pulled
+    /// in the solution found. In a jam, whose rows contradict each other, none is spared; nor at the start, unless a
+    /// contact would pull by elimination.
     pub(super) fn spare_redundant(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) {
         let Settling { candidates, redundant, problem, .. } = settling;
         let Redundant { held, inertia, sides, jacobians, forces, as_held, spared } = redundant;
@@ -86,7 +85,7 @@ impl RigidSystem {
     }
 }
 
-/// Leaves out what belongs to the given rows, which are sorted.
+/// Removes the entries at the given places, which are sorted.
 fn drop_rows<T>(list: &mut Vec<T>, rows: &[usize]) {
     let mut next = 0;
     let mut place = 0;

@@ -1,9 +1,9 @@
-//! Which rows are held after an event: those that carry a force.
+//! Choice of the rows that are held after an event: those that carry a force.
 //!
-//! All touching rows that neither close nor open enter one problem a = A f + b. A row that carries a force is
-//! held as an equation from then on; one that does not is left to the search for contacts, which watches its
-//! gap. Forces of redundant rows are not unique: those that the solution leaves without force follow from the
-//! others.
+//! All touching rows that neither close nor open are candidates and enter one complementarity problem a = A f + b. A
+//! row that carries a force is held as an equation from then on; one that does not is left to the search for contacts,
+//! which watches its gap. Forces of redundant rows are not unique: a row that the solution leaves without force follows
+//! from the others.
 
 use super::settling::{SMALL_CONTRADICTION, Settling};
 use crate::rigid::error::{AdvanceError, Between};
@@ -19,42 +19,43 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
 use halfgap_contact::SolveError;
 
-/// Part of the reach of a body from which the half-width of its zone can be seen.
+/// Half-width of a target zone above which it can be seen, as a fraction of the larger body's reach.
 const SEEN: f64 = 1e-4;
-/// A row that lies this far below its zone, in what it may sink at a time, is lifted: what has just been
-/// lifted may sink once.
+/// Depth below its zone from which a row is lifted, as a multiple of the distance by which a contact sinks at a time: a
+/// row that has just been lifted may sink once.
 const SUNK: f64 = 1.5;
-/// Depth of an overlap, in target gaps, from which a contact is lifted.
+/// Largest penetration of a held contact whose zone cannot be seen, as a multiple of the target gap: a deeper one is
+/// lifted to it.
 pub(crate) const DEEPEST: f64 = 0.5;
-/// Part of its accuracy by which a rope or a stop that is lifted stays beyond its end.
+/// Distance beyond its end at which a rope or a stop is held when it is lifted, as a fraction of its `accuracy`.
 const ROPE_SHARE: f64 = 0.5;
 
-/// Part of the loads of its bodies that a contact must carry to be held again as soon as it has lost its
-/// force. With less it sinks so slowly that it may as well be touched again.
+/// Least force of a contact to be held again just after its release, as a fraction of the loads of its bodies. With
+/// less it sinks so slowly that it may as well be touched again.
 const RELEASED_SHARE: f64 = 1e-3;
 
-/// Part of the loads of its bodies that a contact carries by rounding only, and need not be held. More than
-/// that may be what keeps a body in balance: one that stands on corners next to each other, as a brick on the
-/// joint of two others, falls over without.
+/// Force of a contact that is rounding, as a fraction of the loads of its bodies; such a contact need not be held. A
+/// little more may keep a body in balance: a brick on the joint of two others, which stands on corners next to each
+/// other, would fall over without it.
 const IDLE_SHARE: f64 = 1e-13;
 
-/// Part of what counts as rest by which a contact may open, and be held, where such contacts take turns.
+/// Largest opening rate of a held contact in a hasty group, as a fraction of the rate at rest.
 const HASTY_SHARE: f64 = 1e-3;
 
-/// How the forces of the candidates were found.
+/// Outcome of the solve for the forces of the candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Solved {
-    /// There are none: nothing accelerates.
+    /// There are no forces, since no gap accelerates.
     Nothing,
-    /// As asked.
+    /// Forces of all candidates, but those that pass by next to no lever, to full accuracy.
     Soundly,
-    /// With fewer candidates, or to a lesser accuracy.
+    /// Forces of fewer candidates, or to a lesser accuracy.
     Somehow,
 }
 
 impl RigidSystem {
-    /// Finds the rows of a region to hold, `with_hops` those too that open in no more than a low hop. Records
-    /// must be up to date; their forces are written into them.
+    /// Finds the rows of a region to hold; `with_hops` includes contacts that open in a low hop. Records must be up to
+    /// date; their forces are written into them.
     pub(crate) fn settle(
         &self,
         region: &mut Region,
@@ -90,19 +91,19 @@ impl RigidSystem {
         }
         self.accelerate_region(region, settling, stage, time);
         let mut solved = self.solve_candidates(region, settling, stage, (time, rest))?;
-        // What is held presses others back, or keeps what opens from coming back.
+        // Held contacts may press others back, or keep those that open from coming back.
         while with_hops && solved != Solved::Somehow && self.add_hops(region, settling, stage) {
             solved = self.solve_candidates(region, settling, stage, (time, rest))?;
         }
         if solved == Solved::Nothing {
             return Ok(());
         }
-        // What carries too little to be held carries nothing: the others do without it.
+        // A contact that carries too little to be held is given no force: the others are solved without it.
         while self.drop_idle(region, settling, stage) {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
         if self.has_pulled(time) || region.cause == Cause::Start {
-            // The last problem was that of more candidates, if the last to be dropped carried nothing.
+            // The last problem may still have had candidates that were then dropped without a force.
             self.pose_problem(region, settling, stage);
             self.spare_redundant(region, settling, stage);
         }
@@ -110,7 +111,7 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// Finds the forces of the candidates; those that jam are thinned out.
+    /// Finds the forces of the candidates; leaves some of them out if they jam or no solution is found.
     fn solve_candidates(
         &self,
         region: &Region,
@@ -148,7 +149,8 @@ impl RigidSystem {
         }
         let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
         if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
-            // Accelerations of what moves as slowly as what counts as rest contradict each other by rounding.
+            // Bodies that move no faster than at rest may have such accelerations, which contradict each other by
+            // rounding.
             if scale > rest * rest / self.settings.steps.length {
                 return Err(self.settle_error(region, settling, time, source));
             }
@@ -158,8 +160,7 @@ impl RigidSystem {
         Ok(solved)
     }
 
-    /// Adds the contacts that open in no more than a low hop under the forces found, those on other bodies
-    /// included; true if there are any.
+    /// Adds the contacts that open in no more than a low hop under the forces of the candidates; true if there are any.
     fn add_hops(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         let mut records = region.records.iter().enumerate();
         if !records.any(|record| self.could_hop(region, settling, record)) {
@@ -181,7 +182,7 @@ impl RigidSystem {
         settling.candidates.len() > before
     }
 
-    /// True if a record of a region, given with its place, may hop, and is not let go.
+    /// True if a record of a region, given with its index, may hop, and has not been released or left out.
     fn could_hop(&self, region: &Region, settling: &Settling, (index, record): (usize, &Collision)) -> bool {
         let passes = || Touch::of(record).is_some_and(|touch| settling.lets_pass(touch));
         !settling.leaves(index) && self.holds(record) && self.may_hop(region, record) && !passes()
@@ -208,23 +209,23 @@ impl RigidSystem {
         self.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
     }
 
-    /// True if forces of contacts are so much larger than what acts on the bodies that rows seem to work
-    /// against each other, as those on both sides of a body that just fits. Connectors with long arms have
-    /// such forces by themselves.
+    /// True if contact forces are so much larger than the loads of the bodies that rows seem to work against each
+    /// other, as those on both sides of a body that just fits. Connectors do not count: those with long arms have such
+    /// forces anyway.
     fn is_jammed(&self, region: &Region, settling: &Settling, stage: &Stage) -> bool {
         let forces = settling.candidates.iter().zip(&settling.solution.force);
         let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
         self.is_jam(region, stage, of_contacts.fold(0.0, |most, (_, force)| most.max(force.abs())))
     }
 
-    /// Whether so large a force [N] of a contact is one of a jam.
+    /// True if a largest contact force [N] is that of a jam.
     pub(super) fn is_jam(&self, region: &Region, stage: &Stage, largest: f64) -> bool {
         let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| self.flyer(body).load(a));
         largest > JAM * loads.sum::<f64>()
     }
 
-    /// Leaves out what is farther away than its target gap, and need not be in contact: where a body fits between two
-    /// others with little room, it touches at most one of them.
+    /// Leaves out contacts beyond their target gap, which need not be in contact: a body that fits between two others
+    /// with little room touches at most one of them.
     fn drop_distant(&self, region: &Region, settling: &mut Settling, stage: &Stage) {
         let Settling { candidates, dropped, .. } = settling;
         let may_stay = |index: &usize| self.is_close(&region.records[*index]);
@@ -234,10 +235,9 @@ impl RigidSystem {
         self.pose_problem(region, settling, stage);
     }
 
-    /// Lets in again what is pressed all the same by the forces found without it; true if there is any. Of
-    /// what fits with little room only one side is: it goes the way of what it touches. In an arch that is
-    /// nearly straight all contacts carry forces that are far larger than all loads, and where those that
-    /// were let in again jam, so does the rest.
+    /// Takes back the contacts left out that the forces found without them press together; true if there are any. A
+    /// body that fits with little room is pressed on one side only. In an arch that is nearly straight all contacts
+    /// carry forces far larger than all loads: if the remaining candidates jam, too, all contacts are taken back.
     fn take_back_pressed(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
         if settling.dropped.is_empty() {
             return false;
@@ -273,7 +273,8 @@ impl RigidSystem {
         region.begin(problem, |body| self.inertia(body));
         for &index in &settling.candidates {
             let record = &region.records[index];
-            // What moves nothing in the longest time is rounding, and what is left of accelerations across the normal.
+            // Accelerations that move nothing in the longest time are rounding, as are those that remain of
+            // accelerations across the normal.
             let offset = free_offset(region, record, stage);
             let least = least.max(LEVEL * largest_acceleration(region, record, stage));
             let offset = if offset.abs() > least { offset } else { 0.0 };
@@ -282,7 +283,7 @@ impl RigidSystem {
         }
     }
 
-    /// Drops the candidates that carry no force to speak of; true if some of them carry any at all.
+    /// Drops the contacts that carry next to no force; true if any of them carries some at all.
     fn drop_idle(&self, region: &mut Region, settling: &mut Settling, stage: &Stage) -> bool {
         let Settling { candidates, solution, gross, .. } = settling;
         // Loads [N] of each body: its own and those of its rows.
@@ -312,7 +313,7 @@ impl RigidSystem {
         any
     }
 
-    /// Holds the candidates that are left.
+    /// Makes held rows of the remaining candidates.
     fn choose_rows(&self, region: &Region, settling: &mut Settling, time: Time) {
         for &index in &settling.candidates {
             settling.held.extend(self.held_row(&region.records[index], time).map(|row| (index, row)));
@@ -320,7 +321,7 @@ impl RigidSystem {
         settling.list_touches();
     }
 
-    /// A row that knows whether it leans at a time.
+    /// A row with `leans` set as it is at a time.
     pub(crate) fn with_lean(&self, row: HeldRow, time: Time) -> HeldRow {
         let movings = row.bodies.map(|body| self.moving_at(body, time));
         HeldRow { leans: self.mechanism().leans(&row, [&movings[0], &movings[1]]), ..row }
@@ -333,8 +334,8 @@ impl RigidSystem {
             RowSource::Connector(id, index) => self.connectors.states[id.index()].hint_of(index).copied(),
             RowSource::Contact(_) => None,
         };
-        // What is bilateral is kept at its target, all else where it formed, unless it has sunk too deep: to
-        // move a rope to its length would move what hangs on it by a long arm by much more.
+        // Bilateral rows are kept at gap 0, the others where they are, unless they have sunk too deep: moving a rope to
+        // its length would move a body that hangs on it by a long arm by much more.
         let bilateral = record.parties.bilateral;
         let lifted = self.lifted(record);
         let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
@@ -343,10 +344,9 @@ impl RigidSystem {
         Some(self.with_lean(row, time))
     }
 
-    /// The gap [m] to which a row is lifted that has sunk too deep; `None` of others. What touches without
-    /// force sinks a little each time it is touched. A contact is lifted before the search takes it for the
-    /// far side of a body; where zones can be seen, it is lifted into its zone, lest bodies overlap, unless
-    /// it formed lower.
+    /// The gap [m] to which a row that has sunk too deep is lifted; `None` for others. A contact without force sinks a
+    /// little each time it is touched. It is lifted before the search takes it for the far side of a body; where zones
+    /// can be seen, it is lifted into its zone, lest bodies overlap, unless it formed lower.
     #[inline]
     fn lifted(&self, record: &Collision) -> Option<f64> {
         let is_contact = record.connector().is_none();
@@ -364,12 +364,12 @@ impl RigidSystem {
         lies_deep(lowest - sunk).then_some(lowest)
     }
 
-    /// True if the zone of a record is so wide, beside its bodies, that one sees where in it they are.
+    /// True if the target zone of a record is so wide relative to its bodies that their place in it can be seen.
     fn is_seen(&self, record: &Collision) -> bool {
         self.is_zone_seen(record.bodies())
     }
 
-    /// The same of two bodies.
+    /// True if the target zone between two bodies is so wide relative to them that their place in it can be seen.
     pub(crate) fn is_zone_seen(&self, bodies: [BodyId; 2]) -> bool {
         self.settings.tolerances.accuracy > SEEN * self.largest_reach(bodies)
     }
@@ -395,14 +395,14 @@ impl RigidSystem {
         }
     }
 
-    /// What the motion of groups is computed from.
+    /// The parts of the system from which the motion of groups is computed.
     pub(crate) fn physics(&self) -> Physics<'_> {
         Physics::of(&self.flyers, &self.connectors.all, &self.laws.all, &self.settings)
     }
 }
 
-/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, are not to be
-/// longer than their accuracy, however they sink.
+/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, must not exceed their
+/// ends by more than `accuracy`, however they sink.
 fn lower_end(record: &Collision) -> f64 {
     let Tolerances { target_gap, accuracy, .. } = record.tolerances;
     if record.connector().is_some() { -ROPE_SHARE * accuracy } else { target_gap - accuracy }
@@ -447,8 +447,8 @@ mod tests {
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
-    /// Whether a beam on two posts holds a disc, too, that lies against it from below, comes away at 1e-8
-    /// m/s, and is pushed up with an acceleration [m/s^2].
+    /// Whether a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is pushed up with
+    /// an acceleration [m/s^2].
     fn beam_holds_disc_below(push: f64) -> bool {
         const GAP: f64 = FINE.tolerances.target_gap;
         let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
@@ -530,7 +530,7 @@ mod tests {
     #[test]
     fn what_others_keep_from_coming_back_does_not_hop() {
         assert!(beam_holds_disc_below(1.0));
-        // The beam would come down on it at once, but for the posts.
+        // Without the posts the beam would come down on it at once.
         assert!(!beam_holds_disc_below(1e-7));
     }
 }

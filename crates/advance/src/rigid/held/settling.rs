@@ -1,7 +1,5 @@
-//! The problem of an event's candidates: its solvers and buffers, what is expected of it, and which rows come
-//! out of it.
-//!
-//! Which rows are candidates, and which of them are held, is decided in `settle`.
+//! The complementarity problem of an event's candidates: its solvers and buffers, its initial guess, and the rows that
+//! result. `settle` decides which rows are candidates, and which of them are held.
 
 use super::levers::Levers;
 use super::redundant::Redundant;
@@ -11,47 +9,47 @@ use crate::rigid::step::rows::HeldRow;
 use halfgap_collision::BodyId;
 use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
-/// Contradiction, in units of the largest acceleration, up to which contacts are solved by least squares:
-/// that of rows which move by what counts as rest. What crushes a body is of the order of 1.
+/// Contradiction of rows, relative to the largest acceleration, up to which contacts are solved by least squares: that
+/// of rows that move no faster than at rest. The contradiction of contacts that crush a body is of the order of 1.
 pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
 
-/// Residual that is then accepted, in units of the largest acceleration: the answer only says which rows to hold.
+/// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are held.
 const LENIENT_RESIDUAL: f64 = 1e-6;
 
-/// Solves for contact forces, with its buffers.
+/// Solvers for contact forces, with their buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct Settling {
     pub(super) problem: Problem,
     pub(super) solution: Solution,
     solver: Auto,
-    /// For the first forces of what is at rest at the start: there may be thousands of rows of which nothing is known.
+    /// Solver for the forces at the start, where nothing is known of perhaps thousands of rows.
     sharing: Auto,
-    /// Nothing has happened yet: that solver is asked.
+    /// The event is the start: `sharing` solves it.
     pub(super) is_start: bool,
-    /// For contacts that contradict each other by more than rounding, but by little.
+    /// Solver for contacts that contradict each other by more than rounding, but by little.
     lenient: Auto,
-    /// Records that enter the problem.
+    /// Indices of the records that enter the problem.
     pub(super) candidates: Vec<usize>,
-    /// Records left out of it because rows seemed to work against each other.
+    /// Indices of the records that were left out because rows seemed to work against each other.
     pub(super) dropped: Vec<usize>,
-    /// Contacts left out of it because they hold by next to no lever: they may come as near as what grazes.
+    /// Contacts that were left out because they act by next to no lever: they may come as near as grazing contacts.
     pub(super) passing: Vec<Touch>,
     pub(super) levers: Levers,
     pub(super) redundant: Redundant,
     /// Whether each record of the region is likely to carry a force, if that is known.
     likely: Vec<Option<bool>>,
-    /// Records that opened in spite of all that presses on them when their low hops were stilled: they leave.
+    /// For each record, true if it still opened after low hops were stilled: it leaves.
     leaving: Vec<bool>,
-    /// Force [N] of each in the last solve of the event, if it was in it; before the first that at which its
-    /// contact was cut.
+    /// Force [N] of each record in the last solve of the event, if it took part; before the first solve, the force at
+    /// which its contact was cut.
     forces: Vec<Option<f64>>,
     /// Contacts that were cut in the event, sorted, with their forces [N].
     ended: Vec<(Touch, f64)>,
-    /// What is known of the candidates, as the solver is told.
+    /// The solver's initial guess for the candidates.
     guess: WarmStart,
-    /// The rows to be held, with the record of each.
+    /// The rows to be held, with the index of each one's record.
     pub(crate) held: Vec<(usize, HeldRow)>,
-    /// The contacts among them, sorted.
+    /// The contacts among the rows to be held, sorted.
     pub(super) touches: Vec<Touch>,
     pub(super) laws: Vec<usize>,
     /// Loads of the region's bodies [N].
@@ -65,7 +63,7 @@ impl Default for Settling {
         let settings = Settings {
             // Nearly redundant contacts that contradict each other get modest forces.
             contradiction: halfgap_contact::Contradiction::LeastSquares,
-            // The rows that carry force are held, and had better not depend on each other.
+            // Rows that carry force will be held, and should not depend on each other.
             selection: halfgap_contact::ForceSelection::Pivoted,
             ..Settings::default()
         };
@@ -100,7 +98,8 @@ impl Default for Settling {
 }
 
 impl Settling {
-    /// Solves for the forces of the candidates, beginning with those that are likely to carry some, and notes which do.
+    /// Solves for the forces of the candidates, starting from those that are likely to carry some, and notes the
+    /// forces.
     pub(super) fn solve_strictly(&mut self) -> Result<(), SolveError> {
         if self.forces.is_empty() {
             self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
@@ -118,7 +117,7 @@ impl Settling {
         Ok(())
     }
 
-    /// Expects those records of a region to carry a force that do so already.
+    /// Starts an event: sets for each record of its region whether it is likely to carry a force, if that is known.
     pub(crate) fn set_likely(&mut self, likely: impl Iterator<Item = Option<bool>>) {
         self.likely.clear();
         self.likely.extend(likely);
@@ -127,7 +126,7 @@ impl Settling {
         self.forces.clear();
     }
 
-    /// Lets those held records open from now on that do so, however low they hop.
+    /// Releases the held records that open, however low they hop.
     pub(crate) fn let_leave(&mut self, opens: impl Fn(usize) -> bool) {
         for &(record, _) in &self.held {
             self.leaving[record] |= opens(record);
@@ -138,7 +137,7 @@ impl Settling {
         self.leaving.get(record).is_some_and(|leaves| *leaves)
     }
 
-    /// Expects the records of a region to carry the forces at which their contacts were cut, if there were any.
+    /// Starts the next solve from the forces at which contacts were cut, if there were any.
     pub(crate) fn expect_forces(&mut self, region: &Region, ended: &[RowForce]) {
         self.ended.clear();
         self.ended
@@ -154,7 +153,7 @@ impl Settling {
         }));
     }
 
-    /// Lets in again some of what was left out; true if there is any.
+    /// Takes back the dropped records that are wanted as candidates; true if there are any.
     pub(super) fn take_back(&mut self, is_wanted: impl Fn(usize) -> bool) -> bool {
         let before = self.dropped.len();
         let Self { candidates, dropped, .. } = self;
@@ -171,7 +170,7 @@ impl Settling {
         self.lenient.solve(&self.problem, &mut self.solution)
     }
 
-    /// True if a contact was left out because it holds by next to no lever.
+    /// True if a contact was left out because it acts by next to no lever.
     pub(crate) fn lets_pass(&self, touch: Touch) -> bool {
         self.passing.contains(&touch)
     }
@@ -187,14 +186,15 @@ impl Settling {
         self.touches.sort_unstable();
     }
 
-    /// Solves another problem with the same solver.
+    /// Solves another problem with the solvers of this one.
     pub(crate) fn solve(&mut self, problem: &Problem) -> Result<(), SolveError> {
         self.solver
             .solve(problem, &mut self.solution)
             .or_else(|_| self.lenient.solve(problem, &mut self.solution))
     }
 
-    /// Acceleration [m/s^2] with which the only candidate would close without a force.
+    /// Acceleration [m/s^2] with which the only candidate would close without a force; `None` if there are others or it
+    /// would not close.
     pub(crate) fn closing_acceleration(&self) -> Option<f64> {
         match self.problem.offset() {
             [offset] if *offset < 0.0 => Some(-offset),
@@ -202,7 +202,8 @@ impl Settling {
         }
     }
 
-    /// Adds what the forces of the last solve, those of some records of a region, move its bodies by: M^-1 J^T f.
+    /// Adds the accelerations M^-1 J^T f that the forces of the last solve, those of `records`, give the region's
+    /// bodies.
     pub(crate) fn add_responses(
         &self,
         region: &Region,
@@ -250,7 +251,7 @@ mod tests {
         system.collect_region(&mut work.region, &[BodyId(1)], system.now);
         let [record] = work.region.records[..] else { panic!("one disc, one contact") };
         assert_eq!(system.is_likely(&record), Some(true));
-        // Another contact, of which nothing is known, carries a force too.
+        // Another contact, of which nothing is known, carries a force, too.
         let settling = &mut work.settling;
         settling.problem.clear();
         settling.candidates.clear();

@@ -1,11 +1,10 @@
-//! Hops too low to be told from contact: a contact opens so slowly that what acts on its bodies brings it
-//! back before it has opened by much. Such a contact is held at once, instead of being caught again a moment
-//! later.
+//! Hops too low to be told from contact: a contact opens at a rate v so small that its acceleration a < 0 closes it
+//! again before its gap has grown by much. Such a contact is held at once, instead of being captured a moment later.
 //!
-//! A hop takes T = 2 v/|a|, and what it lands with is stopped: it stays within the target zone. If the row's
-//! coefficients and its acceleration a are constant meanwhile, a contact that is stopped when it opens comes
-//! to the same places and velocities at T. So a hop may be the higher the less its bodies move in T, up to
-//! the half-width of the target zone.
+//! A hop takes T = 2 v/|a| and stays within the target zone, where the landing stops the contact without elasticity. If
+//! the row's coefficients and a are constant meanwhile, stopping the contact as it opens leads to the same positions
+//! and velocities at T. So the less the bodies turn and slide in T, the higher a hop may be, up to the half-width of
+//! the target zone.
 
 use super::bounces::closes_fast;
 use crate::rigid::event::cause::EventWork;
@@ -14,26 +13,27 @@ use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
 
-/// Part of the accuracy by which a contact may open and come back, and count as closed all the while.
+/// Height of a low hop, as a fraction of the half-width of the target zone (`accuracy`), however far its bodies move.
 const HOP_SHARE: f64 = 1e-4;
-/// The same of a hop in which nothing moves much.
+/// Height of a low hop in which the bodies hardly turn or slide, as a fraction of the same half-width.
 const SHORT_HOP_SHARE: f64 = 0.5;
-/// Angle [rad] by which bodies may turn in such a hop, and the part of their reach by which they may slide;
-/// more where that is less than the same share of the accuracy, which is all that is asked of where they are.
+/// Angle [rad] by which the bodies may turn in such a hop, and fraction of their reach by which they may slide. They
+/// may do so by `SHORT_HOP_SHARE` of `accuracy` if that is more: their places need not be known better.
 const HOP_TURN: f64 = 1e-4;
 
-/// A hop that comes down may make others hop: all of them together take no more than so many times the longest.
+/// Multiple of the longest hop's time in which all have landed: one that comes down may make others hop.
 const HOPS_IN_TURN: f64 = 10.0;
 
 impl RigidSystem {
-    /// True if a contact of a region opens so slowly that it may be no more than a low hop. Of a contact
-    /// without others it is told how long it bounces: that is stopped when it lands.
+    /// True if a contact of a region opens, perhaps in a low hop only. A contact that is alone in its region must open
+    /// no faster than `velocity_tol`: a faster one bounces visibly, and is stopped when it lands.
     pub(crate) fn may_hop(&self, region: &Region, record: &Collision) -> bool {
         let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
         self.opens(record) && (region.records.len() > 1 || is_slow)
     }
 
-    /// True if a contact that opens with an acceleration [m/s^2] of its gap comes back before it has opened by much.
+    /// True if a contact that opens closes again before its gap has grown by much; `acceleration` [m/s^2] is that of
+    /// its gap, negative if it closes.
     pub(crate) fn is_low_hop(&self, record: &Collision, acceleration: f64) -> bool {
         let rate = record.motion.normal_velocity;
         let accuracy = record.tolerances.accuracy;
@@ -46,7 +46,7 @@ impl RigidSystem {
         acceleration < 0.0 && (is_within(HOP_SHARE) || (is_within(SHORT_HOP_SHARE) && is_short()))
     }
 
-    /// How fast [1/s] the bodies of a contact turn, and slide by their reach.
+    /// Sum [1/s] of the rates at which the normal and the bodies of a contact turn, and slide relative to their reach.
     fn turning(&self, record: &Collision) -> f64 {
         let of_body = |body: BodyId| {
             if body.is_world() {
@@ -61,13 +61,13 @@ impl RigidSystem {
         record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)
     }
 
-    /// Reach [m] of the larger of the movable ones of two bodies.
+    /// Largest reach [m] of those of two bodies that can move; 0 if neither can.
     pub(crate) fn largest_reach(&self, bodies: [BodyId; 2]) -> f64 {
         let movable = bodies.into_iter().filter(|&body| self.is_movable(body));
         movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))
     }
 
-    /// True if a contact opens.
+    /// True if a contact opens faster than at rest.
     fn opens(&self, record: &Collision) -> bool {
         !record.parties.bilateral && record.motion.normal_velocity > self.rest_speed()
     }
@@ -78,15 +78,15 @@ impl RigidSystem {
         work.settling.held.iter().any(|&(index, _)| self.opens(&records[index]))
     }
 
-    /// Brings the bodies of held contacts that open in low hops to the velocities with which they will have
-    /// landed, and lets those leave that open all the same. False if nothing is changed.
+    /// Gives the bodies of held contacts that open in low hops the velocities that they will have after the landing,
+    /// and lets contacts leave that open all the same. False if nothing is changed.
     ///
-    /// The forces at which contacts are held say what impulses they carry until then. Without these the hops
-    /// come down, and an impact without elasticity gives as much of them back as is needed. So contacts are
-    /// stopped by no more than what presses on them: where normals hardly differ, large impulses that cancel
-    /// each other would stop whatever slides over them, too.
+    /// The impulse of each held contact until the landing follows from its force. These impulses are taken away, so
+    /// that the hops come down at once, and an impact without elasticity returns as much of them as is needed. So a
+    /// contact is stopped by no more than what presses on it: where normals hardly differ, large impulses that cancel
+    /// each other would also stop a body that slides over the contacts.
     pub(crate) fn still_hops(&mut self, work: &mut EventWork) -> bool {
-        // At the start there may be blows to come, which are not to be stopped along with the rest.
+        // At the start some contacts may be about to collide; their impacts must not be stopped along with the hops.
         if work.region.records.iter().any(closes_fast) {
             return false;
         }
@@ -113,15 +113,15 @@ impl RigidSystem {
         true
     }
 
-    /// How long [s] it takes until what hops is at rest, one after another; `None` if none of those that open
-    /// comes down by itself.
+    /// Time [s] until all held contacts that hop are at rest; `None` if no contact that opens makes a low hop.
     fn time_of_hops(&self, work: &EventWork) -> Option<f64> {
         let records = &work.region.records;
         let held = work.settling.held.iter().map(|&(index, _)| &records[index]);
         let times = held.filter(|record| self.opens(record)).filter_map(|record| {
             let rate = record.motion.normal_velocity;
             let row = self.row_of(record);
-            // All forces together leave its gap as it is: without its own it closes.
+            // All forces together hold the gap at no acceleration; without the contact's own force it closes at this
+            // one.
             let closing = force_of(record) * row.coupling(&row);
             self.is_low_hop(record, -closing).then(|| 2.0 * rate / closing)
         });
@@ -147,7 +147,7 @@ mod tests {
         system.dissolve(BodyId(1));
         system.collect_region(&mut work.region, &[BodyId(1)], system.now);
         let [record] = &mut work.region.records[..] else { panic!("one disc, one contact") };
-        // It is down again after 1 ms.
+        // The disc lands after 1 ms.
         record.motion.normal_velocity = 5e-4 * GRAVITY;
         for (accuracy, slide, is_low) in
             [(1e-4, 1e-5, true), (1e-4, 1e-4, false), (1e-3, 1e-4, true), (1e-3, 1e-3, false)]

@@ -1,31 +1,31 @@
-//! What the limits remember: of each body, and of the system.
+//! The past that the limits decide by, for each body and for the system.
 
 use super::pace::Pace;
 use super::storms::Recent;
 use crate::rigid::error::AdvanceError;
 use crate::time::Time;
 
-/// By what happened lately it is told what would go on for ever.
+/// Recent events and steps, from which sequences that would never end are recognised.
 #[derive(Clone, Debug)]
 pub(crate) struct Memory {
     /// Recent events of each body.
     pub(crate) recent: Vec<Recent>,
-    /// When the velocity of each body was last changed at once.
+    /// Time at which an impulse last changed the velocity of each body.
     pub(crate) struck: Vec<Option<Time>>,
     /// The pace of the group that each body leads.
     pub(super) paces: Vec<Pace>,
-    /// For how long [s] the system will be advanced in all; 0 if nothing is known.
+    /// Total time [s] to be simulated; 0 if it is not known.
     pub(super) duration: f64,
-    /// When contacts have fired again and again without time going by.
+    /// Time at which a pair last fired more often than [`CALM_REPEATS`](super::repeats::CALM_REPEATS).
     pub(crate) last_insistent: Option<Time>,
-    /// When a group was ended as it was made, because a contact pulled.
+    /// Time at which a group was last ended as soon as it was made, because one of its contacts pulled.
     pub(crate) last_pull: Option<Time>,
-    /// What is to be told of steps that will never come to an end: nothing else is wrong.
+    /// [`AdvanceError::Crawls`], to be returned once the present event is over; the system stays valid.
     pub(crate) crawls: Option<AdvanceError>,
 }
 
 impl Memory {
-    /// Of so many bodies that nothing has happened to.
+    /// Makes the memory of `body_count` bodies without any events.
     pub(crate) fn new(body_count: usize) -> Self {
         Self {
             recent: vec![Recent::default(); body_count],

@@ -1,6 +1,6 @@
-//! What would go on for ever, or counts for nothing: `bounces` that are too low, `hops` of what closes
-//! without an impact, `repeats` of an event at one time, `storms` of impacts, and the `pace` of steps that
-//! never come to an end. `memory` is what they keep of the past.
+//! Guards against sequences of events or steps that would never end: `bounces` too low to count, `hops` of contacts
+//! that open and close again without an impact, `repeats` of an event at one time, `storms` of impacts, and the `pace`
+//! of steps too short to reach the end of the run. `memory` holds the past events that they decide by.
 
 pub(super) mod bounces;
 pub(super) mod hops;

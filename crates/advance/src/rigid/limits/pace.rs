@@ -1,12 +1,13 @@
-//! Pace: how far a group comes with its steps. One that all but stands still, and of which nothing is heard,
-//! must not go on for days.
+//! Pace: the mean length of a group's steps. A group whose steps are so short that the run would take days must be
+//! reported.
 //!
-//! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres
-//! pass each other closely. So only steps without an impact count, many of them, and only if the time that is
-//! to be simulated would take a hopeless number of such.
+//! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres pass each
+//! other closely. So only steps without an impact between them count, in long series, and only if the time to be
+//! simulated would take a hopeless number of them.
 //!
-//! A group may also be hasty because contacts that count as resting take turns: to hold one brings what it
-//! opens by to rest, and another, moved along, pulls or closes. Then those that open are let go.
+//! A group may also be hasty, making short steps because contacts that count as resting take turns: holding one stops
+//! its slow opening, and another, which is moved along, pulls or closes. In a hasty group contacts that open are let
+//! go, even if they open much more slowly than counts as rest elsewhere.
 
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::region::Region;
@@ -15,28 +16,29 @@ use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::BodyId;
 
-/// Steps in succession over which the pace is taken.
+/// Number of steps in succession over which one mean length is taken.
 const STEPS: u32 = 10_000;
-/// No run is waited for that would take so many steps, by so many paces in succession: some are slow for a while.
+/// Number of steps that no run may take: a mean length is hopeless if the total time would take more steps of it.
 const HOPELESS: f64 = 1e10;
+/// Number of hopeless means in succession after which the run is given up: steps may be short for a while.
 const PACES: u32 = 10;
 
-/// Steps in succession over which a group is found to be hasty.
+/// Number of steps in succession over whose mean length a group is found to be hasty.
 const FEW_STEPS: u32 = 64;
-/// It is, if they are shorter in the mean than such a part of the resolution time.
+/// A group is hasty if that mean is less than this fraction of the resolution time.
 const HASTE: f64 = 1e-4;
 
-/// The steps that a group has made lately, noted for its leader.
+/// The recent steps of a group, kept for the body that leads it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pace {
     all: Count<STEPS>,
     few: Count<FEW_STEPS>,
-    /// Hopeless paces in succession.
+    /// Number of hopeless means in succession.
     hopeless: u32,
     is_hasty: bool,
 }
 
-/// Counts steps up to a number of them.
+/// Takes the mean length of every `STEPS` steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count<const STEPS: u32> {
     /// When counting began, if it has.
@@ -45,7 +47,7 @@ struct Count<const STEPS: u32> {
 }
 
 impl<const STEPS: u32> Count<STEPS> {
-    /// Notes a step that begins at a time; every so often the mean length [s] of the last ones.
+    /// Notes a step that begins at a time; after every `STEPS` steps returns their mean length [s].
     fn note(&mut self, start: Time) -> Option<f64> {
         let since = *self.since.get_or_insert(start);
         if self.steps < STEPS {
@@ -58,14 +60,14 @@ impl<const STEPS: u32> Count<STEPS> {
 }
 
 impl RigidSystem {
-    /// Tells for how long [s] the system will be advanced in all. With that, steps are told that will never
-    /// come to an end ([`AdvanceError::Crawls`](crate::rigid::AdvanceError::Crawls)); else one waits for
-    /// ever. Nothing is wrong with a system that says so: for less time it goes on.
+    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] is never returned. That error
+    /// leaves the system valid: advancing to an earlier time still works.
     pub fn set_duration(&mut self, duration: f64) {
         self.limits.duration = duration;
     }
 
-    /// Notes the step that a group has begun; if such steps have become hopeless, that is told once the event is over.
+    /// Notes the step that a group has begun. If its steps have become hopelessly short, the error is kept in the
+    /// memory, to be returned once the event is over.
     pub(crate) fn note_pace(&mut self, group: &Group) {
         let pace = &mut self.limits.paces[group.leader().index()];
         if let Some(mean) = pace.few.note(group.start) {
@@ -90,12 +92,12 @@ impl RigidSystem {
         group.laws.iter().map(|&law| self.laws.all[law].name().to_owned()).collect()
     }
 
-    /// Bodies have taken part in an impact: something happens.
+    /// Forgets the steps of bodies that have taken part in an impact: their groups make progress.
     pub(crate) fn forget_paces(&mut self, bodies: &[BodyId]) {
         bodies.iter().for_each(|body| self.limits.paces[body.index()] = Pace::default());
     }
 
-    /// True if some body of a region has led a hasty group; it is then forgotten.
+    /// True if a body of a region has led a hasty group; that is then forgotten.
     pub(crate) fn take_haste(&mut self, region: &Region) -> bool {
         let mut any = false;
         for body in &region.bodies {
@@ -110,8 +112,7 @@ mod tests {
     use super::*;
     use crate::rigid::test_scene::resting_discs;
 
-    /// Whether a disc that makes 64 steps in succession of a length [s] is hasty, and whether it still is
-    /// when that is asked anew.
+    /// Whether a disc that makes 64 steps of a length [s] in succession is hasty, by a first and by a second query.
     fn haste(step: f64) -> [bool; 2] {
         let mut system = resting_discs(&[0.0]);
         let mut work = system.work.take().expect("the start has made it");

@@ -1,32 +1,32 @@
-//! Contacts that fire again and again without time going by: they are counted, stopped without elasticity, lowered (see
-//! `rules`), and in the end the advance is stuck.
+//! Contacts that fire repeatedly while time stands still. They are counted; beyond a first limit they are stopped
+//! without elasticity and fire at a lower gap (see `rules`), beyond a second the advance fails as stuck.
 
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::search::pairs::PairId;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 
-/// A pair that collides more often than this without time going by is stopped without elasticity.
+/// Number of collisions of a pair at one time beyond which it is stopped without elasticity.
 pub(crate) const CALM_REPEATS: u32 = 20;
-/// A pair may collide so many times without time going by before the advance is stuck.
+/// Number of collisions of a pair at one time beyond which the advance is stuck.
 const MOST_REPEATS: u32 = 100;
-/// Two contacts are at one time when they differ by at most this many machine epsilons of the clock.
+/// Two events are at one time if they differ by at most this multiple of machine epsilon times the clock.
 const SAME_TIME: f64 = 4.0;
 
 impl RigidSystem {
-    /// True if a contact has pulled as it was held at a time.
+    /// True if a group was ended at a time as soon as it was made, because one of its contacts pulled.
     pub(crate) fn has_pulled(&self, time: Time) -> bool {
         self.limits.last_pull.is_some_and(|last| is_same_time(last, time))
     }
 
-    /// How often more than is calm a pair has fired at the present time.
+    /// Number of times beyond [`CALM_REPEATS`] that a pair has fired at the present time.
     pub(crate) fn repeats_beyond_calm(&self, pair: PairId) -> u32 {
         let past = self.pairs.past(pair);
         let is_now = past.last_contact.is_some_and(|last| is_same_time(last, self.now));
         if is_now { past.repeats.saturating_sub(CALM_REPEATS) } else { 0 }
     }
 
-    /// How often the contacts of a pair have been handled at the present time.
+    /// Counts an event of a pair; returns how often it has fired before at the present time.
     pub(crate) fn note_repeat(&mut self, pair: PairId) -> Result<u32, AdvanceError> {
         let now = self.now;
         let bodies = self.pairs.bodies(pair);
@@ -46,7 +46,7 @@ impl RigidSystem {
     }
 }
 
-/// True if no time has gone by from one event to the next.
+/// True if no time but rounding lies between two events.
 pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
     later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
 }

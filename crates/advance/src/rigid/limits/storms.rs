@@ -1,43 +1,48 @@
 //! Storms: more events in a short time than forces can resolve. They are ended by an impact without elasticity.
 //!
-//! The resolution time is what acceleration takes to make `velocity_tol`; without acceleration, what the
-//! fastest body takes to cross the target gap. Events between which bodies go far beyond the target gap are
-//! resolved in space all the same: many more of them are no storm, and so are those in which much energy
-//! would be lost; more still where both is so. A light body that heavy ones close on takes up all their
-//! energy before it turns them back, and to do so it must hit them about as often as the root of the masses'
-//! ratio; a die that jams in its slot is turned back by blows between which it goes a gap or two.
+//! The resolution time is the time that forces take to make `velocity_tol`, or to move a body through the half-width of
+//! the target zone, whichever is longer; without forces, the time in which the fastest body crosses the target gap. The
+//! events of each body within that time add up to a storm load. Wide events, between which bodies go far beyond the
+//! target gap, are resolved in space all the same, so more of them are allowed. The same number is allowed of costly
+//! ones, in which much energy would be lost, and still more of events that are both. A light body that heavy ones close
+//! on takes up all their energy before it turns them back, and to do so it must hit them about as often as the root of
+//! the masses' ratio; a die that jams in its slot is turned back by blows between which it moves by a gap or two.
 
 use crate::rigid::event::region::Region;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::Tolerances;
 
-/// Events of a body within the resolution time that are always allowed, and those for each row beyond them.
+/// Number of events of a body within the resolution time that are no storm yet, if they are neither wide nor costly.
 const CALM_EVENTS: usize = 20;
+/// Number of such events that each row of the region allows beyond them.
 const CALM_EVENTS_PER_ROW: usize = 10;
-/// An event is wide if its bodies came towards each other by more than so many target gaps since the one
-/// before: a light body between heavy ones that close on it rattles ever faster until it has turned them
-/// back. Of wide ones so many times as many are allowed.
+/// Storm load of an event that is both wide and costly.
+const LOAD_OF_BOTH: usize = 1;
+/// Storm load of an event that is wide or costly, but not both.
+const LOAD_OF_ONE: usize = 100;
+/// Storm load of an event that is neither; a storm is more than this times (20 + 10 x rows).
+const LOAD_OF_NEITHER: usize = 50 * LOAD_OF_ONE;
+/// Storm load of a body up to which no event is examined for its cost: so few events make no storm.
+const LOAD_WITHOUT_COST: usize = 10 * LOAD_OF_ONE;
+/// An event is wide if its bodies came towards each other by more than this multiple of the target gap since the one
+/// before: a light body between heavy ones that close on it rattles ever faster until it has turned them back.
 const WIDE: f64 = 10.0;
-const CALM_WIDE_EVENTS: usize = 50;
-/// Events between which bodies come towards each other by less than such a part of the target zone, and which
-/// follow each other in less than such a part of the time in which what is usually fast crosses the smallest
-/// body, are counted on, however long they go on: forces that nothing at the start foretold press contacts
-/// together, of which now the one, now the other gives way.
-const STILL: f64 = 1e-6;
-const AT_ONCE: f64 = 1e-8;
-/// An event is costly if what closes would lose more than such a part of the energy of all that takes part:
-/// it counts as a wide one. Of those that are both so many times as many again are allowed.
+/// An event is costly if stopping its contact would take more than this fraction of the kinetic energy of its bodies.
 const COSTLY: f64 = 1e-3;
-const CALM_COSTLY_EVENTS: usize = 100;
-/// What counts for so many wide and costly ones.
-const NARROW: usize = CALM_WIDE_EVENTS * CALM_COSTLY_EVENTS;
-/// What counts for so many wide and costly ones is not looked at for what it would cost.
-const MANY: usize = 10 * CALM_COSTLY_EVENTS;
+/// An event is still if it follows the one before at once, and its bodies came towards each other in between by less
+/// than this fraction of the half-width of the target zone. Such events are counted on beyond the resolution time,
+/// however long they go on: forces that the start did not show press contacts together, of which now the one, now the
+/// other gives way.
+const STILL: f64 = 1e-6;
+/// An event follows another at once if the time between is less than this fraction of the time in which a body of the
+/// scene's speed crosses the radius of the smallest body.
+const AT_ONCE: f64 = 1e-8;
 
-/// What does not go farther in the resolution time than such a part of the target zone, and is not faster
-/// than so many times `velocity_tol`, is at rest in a storm.
+/// Rows are at rest in a storm if they move within the resolution time by no more than this fraction of the half-width
+/// of the target zone.
 const STORM_WAY: f64 = 1e-3;
+/// Rows faster than this multiple of `velocity_tol` are not at rest even in a storm.
 const STORM_SLOW: f64 = 10.0;
 
 /// Recent events of one body.
@@ -45,31 +50,31 @@ const STORM_SLOW: f64 = 10.0;
 pub(crate) struct Recent {
     /// When counting began, if it has.
     since: Option<Time>,
-    /// Events since then: wide and costly ones as one, others as so many of them.
-    events: usize,
-    /// The last event, if there was any.
+    /// Storm load since then [-]: the sum of the loads of its events.
+    load: usize,
+    /// Time of the last event, if there was any.
     last: Option<Time>,
 }
 
 impl RigidSystem {
-    /// Rates [m/s] up to which a row is at rest in a storm: contacts of which now the one, now the other is
-    /// left to open by rounding, though they are pressed, go on for ever. With such a rate nothing gets out
-    /// of the target zone before the storm is over.
+    /// Rate [m/s] up to which a row is at rest in a storm. Contacts that are pressed, but of which rounding lets now
+    /// the one, now the other open, would go on for ever; at this rate none leaves the target zone before the storm is
+    /// over.
     pub(crate) fn storm_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         let slow = (STORM_WAY * accuracy / self.settings.resolution_time).min(STORM_SLOW * velocity_tol);
         slow.max(self.rest_speed())
     }
 
-    /// Counts an event for the bodies of a region; true if it is one too many.
+    /// Adds an event to the storm loads of the bodies of a region; true if it makes a storm.
     pub(crate) fn note_events(&mut self, region: &Region) -> bool {
         let (now, window) = (self.now, self.settings.resolution_time);
         let speed = region.records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
         let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
         let (wide, still) = (WIDE * target_gap, STILL * accuracy);
         let at_once = AT_ONCE * self.settings.steps.length / self.settings.steps.speed;
-        // Of few events it does not matter.
-        let is_often = region.bodies.iter().any(|body| self.limits.recent[body.index()].events > MANY);
+        let is_often =
+            region.bodies.iter().any(|body| self.limits.recent[body.index()].load > LOAD_WITHOUT_COST);
         let is_costly = is_often && self.is_costly(region);
         let mut most = 0;
         for &body in &region.bodies {
@@ -78,29 +83,30 @@ impl RigidSystem {
             let way = wait.map(|wait| wait * speed);
             let is_still = way.is_some_and(|way| way < still) && wait.is_some_and(|wait| wait < at_once);
             if !is_still && recent.since.is_none_or(|since| now.since(since) > window) {
-                *recent = Recent { since: Some(now), events: 0, ..*recent };
+                *recent = Recent { since: Some(now), load: 0, ..*recent };
             }
             let is_wide = way.is_none_or(|way| way > wide);
-            recent.events += match (is_wide, is_costly) {
-                (true, true) => 1,
-                (true, false) | (false, true) => CALM_COSTLY_EVENTS,
-                (false, false) => NARROW,
+            recent.load += match (is_wide, is_costly) {
+                (true, true) => LOAD_OF_BOTH,
+                (true, false) | (false, true) => LOAD_OF_ONE,
+                (false, false) => LOAD_OF_NEITHER,
             };
             recent.last = Some(now);
-            most = most.max(recent.events);
+            most = most.max(recent.load);
         }
         let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * region.records.len();
-        let is_storm = most > NARROW * calm;
+        let is_storm = most > LOAD_OF_NEITHER * calm;
         if is_storm {
             self.counts.storms += 1;
             for &body in &region.bodies {
-                self.limits.recent[body.index()].events = 0;
+                self.limits.recent[body.index()].load = 0;
             }
         }
         is_storm
     }
 
-    /// True if what closes in a region has a good part of the kinetic energy of its bodies.
+    /// True if stopping one of the contacts that close in a region would take more than [`COSTLY`] of the kinetic
+    /// energy of its bodies.
     fn is_costly(&self, region: &Region) -> bool {
         let closing = region.records.iter().map(|record| {
             let row = self.row_of(record);

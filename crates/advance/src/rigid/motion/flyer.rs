@@ -1,4 +1,4 @@
-//! One body with the segment along which it moves.
+//! A body with the segment along which it moves.
 
 use super::path::{DensePath, Path};
 use crate::ode::SegmentPolynomial;
@@ -7,17 +7,17 @@ use glam::DVec2;
 use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
 use std::f64::consts::TAU;
 
-/// What the number nearest to a turn [rad] lacks of it.
+/// Difference [rad] between a full turn 2π and [`TAU`], the nearest floating-point number.
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
-/// What acts on a body in free flight.
+/// Uniform acceleration and linear damping of a body in free flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlightLaw {
     /// Uniform acceleration [m/s^2].
     pub acceleration: DVec2,
-    /// Rate [1/s] at which damping takes the velocity.
+    /// Damping rate [1/s] of the velocity: damping alone makes it decay by exp(-rate t).
     pub linear_rate: f64,
-    /// Rate [1/s] at which damping takes the angular velocity.
+    /// Damping rate [1/s] of the angular velocity: damping alone makes it decay by exp(-rate t).
     pub angular_rate: f64,
 }
 
@@ -29,7 +29,7 @@ impl FlightLaw {
     }
 }
 
-/// A body and its segment: its motion and when that started.
+/// A body and its segment: its present motion and the start of it.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub struct Flyer {
@@ -39,16 +39,17 @@ pub struct Flyer {
     /// Radius [m], if the body is nothing but a disc about its centre of mass.
     disc: Option<f64>,
     body: Body,
-    /// Whole turns that the angles of the present motion lack.
+    /// Number of whole turns to be added to the angles of the present motion.
     turns: f64,
-    /// The motion, while it is integrated.
+    /// The present motion is `dense`, from an integrator, not `flight`.
     is_integrated: bool,
+    /// Dense output of the last integrated segment, if there was one.
     dense: Option<Box<DensePath>>,
 }
 
 impl Flyer {
     pub(crate) fn new(body: Body, law: FlightLaw, state: BodyState, time: Time) -> Self {
-        // Nothing moves a fixed body, not even its own velocity.
+        // A fixed body does not move, whatever its velocity.
         let law = if body.is_fixed() { FlightLaw::default() } else { law };
         let flight = if body.is_fixed() {
             Flight::fixed(state.position, state.angle)
@@ -65,39 +66,40 @@ impl Flyer {
         &self.body
     }
 
-    /// What acts on it in free flight.
+    /// Acceleration and damping of the body in free flight.
     #[must_use]
     pub fn law(&self) -> FlightLaw {
         let (acceleration, [linear_rate, angular_rate]) = (self.flight.acceleration(), self.flight.rates());
         FlightLaw { acceleration, linear_rate, angular_rate }
     }
 
-    /// State at a time of the present segment.
+    /// State of the body at a time of the present segment, in the world frame; its angle [rad] includes whole turns.
     #[must_use]
     pub fn state_at(&self, time: Time) -> BodyState {
         let state = self.unwound_at(time);
         BodyState { angle: state.angle + (self.turns * TAU + self.turns * TAU_REST), ..state }
     }
 
-    /// The same, with an angle that lacks the whole turns made before: what motions start from.
+    /// State at a time of the present segment, with an angle that lacks the whole turns made before: motions start from
+    /// it.
     pub(crate) fn unwound_at(&self, time: Time) -> BodyState {
         self.path().state_at(self.offset(time))
     }
 
-    /// Lets the angle of a flight start within a turn of zero: numbers tell angles the worse the larger they
-    /// are, and with them where corners are.
+    /// Takes whole turns out of the angle at the start of a flight, so that it lies within a turn of zero: the larger
+    /// an angle, the larger its rounding, and that of the places of corners.
     pub(crate) fn unwind(&mut self) {
         let angle = self.flight.start().angle;
         if !self.is_integrated && angle.abs() > TAU {
             let turns = (angle / TAU).round();
-            // The first product is exact: with that of the rest the difference is as sharp as the angle was.
+            // The fused product is exact, and with the correction the difference has only the rounding of the angle.
             let unwound = turns.mul_add(-TAU, angle) - turns * TAU_REST;
             self.turns += turns;
             self.flight.restart(BodyState { angle: unwound, ..*self.flight.start() });
         }
     }
 
-    /// State at the start of the present segment, if it is a flight.
+    /// State at the start of the present segment, if it is a flight in closed form.
     #[must_use]
     pub fn flight_start(&self) -> Option<&BodyState> {
         (!self.is_integrated).then(|| self.flight.start())
@@ -116,7 +118,7 @@ impl Flyer {
         }
     }
 
-    /// When the present segment started.
+    /// Time at which the present segment started.
     pub(crate) fn start(&self) -> Time {
         self.start
     }
@@ -132,13 +134,14 @@ impl Flyer {
         self.reach
     }
 
-    /// How fast [m/s] the fastest point of the body is at a velocity (x, y, angle) of its centre; of
-    /// accelerations and displacements likewise.
+    /// Bound on the speed [m/s] of a point of the body, at a velocity (x, y, angle) of its centre of mass; also used
+    /// for accelerations and displacements.
     pub(crate) fn fastest_point(&self, [x, y, angle]: [f64; 3]) -> f64 {
         DVec2::new(x, y).length() + angle.abs() * self.reach
     }
 
-    /// Force [N] that gives the body an acceleration (x, y, angle), with what turns it acting at its reach.
+    /// Load [N] of an acceleration (x, y, angle) of the body: its mass times the bound on the acceleration of its
+    /// points.
     pub(crate) fn load(&self, acceleration: &[f64]) -> f64 {
         let linear = DVec2::new(acceleration[0], acceleration[1]).length();
         (linear + acceleration[2].abs() * self.reach()) / self.body().inverse_mass
@@ -148,7 +151,7 @@ impl Flyer {
         self.disc
     }
 
-    /// The motion in closed form, if it has one.
+    /// The present motion in closed form, if it has one.
     #[inline]
     pub(crate) fn flight(&self) -> Option<&Flight> {
         (!self.is_integrated).then_some(&self.flight)
@@ -159,7 +162,7 @@ impl Flyer {
         !self.is_integrated && self.flight.is_at_rest()
     }
 
-    /// Cuts the segment at a time and starts another with changed velocities.
+    /// Cuts the segment at a time and starts a flight with changed velocities.
     pub(crate) fn cut(&mut self, time: Time, velocity_change: DVec2, spin_change: f64) {
         let state = self.unwound_at(time);
         let state = BodyState {
@@ -177,7 +180,7 @@ impl Flyer {
         self.flight.restart(state);
     }
 
-    /// Starts a segment that was integrated: x, y, angle, followed for so long [s].
+    /// Starts an integrated segment of a length `span` [s]; `polynomials` are x, y and angle.
     pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3], span: f64) {
         self.start = start;
         self.is_integrated = true;
@@ -200,14 +203,14 @@ mod tests {
             let mut flyer = Flyer::new(body.clone(), FlightLaw::default(), state, start);
             let later = start.plus(0.25);
             let before = flyer.moving_at(later).pose.rotation;
-            // Twice: there is no turn left the second time.
+            // The second time there is no turn left to take out.
             for _ in 0..2 {
                 flyer.unwind();
                 assert_eq!(flyer.state_at(start).angle, angle);
                 assert!(flyer.unwound_at(start).angle.abs() <= TAU);
             }
             let after = flyer.moving_at(later).pose.rotation;
-            // The sum at the end of a long angle is as sharp as that.
+            // An angle within the segment has the rounding of a number of that size.
             let sharp = f64::EPSILON * (1.0 + angle.abs());
             assert!(
                 (before.cos - after.cos).abs() <= sharp && (before.sin - after.sin).abs() <= sharp,

@@ -1,7 +1,8 @@
-//! What is asked of a body most often, in one place: its parabola, its size, how long it stays in its box.
+//! Copies of the properties of a body that are read most often: its parabola, its size, the time for which it stays in
+//! its box.
 //!
-//! An event asks this of every neighbour of its bodies. The body itself, with all else that is known of it,
-//! is then left where it is: memory is slower than what is computed here.
+//! An event reads these for every neighbour of its bodies, and need not load the bodies themselves: memory is slower
+//! than the computation.
 
 use super::flyer::Flyer;
 use super::path::Path;
@@ -9,38 +10,39 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial};
 
-/// What is known of the course of a body.
+/// Kind of a body's motion, as far as its lane knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LaneKind {
-    /// No parabola: the body itself must be asked.
+    /// Not a parabola: only the body itself knows its motion.
     Other,
     /// The centre of mass follows the parabola.
     Parabola,
-    /// So it does, and the body is one disc about it.
+    /// The centre of mass follows the parabola, and the body is a disc about it.
     Disc,
 }
 
-/// A copy of the motion of one body, renewed whenever that changes. Two lines of the cache that are read
-/// together; the first says where it is.
+/// A copy of the motion of one body, renewed whenever that changes. It fills two cache lines that are read together.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(128))]
 pub(crate) struct Lane {
-    /// Position [m] and velocity [m/s] at the start; of what is integrated the middle of its course, and none.
+    /// Position [m] at the start; of an integrated motion, the middle of the box that holds its course.
     position: DVec2,
+    /// Velocity [m/s] at the start; 0 for an integrated motion.
     velocity: DVec2,
+    /// Time at which the segment started.
     start: Time,
-    /// Until when the body surely stays in its box.
+    /// Time until which the body surely stays in its box.
     pub(crate) stay: Time,
     /// Acceleration [m/s^2].
     acceleration: DVec2,
     /// Largest distance [m] of a point of the body from its centre of mass.
     pub(crate) reach: f64,
-    /// Radius [m] of a disc, 0 of all else.
+    /// Radius [m] of a disc about the centre of mass; 0 for any other body.
     pub(crate) radius: f64,
     /// Gap [m] at which the body fires.
     pub(crate) halo: f64,
-    /// Of what has no parabola: how far [m] its centre of mass gets from `position` during its segment,
-    /// beside what it gets by `velocity` and `acceleration`.
+    /// Without a parabola: largest distance [m] of the centre of mass from `position` during the segment, beyond that
+    /// which `velocity` and `acceleration` make.
     course: f64,
     pub(crate) kind: LaneKind,
     /// The body neither moves nor is about to.
@@ -51,7 +53,7 @@ pub(crate) struct Lane {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
     pub(crate) center: DVec2,
-    /// Radius [m], without end where nothing is known.
+    /// Radius [m]; infinite where nothing is known.
     pub(crate) radius: f64,
 }
 
@@ -75,7 +77,7 @@ impl Lane {
         lane
     }
 
-    /// Takes over the present motion of the body.
+    /// Copies the present motion of the body.
     pub(crate) fn follow(&mut self, flyer: &Flyer) {
         self.is_at_rest = flyer.is_at_rest();
         let Some(parabola) = flyer.flight().and_then(Flight::parabola) else {
@@ -100,13 +102,13 @@ impl Lane {
         self.kind = if flyer.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
     }
 
-    /// Where the centre of mass stays from a time on, for a span [s] within its segment.
+    /// A disc in which the centre of mass stays from a time on, for a span [s] within its segment.
     #[inline]
     pub(crate) fn course_from(&self, time: Time, span: f64) -> Course {
         let way =
             |velocity: DVec2, span: f64| (velocity.length() + 0.5 * self.acceleration.length() * span) * span;
         if self.kind == LaneKind::Other {
-            // Damping makes nothing go farther.
+            // With damping no body goes farther than without.
             let radius = self.course + way(self.velocity, time.since(self.start) + span);
             return Course { center: self.position, radius };
         }
@@ -114,20 +116,20 @@ impl Lane {
         Course { center: position, radius: way(velocity, span) }
     }
 
-    /// Where the centre of mass is [m] at a time, to the bit what the body itself says; not to be asked of `Other`.
+    /// Position [m] of the centre of mass at a time, bit for bit that of the body itself; not for `LaneKind::Other`.
     #[inline]
     pub(crate) fn position_at(&self, time: Time) -> DVec2 {
         let t = time.since(self.start);
         self.position + (self.velocity + self.acceleration * (0.5 * t)) * t
     }
 
-    /// How it goes on from a time, if it follows a parabola.
+    /// The parabola from a time on, if the body follows one.
     #[inline]
     pub(crate) fn flight_from(&self, time: Time) -> Option<Polynomial> {
         (self.kind != LaneKind::Other).then(|| self.parabola_from(time))
     }
 
-    /// How it goes on from a time; not to be asked of `Other`.
+    /// The parabola from a time on; not for `LaneKind::Other`.
     #[inline]
     pub(crate) fn parabola_from(&self, time: Time) -> Polynomial {
         let t = time.since(self.start);

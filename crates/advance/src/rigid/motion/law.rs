@@ -1,4 +1,4 @@
-//! What a force law is: forces and torques on bodies as a function of time and state.
+//! Force laws: forces and torques on bodies as a function of time and state.
 //!
 //! Uniform acceleration and linear damping are not laws of this kind: they belong to the [`FlightLaw`] of a body, whose
 //! motion they leave in closed form. A body on which a [`ForceLaw`] acts is integrated.
@@ -9,26 +9,26 @@ use glam::DVec2;
 use halfgap_collision::{Anchor, BodyId, Moving};
 use std::fmt::Debug;
 
-/// Where all bodies are and how they move at one moment, for a law to read.
+/// Poses and velocities of all bodies at one moment, for a law to read.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot<'a> {
     /// Time [s].
     pub time: f64,
-    /// Every body of the system; only those that the law names are sure to be up to date.
+    /// Motions of all bodies of the system; only those that the law names are sure to be up to date.
     bodies: &'a [Moving],
 }
 
 impl<'a> Snapshot<'a> {
-    /// The bodies at a time [s], in the order of their ids.
+    /// Makes a snapshot of all bodies, in the order of their ids, at a time [s].
     #[must_use]
     pub fn new(time: f64, bodies: &'a [Moving]) -> Self {
         Self { time, bodies }
     }
 
-    /// A body; the background rests at the origin.
+    /// Returns the pose and the velocities of a body; the background rests at the origin.
     ///
     /// # Panics
-    /// If there is no such body: a law names those that it looks at, and what it names is checked when it is added.
+    /// If there is no such body. A law reads only bodies that it names, and these are checked when the law is added.
     #[must_use]
     #[inline]
     pub fn body(&self, body: BodyId) -> Moving {
@@ -36,7 +36,7 @@ impl<'a> Snapshot<'a> {
     }
 }
 
-/// Force and torque on a body.
+/// Force and torque on a body, in the world frame; a positive torque acts counter-clockwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// Force at the centre of mass [N].
@@ -45,12 +45,12 @@ pub struct Wrench {
     pub torque: f64,
 }
 
-/// The sums of forces and torques, one for each body; what is added to a fixed body or the background has no effect.
+/// The sums of forces and torques, one for each body; those of a fixed body or the background have no effect.
 #[derive(Debug)]
 pub struct Wrenches<'a>(&'a mut [Wrench]);
 
 impl<'a> Wrenches<'a> {
-    /// To add to these sums, in the order of the bodies' ids.
+    /// Wraps sums to which a law adds, in the order of the bodies' ids.
     pub fn new(sums: &'a mut [Wrench]) -> Self {
         Self(sums)
     }
@@ -64,7 +64,7 @@ impl<'a> Wrenches<'a> {
         }
     }
 
-    /// Adds a torque [N m].
+    /// Adds a torque [N m], positive counter-clockwise.
     #[inline]
     pub fn add_torque(&mut self, body: BodyId, torque: f64) {
         if let Some(sum) = self.0.get_mut(body.index()) {
@@ -75,23 +75,23 @@ impl<'a> Wrenches<'a> {
 
 /// A force law.
 ///
-/// A law must be smooth inside a step: where it changes branch, it says so by a switching function, whose sign changes are
-/// located like impacts. Change the parameters of a law only together with an intervention on one of its bodies, which
-/// restarts their steps; a change of velocity by zero will do.
+/// A law must be smooth inside a step: where it changes branch, a switching function must change sign, and that is
+/// located like an impact. Change the parameters of a law only together with an intervention on one of its bodies,
+/// which restarts their steps; a change of velocity by zero will do.
 pub trait ForceLaw: Debug + Send + Sync {
-    /// What the law is called in messages and in the energy ledger.
+    /// Name of the law in messages and in the energy ledger.
     fn name(&self) -> &str;
 
-    /// Every body whose state the law reads or on which it acts. The movable ones of them share their steps;
-    /// what is added to a body that is not named is ignored, and refused where a world is built.
+    /// Every body whose state the law reads or on which it acts. The movable ones among them share their steps. Forces
+    /// on other bodies are ignored, and refused where a world is built.
     fn bodies(&self) -> &[BodyId];
 
-    /// Adds the forces and torques of this moment: a function of the snapshot alone, which is asked for as
-    /// often as it takes, and not in the order of time.
+    /// Adds the forces [N] and torques [N m] of one moment. They must depend on the snapshot alone: this is called any
+    /// number of times, and not in the order of time.
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
 
-    /// Potential energy V [J], with force = -dV/dposition and torque = -dV/dangle; `None` if there is none: the law's work
-    /// is then integrated. V must not depend on the time: what it gains by itself is no work of the forces.
+    /// Potential energy V [J], with force = -dV/dposition and torque = -dV/dangle; `None` if there is none: the law's
+    /// work is then integrated. V must not depend on the time: a change of V by itself would not be work of the forces.
     fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None
@@ -102,20 +102,20 @@ pub trait ForceLaw: Debug + Send + Sync {
         None
     }
 
-    /// Length [m] over which the forces vary by their own size, |F| / |dF/dposition|, where that may be less than the size
-    /// of the bodies; `None` if it may not.
+    /// Length [m] over which the forces vary by their own size, |F| / |dF/dposition|; `None` if it is never less than
+    /// the size of the bodies.
     fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None
     }
 
-    /// How many switching functions the law has.
+    /// Number of switching functions of the law.
     fn switches(&self) -> usize {
         0
     }
 
-    /// Value of a switching function, in any unit; the forces are smooth while its sign does not change. Where it is zero
-    /// they may be those of either branch.
+    /// Value of the switching function with an index below [`switches`](Self::switches), in any unit. The forces are
+    /// smooth while no sign changes; where a function is zero, they may be those of either branch.
     fn switch(&self, index: usize, now: &Snapshot<'_>) -> f64 {
         let _ = (index, now);
         1.0

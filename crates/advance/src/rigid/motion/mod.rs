@@ -1,5 +1,5 @@
-//! What moves: a body with its segment (`flyer`), its motion along it (`path`), what predictions read of that
-//! (`lane`), and what a force law is (`law`). Nothing here knows other bodies.
+//! The motion of single bodies: a body with its segment (`flyer`), its motion along the segment (`path`), the copy of
+//! it that predictions read (`lane`), and the trait of force laws (`law`).
 
 pub(super) mod flyer;
 pub(super) mod lane;

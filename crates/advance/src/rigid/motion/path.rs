@@ -5,7 +5,7 @@ use glam::DVec2;
 use halfgap_collision::{Ball, BodyState, Flight, Motion, MotionBounds, Moving, Polynomial};
 use halfgap_geometry::Aabb;
 
-/// Bounds over a whole segment on what polynomials say: x, y, angle.
+/// Bounds over a whole segment on a motion given by the polynomials of x, y and angle.
 pub(crate) fn bounds_along(polynomials: &[SegmentPolynomial; 3]) -> MotionBounds {
     let [x, y, angle] = polynomials;
     let ball = |x: Spread, y: Spread| Ball {
@@ -20,7 +20,7 @@ pub(crate) fn bounds_along(polynomials: &[SegmentPolynomial; 3]) -> MotionBounds
     }
 }
 
-/// Largest size of a vector, by the spreads of its components.
+/// Bound on the size of a vector, from the spreads of its components.
 fn largest(x: Spread, y: Spread) -> f64 {
     DVec2::new(x.largest(), y.largest()).length()
 }
@@ -31,16 +31,19 @@ pub(crate) struct DensePath {
     x: SegmentPolynomial,
     y: SegmentPolynomial,
     angle: SegmentPolynomial,
-    /// Bounds over the whole segment on the accelerations [m/s^2, rad/s^2] and their rates [m/s^3, rad/s^3].
+    /// Bound [m/s^2] on the acceleration over the whole segment.
     acceleration: f64,
+    /// Bound [m/s^3] on the rate of the acceleration over the whole segment.
     jerk: f64,
+    /// Bound [rad/s^2] on the angular acceleration over the whole segment.
     angular_acceleration: f64,
+    /// Bound [rad/s^3] on the rate of the angular acceleration over the whole segment.
     angular_jerk: f64,
     known: Known,
 }
 
-/// What the searches of all pairs of a body ask first: where it is at the start of its segment and in the
-/// middle, and what bounds hold along all of it.
+/// Answers that the searches of all pairs of a body need first: its motion at the start and in the middle of its
+/// segment, and bounds along all of it.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     /// Length of the segment [s].
@@ -58,7 +61,7 @@ impl Default for Known {
 }
 
 impl DensePath {
-    /// Takes other polynomials, x, y, angle, which are followed for so long [s].
+    /// Sets the polynomials of x, y and angle, and the length `span` [s] of the segment.
     pub(crate) fn set(&mut self, polynomials: &[SegmentPolynomial; 3], span: f64) {
         let [x, y, angle] = *polynomials;
         *self = Self {
@@ -98,7 +101,7 @@ impl DensePath {
         }
     }
 
-    /// A speed [m/s] that the centre of mass does not exceed during the segment.
+    /// Bound [m/s] on the speed of the centre of mass during the segment.
     pub(crate) fn top_speed(&self) -> f64 {
         largest(self.x.derivative_spread(), self.y.derivative_spread())
     }
@@ -155,9 +158,9 @@ impl Motion for DensePath {
 /// A body's motion along its present segment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Path<'a> {
-    /// In closed form.
+    /// A flight in closed form.
     Flight(&'a Flight),
-    /// By an integrator.
+    /// Dense output of an integrator.
     Dense(&'a DensePath),
 }
 

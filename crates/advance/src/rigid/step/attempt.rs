@@ -8,17 +8,18 @@ use super::group::Group;
 use super::segment::{LONGEST_STEP, StepControl};
 use crate::ode::{Accepted, Method, Point, Stepper, is_kept};
 
-/// A step size has collapsed below this multiple of machine epsilon times the clock, or times the time in which a body of
-/// the scene's speed crosses the scene, if that is less. The clock itself resolves far shorter times.
+/// A step size has collapsed below this multiple of machine epsilon times the clock, or times the time in which a body
+/// of the scene's speed moves by [`StepControl::length`], if that is less. The clock itself resolves far shorter times.
 const COLLAPSED: f64 = 64.0;
 /// Factor by which a step is shortened where its state is not finite.
 const RETREAT: f64 = 0.1;
-/// Number of lengths that are tried so that no stage of a step comes near a point where its rows depend on each other.
+/// Number of lengths that are tried so that no stage of a step comes near a bifurcation point (see `singular`).
 const MOST_PLACEMENTS: usize = 4;
-/// Contact forces are steady if they vary along a step by no more than this fraction of their size: the next step may be
-/// longer by the inverse of it.
+/// Contact forces are steady if they vary along a step by no more than this fraction of their size: the next step may
+/// be longer by the inverse of it.
 const STEADY_PART: f64 = 1e-4;
-/// Largest factor by which steps of smooth motions grow at once: after larger ones errors follow the tolerance less well.
+/// Largest factor by which steps of smooth motions grow at once: after larger ones errors follow the tolerance less
+/// well.
 pub(crate) const STEADY_GROWTH: f64 = 2.0;
 /// Fixed steps have failed if a body is faster than this multiple of [`StepControl::speed`].
 const RUNAWAY: f64 = 1e6;
@@ -38,12 +39,11 @@ pub(crate) enum StepFailure {
 struct Attempt {
     /// Its length [s].
     step: f64,
-    /// The length [s] that errors ask for, where the step is made shorter for a point at which loops could go on in
-    /// two ways.
+    /// The length [s] that errors ask for; the step is made shorter if a bifurcation point of a loop is near.
     natural: f64,
-    /// How often the step was placed around such a point.
+    /// Number of times that the step was placed around a bifurcation point.
     placements: usize,
-    /// It is shorter than errors ask for, because of such a point.
+    /// It is shorter than errors ask for, because of a bifurcation point.
     is_led: bool,
     /// A longer one has erred by too much.
     is_rejected: bool,
@@ -136,10 +136,10 @@ impl Dynamics<'_> {
         said.or(self.group.next_step).unwrap_or_else(|| self.first_step(control)).min(limit)
     }
 
-    /// Places the step that was tried better around a point where loops could go on in two ways; true if there is
-    /// such a point and another length is to be tried.
+    /// Finds a length with which the step is placed better around a bifurcation point; true if there is one and another
+    /// length is to be tried.
     fn places_better(&mut self, attempt: &mut Attempt, method: Method) -> bool {
-        // Without a tree a step that begins near such a point is the better the longer it is: it errs by rounding.
+        // Without a tree the errors of a step that begins near a bifurcation point are rounding, and fall as it grows.
         let most = if self.group.tree.exists() { attempt.step } else { attempt.natural };
         if attempt.placements >= MOST_PLACEMENTS {
             return false;
@@ -159,7 +159,7 @@ impl Dynamics<'_> {
         let is_steady = self.group.laws.is_empty() && STEADY_PART * self.growth_by_forces() >= 1.0;
         self.group.steady_step = is_steady.then_some(step);
         let accepted = Accepted { length: step, error };
-        // A step that was made short of such a point tells nothing about those after it.
+        // A step that was shortened because of a bifurcation point tells nothing about those after it.
         let before = self.group.accepted.replace(accepted).filter(|_| !is_led);
         self.group.next_step = Some(if is_led {
             natural
@@ -185,9 +185,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// True if stages of the last step came so near a point where loops could go on in two ways that they have to lie on the
-    /// rows. Stages in angles are off the rows that close loops, and near such a point small errors of a few loops make
-    /// large spurious forces.
+    /// True if stages of the last step came so near a bifurcation point that they have to lie on the rows. Stages in
+    /// angles are off the rows that close loops, and near a bifurcation point small errors of a few loops make large
+    /// spurious forces.
     fn is_better_on_rows(&self) -> bool {
         let Group { tree, kept, .. } = &*self.group;
         kept.is_near_singular() && tree.has_few_loops() && self.group.stepping() != Stepping::Stiff
@@ -243,8 +243,9 @@ impl Dynamics<'_> {
         (self.group.state, self.group.rates, self.group.end_state) = (state, rates, end);
     }
 
-    /// Factor by which a step may be longer than the one before. Of groups with contacts, which events soon cut anyway, and
-    /// of stiff groups, whose steps grow much at once where a fast part has decayed, only the forces are asked.
+    /// Factor by which a step may be longer than the one before. In groups with contacts, whose steps are soon cut by
+    /// events anyway, and in stiff groups, whose steps grow much at once when a fast part has decayed, only contact
+    /// forces bound it.
     fn largest_growth(&self) -> f64 {
         let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
         if is_smooth && self.group.stepping() != Stepping::Stiff {

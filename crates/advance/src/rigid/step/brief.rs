@@ -1,7 +1,6 @@
-//! How the steps of a group are made: by the method that is asked for, or, in place of the default one, by
-//! the method of order 5, which has half as many stages. That serves where a higher order gains nothing:
-//! between events that come fast one after another, and over the kinks of a spline. Implicit steps are in
-//! `stiff`.
+//! The method of a group's steps: the one asked for or, in place of the default one, the method of order 5, which has
+//! half as many stages. It serves where a higher order gains nothing: between events that follow each other fast (brief
+//! steps), and over the kinks of a spline. Implicit steps are in `stiff`.
 
 use super::group::Group;
 use super::rows::RowSource;
@@ -10,30 +9,31 @@ use crate::ode::{Method, Stepper};
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 
-/// A group whose bodies' last lasted less than a step by this factor is expected to be brief, too.
+/// A group is expected to last this multiple of the time that the last groups of its bodies lasted, and is brief if a
+/// full step is longer than this multiple of that.
 const BRIEF: f64 = 4.0;
 
-/// A brief step is at least this part of a full one: to be cut short later costs less than to go on too often.
+/// Least length of a brief step, as a fraction of a full one: to cut a step short costs less than to make very many.
 const BRIEFEST: f64 = 1.0 / 32.0;
 
-/// Where a step is expected to be cut short, it is made shorter by this factor: its error is then so small
-/// that it can be cut by its dense output, and need not be repeated up to the event.
+/// Factor by which a full step is shortened if an event is expected to cut it: its error is then so small that it can
+/// be cut by its dense output, and need not be repeated up to the event.
 const CUT_SHARE: f64 = 0.6;
 
-/// A group stays brief while its steps may grow by this factor.
+/// A group stays brief while the errors of its steps allow them to grow by this factor.
 const BRIEF_GROWTH: f64 = 1.9;
 
-/// The method of few stages.
+/// The method of brief steps.
 const BRIEF_METHOD: Method = Method::DormandPrince5;
 
-/// By which stepper the steps of a group are made.
+/// Stepper by which the steps of a group are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stepping {
-    /// Of the method that is asked for.
+    /// That of the method asked for.
     Asked,
-    /// Of few stages.
+    /// That of the method with few stages.
     Brief,
-    /// Implicit.
+    /// The implicit one.
     Stiff,
 }
 
@@ -63,35 +63,36 @@ impl Steppers {
     }
 }
 
-/// What the next group of a body may learn from its last.
+/// Experience with the last group of a body, from which its next group starts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Past {
-    /// Step [s] that was right.
+    /// Length [s] of the next step that was proposed, by the method asked for.
     step: Option<f64>,
-    /// How long [s] the group lasted.
+    /// Time [s] for which the group lasted.
     lasted: f64,
     stiffness: Stiffness,
-    /// How deep [m] one of its contacts lay below where bodies touch, and when it ended.
+    /// Penetration [m] of its deepest contact; 0 if none penetrated.
     sunk: f64,
+    /// Time at which the group ended.
     ended: Time,
 }
 
 impl Past {
-    /// Of a group that ends now.
+    /// The experience with a group that ends now.
     pub(crate) fn of(group: &Group, now: Time) -> Self {
         let step = if group.is_brief { group.full_step } else { group.next_step };
         let (lasted, stiffness, sunk) = (now.since(group.made), group.stiffness, group.depth());
         Self { step, lasted, stiffness, sunk, ended: now }
     }
 
-    /// How deep [m] a contact of the group lay that ends now; zero if it ended before.
+    /// Penetration [m] of the deepest contact, if the group ends now; zero if it ended before.
     pub(crate) fn sunk_until(&self, now: Time) -> f64 {
         if self.ended == now { self.sunk } else { 0.0 }
     }
 }
 
 impl Group {
-    /// By which stepper its steps are made.
+    /// The stepper by which its steps are made.
     pub(crate) fn stepping(&self) -> Stepping {
         if self.is_brief {
             Stepping::Brief
@@ -104,7 +105,7 @@ impl Group {
         }
     }
 
-    /// Goes back to the method that is asked for, if brief steps are held up by their errors or by what is fast.
+    /// Returns to the method asked for, if errors or the fastest rate of the group hold brief steps up.
     pub(crate) fn end_brief(&mut self) {
         if !self.is_brief {
             return;
@@ -120,7 +121,7 @@ impl Group {
 }
 
 impl RigidSystem {
-    /// Chooses the first step of a group, and whether its steps have few stages, by what its bodies did last.
+    /// Chooses the first step of a group, and whether its steps are brief, by the last groups of its bodies.
     pub(crate) fn foresee(&self, group: &mut Group) {
         let pasts = group.bodies.iter().map(|body| self.groups.past_of[body.index()]);
         group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);

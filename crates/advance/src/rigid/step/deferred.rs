@@ -1,7 +1,7 @@
-//! Dense output that waits until somebody looks.
+//! Dense output that is made only when it is asked for.
 //!
-//! Where no body of a group can meet another, nothing can go taut or run off, and no force law changes
-//! branch, only who asks from outside needs to know the motion between the ends of steps. It is made from the
+//! Where no body of a group can collide, no connector can go taut, no contact can run off its features, and no force
+//! law changes branch, only the caller may need the motion between the ends of steps. Dense output is made from the
 //! stages of the last step, so it must be made before the stepper goes on with another group.
 
 use super::group::Group;
@@ -9,7 +9,7 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::BodyId;
 
 impl RigidSystem {
-    /// True if nothing ends the segments of a group early.
+    /// True if no event can end the segments of a group early.
     pub(crate) fn is_unwatched(&self, group: &Group) -> bool {
         let mechanism = self.mechanism();
         let mut connectors = group.bodies.iter().flat_map(|&body| self.connectors.of(body));
@@ -19,12 +19,13 @@ impl RigidSystem {
             && group.laws.iter().all(|&law| self.laws.all[law].switches() == 0)
     }
 
-    /// The dense output of a group waits from now on.
+    /// Postpones the dense output of the group with this leader.
     pub(crate) fn defer_dense(&mut self, leader: BodyId) {
         self.groups.waiting = Some(leader);
     }
 
-    /// Forgets the dense output of a group that goes on: nobody looked. That of another group is made.
+    /// Drops the postponed dense output of a group that goes on without having been asked for it; makes that of another
+    /// group.
     pub(crate) fn skip_dense(&mut self, leader: BodyId) {
         if self.groups.waiting == Some(leader) {
             self.groups.waiting = None;
@@ -32,7 +33,7 @@ impl RigidSystem {
         self.complete_dense();
     }
 
-    /// Makes the dense output that waits, if any: then all motions can be read.
+    /// Makes the postponed dense output, if there is any: then all motions can be evaluated.
     pub(crate) fn complete_dense(&mut self) {
         let Some(mut group) = self.groups.waiting.take().and_then(|leader| self.groups.take(leader)) else {
             return;
@@ -43,7 +44,7 @@ impl RigidSystem {
     }
 }
 
-/// Bodies that no other body can collide with: such that are excluded from collisions with all others.
+/// For each body, true if no other body can collide with it: collisions are off, or exclude it from all others.
 pub(crate) fn loners(count: usize, collisions: bool, excluded: &[(BodyId, BodyId)]) -> Vec<bool> {
     let mut partners = vec![count.saturating_sub(1); count];
     for &(a, b) in excluded.iter().filter(|(a, b)| a != b && !b.is_world()) {

@@ -18,33 +18,36 @@ use halfgap_contact::HeldRows;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-/// Part of the forces on a body below which what is left of them is rounding: a slope of this many radians is level.
+/// Fraction of the sum of the rows' forces on a body below which their resultant is rounding; a slope [rad] below it is
+/// level.
 pub(crate) const LEVEL: f64 = 1e-12;
 
-/// Velocities are corrected through accelerations: an older remedy against drift, kept for scenes recorded with it.
+/// Correction of drift by an additional acceleration of each held gap: an older remedy, kept for scenes recorded with
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtraAcceleration {
-    /// Time in which an error is to vanish [s].
+    /// Time constant [s] of the decay: critically damped for gaps, if they are corrected; else exponential for their
+    /// rates.
     pub time: f64,
-    /// Distances are corrected too.
+    /// Corrects the gaps too, not only their rates.
     pub distance: bool,
-    /// Of bilateral rows only.
+    /// Corrects bilateral rows only.
     pub joints_only: bool,
 }
 
-/// What the motion of groups is computed from.
+/// Parts of a system from which the motion of its groups is computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Physics<'a> {
     pub(crate) mechanism: Mechanism<'a>,
     pub(crate) laws: &'a [Arc<dyn ForceLaw>],
     pub(crate) extra: Option<ExtraAcceleration>,
     pub(crate) steps: &'a StepControl,
-    /// States are moved onto the held rows.
+    /// States may be moved onto the held rows.
     pub(crate) projects: bool,
 }
 
 impl<'a> Physics<'a> {
-    /// That of a system.
+    /// The physics of a system with these parts.
     pub(crate) fn of(
         flyers: &'a [Flyer],
         connectors: &'a [Connector],
@@ -56,44 +59,51 @@ impl<'a> Physics<'a> {
     }
 }
 
-/// Buffers for one moment, for the whole system: kept by its owner.
+/// Buffers for the evaluation of one moment, one set for the whole system.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stage {
-    /// All bodies; fixed ones are always right, others while their group is looked at.
+    /// States of all bodies; those of movable ones are valid only while their group is evaluated.
     pub(crate) movings: Vec<Moving>,
-    /// Force laws' sums for all bodies.
+    /// Sums of the force laws' wrenches, one for each body.
     wrenches: Vec<Wrench>,
     /// The wrenches of one law.
     single: Vec<Wrench>,
     /// Accelerations of the group's bodies (x, y, angle).
     pub(crate) accelerations: Vec<[f64; 3]>,
+    /// Jacobian of each row: three entries for the primary body, three for the normal body.
     pub(crate) jacobians: Vec<[f64; 6]>,
+    /// Right-hand side b of A f + b = 0 for each row: its acceleration [m/s^2] without forces of rows; during a
+    /// projection its gap error [m] or rate [m/s].
     pub(crate) offsets: Vec<f64>,
     /// Forces of the rows [N].
     pub(crate) forces: Vec<f64>,
+    /// M^-1 J^T f of each body (x, y, angle).
     pub(crate) changes: Vec<[f64; 3]>,
     /// Sum of the sizes of all rows' forces on each body [N].
     pub(crate) gross: Vec<f64>,
-    /// True for bodies whose accelerations are rounding.
+    /// True for each body whose acceleration is rounding.
     levels: Vec<bool>,
-    /// Force [N] of each row below which it has none.
+    /// Force [N] below which each row counts as without force.
     pub(crate) least: Vec<f64>,
     /// The least and the largest force [N] of each row at the stages of the last step.
     pub(crate) force_ranges: Vec<[f64; 2]>,
+    /// Evaluations note `force_ranges`.
     pub(crate) asks_force_ranges: bool,
-    /// Largest error [m] of a held gap, where forces of rows were last found.
+    /// Largest error [m] of a held gap where forces of rows were last found.
     pub(crate) gap_error: f64,
-    /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, where it is asked for.
+    /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, as last noted.
     pub(crate) free_acceleration: f64,
+    /// Evaluations note `free_acceleration` and `force_length`.
     pub(crate) asks_free_acceleration: bool,
-    /// Length [m] over which forces of laws vary there.
+    /// Length [m] over which the forces of laws vary, as last noted.
     pub(crate) force_length: f64,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
-    /// A state along the segment, and its rates.
+    /// A state along the segment.
     pub(crate) trial: Vec<f64>,
+    /// Rates of `trial`.
     pub(crate) trial_rates: Vec<f64>,
-    /// The same, moved onto the held rows.
+    /// A state moved onto the held rows.
     pub(crate) on_rows: Vec<f64>,
     /// Bounds on the motion of the group's bodies along the segment.
     pub(crate) bounds: Vec<MotionBounds>,
@@ -101,11 +111,11 @@ pub(crate) struct Stage {
     pub(crate) watched: Vec<u32>,
     /// Values of watched functions at the nodes.
     pub(crate) samples: Samples,
-    /// Their values at the earliest event found so far.
+    /// Values of watched functions at the earliest event found so far.
     pub(crate) there: Vec<f64>,
-    /// Evaluations so far.
+    /// Number of evaluations so far.
     pub(crate) evaluations: u64,
-    /// Solves of held rows so far.
+    /// Number of solves of held rows so far.
     pub(crate) solves: u64,
 }
 
@@ -120,14 +130,14 @@ impl Stage {
         }
     }
 
-    /// Places the bodies of a group as its state says.
+    /// Places the bodies of a group according to its state.
     pub(crate) fn load(&mut self, bodies: &[BodyId], state: &[f64]) {
         for (place, body) in bodies.iter().enumerate() {
             self.movings[body.index()] = Moving::from(&body_state(state, bodies.len(), place));
         }
     }
 
-    /// Accelerations without the forces of rows, of bodies that are in place; powers of the works, if asked for.
+    /// Finds the accelerations without the forces of rows, of bodies that are in place, and the powers [W] of `works`.
     pub(crate) fn accelerate(
         &mut self,
         physics: &Physics<'_>,
@@ -168,7 +178,7 @@ impl Stage {
         }
     }
 
-    /// Takes in what was measured of the next row, whose bodies have the accelerations that they have without it.
+    /// Adds the next row, as measured, to the equations; the stage holds the accelerations without the forces of rows.
     #[inline(always)]
     fn take_row(
         &mut self,
@@ -209,7 +219,7 @@ impl Stage {
         self.force_length = lengths.fold(f64::INFINITY, f64::min);
     }
 
-    /// Begins anew to note the range of the forces of so many rows.
+    /// Clears the noted ranges of forces, for a number of rows.
     pub(crate) fn clear_force_ranges(&mut self, rows: usize) {
         self.force_ranges.clear();
         self.force_ranges.resize(rows, [f64::INFINITY, f64::NEG_INFINITY]);
@@ -233,7 +243,7 @@ impl Stage {
         law.apply(&now, &mut Wrenches::new(&mut self.single));
         *power = 0.0;
         for index in named() {
-            // Taken: a body may be named twice.
+            // The wrench is taken out, since a body may be named twice.
             let (moving, wrench) = (&self.movings[index], std::mem::take(&mut self.single[index]));
             *power += wrench.force.dot(moving.velocity) + wrench.torque * moving.angular_velocity;
             let sum = &mut self.wrenches[index];
@@ -243,7 +253,7 @@ impl Stage {
     }
 }
 
-/// What a unit force of a row does to the body on one side of it.
+/// Response of the body on one side of a row to a unit force of the row.
 #[derive(Clone, Copy, Debug, Default)]
 struct Response {
     /// Place of the body in its group; `None` if it cannot move.
@@ -272,7 +282,7 @@ pub(crate) fn set_body_state(state: &mut [f64], bodies: usize, place: usize, bod
     state[3 * (bodies + place)..3 * (bodies + place) + 3].copy_from_slice(&velocity);
 }
 
-/// A group with what its motion is computed from.
+/// A group with the physics and the buffers from which its motion is computed.
 #[derive(Debug)]
 pub(crate) struct Dynamics<'a> {
     pub(crate) physics: Physics<'a>,
@@ -283,9 +293,9 @@ pub(crate) struct Dynamics<'a> {
 }
 
 impl Dynamics<'_> {
-    /// Measures the rows with the bodies in place and factorises; calls `visit` with the gap of each less the
-    /// one at which it formed, and its rate. Returns how many rows depend on others. Of a group that is
-    /// stepped as a tree, only rows beside its pins count.
+    /// Measures the rows with the bodies in place and factorises A = J M^-1 J^T; calls `visit` with the error [m] of
+    /// each gap and its rate [m/s]. Returns the number of rows that depend on others. For a group that is stepped as a
+    /// tree, only the rows beside its pins count, and the number is 0.
     pub(crate) fn factorize(&mut self, mut visit: impl FnMut(f64, f64)) -> usize {
         if self.group.tree.is_used() {
             self.factorize_by_tree(visit);
@@ -314,7 +324,7 @@ impl Dynamics<'_> {
         self.respond_with(HeldRows::solve);
     }
 
-    /// As [`respond`](Self::respond), but rows that share what they hold lack a small part of it. Not of trees.
+    /// As [`respond`](Self::respond), but the forces of soft rows lack a small part. Not for trees.
     pub(crate) fn respond_roughly(&mut self) {
         self.respond_with(HeldRows::solve_roughly);
     }
@@ -329,12 +339,12 @@ impl Dynamics<'_> {
         *solves += 1;
     }
 
-    /// True if a single row holds two bodies, or one.
+    /// True if a single row holds the group: two bodies, or one against the background.
     fn is_held_by_one(&self) -> bool {
         matches!(self.group.sides.as_slice(), [[a, b]] if a != b) && !self.group.held.is_soft()
     }
 
-    /// Adds what the only row does to the accelerations: many groups have no other, and need no factor of equations.
+    /// Adds the response to the only row to the accelerations: many groups have just one, and need no factorisation.
     fn accelerate_by_row(&mut self) {
         let (first, second) = (self.response_to_row(0), self.response_to_row(1));
         let Stage { offsets, forces, accelerations, solves, .. } = &mut *self.stage;
@@ -351,7 +361,7 @@ impl Dynamics<'_> {
         *solves += 1;
     }
 
-    /// How the body on a side of the only row responds to its force.
+    /// Response of the body on one side of the only row.
     #[inline(always)]
     fn response_to_row(&self, side: usize) -> Response {
         let Some(place) = self.group.sides[0][side] else { return Response::default() };
@@ -371,7 +381,7 @@ impl Dynamics<'_> {
         let Physics { mechanism, extra, .. } = self.physics;
         let mut twin = None;
         for (row, &sides) in self.group.rows.iter().zip(&self.group.sides) {
-            // Told apart here, too, so that what is measured of a contact does not go through memory.
+            // `measure_next` would tell contacts apart as well; doing it here keeps their measurements in registers.
             if let RowSource::Contact(features) = row.source {
                 let movings = row.bodies.map(|body| moving_of(&self.stage.movings, body));
                 let moment = mechanism.measure_contact(row.bodies, features, movings);
@@ -399,8 +409,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Takes accelerations that are only rounding of the forces of contacts from the bodies that have them: what stands
-    /// does not creep because its sides are level up to rounding only.
+    /// Sets accelerations to zero that are only rounding of the contact forces, so that a standing body does not creep
+    /// because its sides are level only up to rounding.
     fn level(&mut self) {
         let all: f64 = self.stage.forces.iter().map(|force| force.abs()).sum();
         let mut bodies = self.stage.accelerations.iter().zip(&self.group.bodies);
@@ -427,7 +437,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// True if an acceleration is no more than so small a force [N] gives a body.
+    /// True if an acceleration is no larger than a force [N] at the centre, or at the body's reach, would make it.
     #[inline]
     fn is_level(&self, &[x, y, angular]: &[f64; 3], body: BodyId, force: f64) -> bool {
         let flyer = &self.physics.mechanism.flyers[body.index()];
@@ -436,8 +446,9 @@ impl Dynamics<'_> {
         x * x + y * y <= linear * linear && angular.abs() <= force * inertia.inverse_moment * reach
     }
 
-    /// Takes those bodies out of the level ones that rows push along with others that are not: what is
-    /// rounding of the forces on a light body may be how a heavy one moves that it is tied to.
+    /// Removes from the level bodies those that a row ties to a body which is not level and for which their
+    /// acceleration counts: what is rounding for a light body under large forces need not be so for a heavy one under
+    /// small ones.
     fn keep_pushed(&mut self) {
         let flyers = self.physics.mechanism.flyers;
         let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
@@ -465,8 +476,8 @@ impl Dynamics<'_> {
 impl ExtraAcceleration {
     /// Acceleration [m/s^2] that is added to a gap's own, for a gap too large by `gap` [m] that grows at `rate` [m/s].
     ///
-    /// Kept out of loops over rows, which else compute with `time` where there is none: what memory then
-    /// holds is often a denormal number, which takes long.
+    /// Not inlined: in a loop over rows the compiler would compute with `time` even where there is no correction, and
+    /// the memory then often holds a denormal number, with which arithmetic is slow.
     #[inline(never)]
     fn acceleration(&self, gap: f64, rate: f64) -> f64 {
         if self.distance {
@@ -495,14 +506,15 @@ impl Ode for Dynamics<'_> {
 }
 
 impl Dynamics<'_> {
-    /// True if the group passes along its rows a point where loops could go on in two ways: its stages are moved onto
-    /// the rows, and what is only rounding is left as it is, for it would come into each stage anew.
+    /// True if the stages of the group are moved onto its rows because it passes a bifurcation point of its loops.
+    /// Errors that are only rounding are not corrected then: they would come into each stage anew.
     pub(crate) fn passes_by_rows(&self) -> bool {
         let Group { tree, kept, held, .. } = &*self.group;
         tree.is_bypassed() || (!tree.is_used() && !held.is_soft() && kept.is_near_singular())
     }
 
-    /// Rates of the group's state; `constrain` adds what the rows do to accelerations in the stage.
+    /// Finds the rates of a state of the group; `constrain` adds the response to the rows to the accelerations in the
+    /// stage.
     pub(crate) fn find_rates(
         &mut self,
         offset: f64,
@@ -530,14 +542,14 @@ impl Dynamics<'_> {
         velocity_rates.as_chunks_mut::<3>().0.copy_from_slice(&self.stage.accelerations);
     }
 
-    /// Rates of a state of the group, stepped as a tree or not.
+    /// Finds the rates of a state of the group, whether it is stepped as a tree or not.
     pub(crate) fn find_rates_at(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         let constrain = if self.group.tree.is_used() { Self::hang } else { Self::solve_rows };
         self.find_rates(offset, state, rates, constrain);
     }
 
-    /// Rates of the group's state, with its largest acceleration without the forces of rows, and the forces
-    /// of rows unless it is stepped as a tree.
+    /// Finds the rates of a state of the group, its largest acceleration without the forces of rows, and the length
+    /// over which forces vary. The forces of rows are left in the stage, unless the group is stepped as a tree.
     pub(crate) fn evaluate_with_free(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         self.stage.asks_free_acceleration = true;
         self.find_rates_at(offset, state, rates);
@@ -546,8 +558,7 @@ impl Dynamics<'_> {
         self.group.force_length = self.stage.force_length;
     }
 
-    /// The largest distance [m] by which a connector is off, with the bodies in place; the rows of one follow
-    /// each other.
+    /// Largest error [m] of a connector, with the bodies in place; the rows of one connector follow each other.
     pub(crate) fn connector_error(&self) -> f64 {
         let (mut last, mut square, mut largest) = (None, 0.0, 0.0f64);
         for row in &self.group.rows {

@@ -1,4 +1,4 @@
-//! The energy of a group: of a state, what a projection changes of it, and what a step loses.
+//! The energy of a group in a state, its change by a projection, and its loss in a step.
 
 use super::dynamics::{Dynamics, body_state};
 use super::extending::Tools;
@@ -9,23 +9,24 @@ use crate::rigid::motion::law::Snapshot;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, BodyState};
 
-/// Energy that a step may lose or make, in local errors of the kinetic energy, and in roundings of all of it.
-/// Where rows all but depend on each other, or near a centre of attraction, what is rounding elsewhere does
-/// work, and no error estimate tells.
+/// Energy that a step may lose or gain, as a multiple of `local_error` times the kinetic energy. Where rows nearly
+/// depend on each other, or near a centre of attraction, errors that are rounding elsewhere do work, and no error
+/// estimate shows it.
 const LOST_ERRORS: f64 = 1e2;
+/// Energy that a step may lose or gain beyond that, as a multiple of machine epsilon times the whole energy.
 const LOST_ROUNDINGS: f64 = 1e3;
 
 /// Energy [J] of a group's bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Energy {
-    /// All of it, as far as it has a potential.
+    /// Kinetic and potential energy; forces without a potential do not count.
     total: f64,
-    /// Of the motion alone.
+    /// Kinetic energy.
     kinetic: f64,
 }
 
 impl RigidSystem {
-    /// Notes the kinetic energy of a group's bodies at the end of its segment, which nobody may look at else.
+    /// Notes the kinetic energy of a group's bodies at the end of its segment, which may be evaluated nowhere else.
     pub(crate) fn note_kinetic_energy(&mut self, group: &Group) {
         let count = group.bodies.len();
         let of_bodies = group
@@ -37,7 +38,7 @@ impl RigidSystem {
         self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(kinetic);
     }
 
-    /// Notes the kinetic energy that the bodies of an impact came with.
+    /// Notes the kinetic energy of the bodies of an impact just before it.
     pub(crate) fn note_kinetic_energy_before(&mut self, impact: &ImpactReport) {
         let after = impact.states.iter().map(|(body, state)| self.kinetic_energy(*body, state)).sum::<f64>();
         let kinetic = after - impact.energy_change;
@@ -51,8 +52,8 @@ impl RigidSystem {
 }
 
 impl Dynamics<'_> {
-    /// Projects the end onto the held rows and notes what energy that took. Returns the energy there, if
-    /// anybody had to look.
+    /// Projects the end onto the held rows and notes the change of energy. Returns the energy at the end, if it was
+    /// projected.
     pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) -> Option<Energy> {
         let settings = tools.settings;
         self.group.projected = 0.0;
@@ -78,8 +79,8 @@ impl Dynamics<'_> {
         energy
     }
 
-    /// Energy that the last step has lost or made, in units of what it may; 0 where errors of steps are all
-    /// there is. The energy at its end, where it is known.
+    /// Energy that the last step has lost or gained, as a multiple [-] of what it may; 0 where the error estimate shows
+    /// all errors. `end` is the energy at its end, if it is known.
     pub(crate) fn lost_energy(&mut self, control: &StepControl, end: Option<Energy>) -> f64 {
         let holds = !self.group.rows.is_empty() && !self.group.tree.holds_all();
         if !holds && self.group.force_length >= control.length {

@@ -1,20 +1,25 @@
-//! A group's next segment as it is used: a step that keeps to the held rows, projected, with what ends it early.
+//! A group's next segment: a step that keeps to the held rows, projected, with the event that ends it early.
+//!
+//! The excess of a step is the largest of its errors beside the error estimate, each as a multiple of what is allowed:
+//! the distance of its dense output from the held rows, the oscillation of the dense output, the energy it has lost.
 
 use super::attempt::StepFailure;
 use super::dynamics::Dynamics;
 use crate::ode::{Stepper, StiffnessEstimate};
 use crate::rigid::system::RigidSettings;
 
-/// Shorter steps that are tried for one that keeps to its rows.
+/// Number of shorter steps that are tried if a step has an excess above 1.
 const SHORTENINGS: usize = 2;
-/// More of them where the dense output errs by more than so many times what is allowed, so that bodies would
-/// overlap; and more still as long as each leaves less than so much of the error.
+/// Number of shorter steps that are tried as long as the excess is above [`DEEP`].
 const DEEP_SHORTENINGS: usize = 5;
+/// Number of shorter steps that are tried then if the last of them was [`WORTHWHILE`].
 const MOST_SHORTENINGS: usize = 8;
+/// Excess [-] above which bodies would overlap along the dense output.
 const DEEP: f64 = 4.0;
+/// A shorter step is worthwhile if it leaves less than this fraction of the excess of the one before.
 const WORTHWHILE: f64 = 0.5;
 
-/// What a group's stepping uses beside its dynamics.
+/// Stepper, buffer and settings with which a group is stepped.
 pub(crate) struct Tools<'a> {
     pub(crate) stepper: &'a mut Stepper,
     pub(crate) scales: &'a mut Vec<f64>,
@@ -22,7 +27,7 @@ pub(crate) struct Tools<'a> {
 }
 
 impl Dynamics<'_> {
-    /// Extends the group by a step, with what ends it early.
+    /// Extends the group by a step, and finds the event that ends it early.
     pub(crate) fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         if !self.group.is_unwatched {
             let told = self.extend_on_rows(tools)?;
@@ -34,14 +39,14 @@ impl Dynamics<'_> {
         self.note_stiffness(tools, told);
         self.limit_next_step(tools.stepper.method().step_factor(0.0));
         (self.group.event, self.group.look) = (None, None);
-        // Where ends are projected, what is left there is rounding.
+        // Of projected ends only rounding is left, so the gaps of the last evaluation tell.
         let is_projected = tools.settings.projection;
         self.group.largest_error = if is_projected { self.stage.gap_error } else { self.connector_error() };
         Ok(())
     }
 
-    /// Extends the group by a step whose dense output will not swing when somebody looks. Where loops may go
-    /// on otherwise, it keeps to its rows and its energy, too.
+    /// Extends the group by a step whose dense output, if it is asked for, does not oscillate. Near a bifurcation point
+    /// of a loop the step keeps to its rows and its energy, too.
     fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let mut tries = 0;
         loop {
@@ -63,15 +68,14 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Makes the dense output of the last step.
+    /// Makes the dense output of the last step, and notes the errors of the held gaps along it.
     pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
         self.make_dense(tools.stepper);
         self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
     }
 
-    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and
-    /// does not swing: shorter ones are tried until it does. Tells how fast the fastest part is, if somebody
-    /// has looked.
+    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not
+    /// oscillate: shorter steps are tried until one does. Returns the stiffness, if it was estimated.
     fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
@@ -92,7 +96,7 @@ impl Dynamics<'_> {
             let is_worthwhile = excess > DEEP && tries < most;
             before = excess;
             if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
-                // What shorter steps do not mend is rounding, or rows that contradict each other.
+                // An error that shorter steps do not reduce is rounding, or comes from rows that contradict each other.
                 self.group.next_step = proposed;
                 return Ok(told);
             }
@@ -119,12 +123,12 @@ mod tests {
         disc_on_rods(&[DVec2::ZERO])
     }
 
-    /// The same on rods that end at several points.
+    /// Such a disc on rods that end at several points.
     fn disc_on_rods(ends: &[DVec2]) -> RigidSystem {
         turning_disc_on_rods(ends, 2.0, 0.0)
     }
 
-    /// The same with a spin [rad/s] that decays at a rate [1/s].
+    /// Such a disc on rods, with a spin [rad/s] that decays at a rate [1/s].
     fn turning_disc_on_rods(ends: &[DVec2], spin: f64, angular_rate: f64) -> RigidSystem {
         let disc = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape: disc, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
@@ -153,15 +157,17 @@ mod tests {
                 dynamics.group.projected
             })
         });
-        // Once it is there, another projection takes nothing.
+        // A second projection finds the end on the rows.
         assert!(taken[0].abs() > 1e-4 && taken[1].abs() < 1e-9, "{taken:?}");
     }
 
     #[test]
     fn rows_that_all_but_depend_on_each_other_do_not_throw_their_bodies_about() {
-        /// Angle between the rods [rad], an error of the second [m], and how far the disc may move for it [m].
+        /// Angle between the rods [rad].
         const ANGLE: f64 = 1e-5;
+        /// Error of the second rod's length [m].
         const ERROR: f64 = 1e-7;
+        /// Distance [m] by which the disc may move for it.
         const WAY: f64 = 1e-5;
         let mut system = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, ANGLE)]);
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
@@ -171,7 +177,7 @@ mod tests {
             dynamics.end_on_rows(tools);
             (dynamics.group.end_state[1] - before[1]).abs()
         });
-        // To make both rods as long as they say takes a centimetre along the other direction.
+        // To correct the lengths of both rods would take a centimetre across them.
         assert!(moved < WAY, "{moved} m");
     }
 
@@ -182,7 +188,7 @@ mod tests {
         group.next_step = Some(1e-9);
         let velocity = system.with_group(&mut group, |dynamics, tools| {
             dynamics.extend(tools).expect("it falls");
-            // As a projection might: over this step it would be 1 m/s.
+            // A projection might move the end by as much: over this step it would be 1 m/s.
             dynamics.group.end_state[1] += 1e-9;
             dynamics.evaluate_end();
             dynamics.make_dense(tools.stepper);
@@ -194,10 +200,11 @@ mod tests {
 
     #[test]
     fn what_swings_between_the_ends_of_a_step_makes_it_shorter() {
-        /// The spin decays at so many 1/s, and by so much in a step whose error estimate does not tell it.
+        /// Rate [1/s] at which the spin decays.
         const RATE: f64 = 1e6;
+        /// Product of that rate and the length of a step whose error estimate does not show the decay.
         const UNTOLD: f64 = 5.75;
-        // Ten times what may err: the disc moves at 2 m/s and is 0.5 m large.
+        // Ten times the error that is allowed: the disc moves at 2 m/s and has a radius of 0.5 m.
         let spin = 10.0 * FINE.steps.local_error * 2.0 / 0.5;
         let mut system = turning_disc_on_rods(&[DVec2::ZERO], spin, RATE);
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
@@ -218,7 +225,7 @@ mod tests {
         let [kept, lost] = system.with_group(&mut group, |dynamics, tools| {
             let energy = dynamics.extend(tools).expect("it swings");
             let kept = dynamics.lost_energy(&tools.settings.steps, energy);
-            // As what does work where rows all but depend on each other.
+            // Rows that nearly depend on each other may do work like this.
             dynamics.group.end_state[4] *= 1.0 - 1e-6;
             [kept, dynamics.lost_energy(&tools.settings.steps, None)]
         });

@@ -10,7 +10,7 @@ use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 use halfgap_contact::HeldRows;
 
-/// Work that has no potential and is integrated with the motion.
+/// Work of forces without a potential, which is integrated with the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Work {
     /// Of a force law.
@@ -19,14 +19,14 @@ pub(crate) enum Work {
     Damping,
 }
 
-/// What ends a group's segment.
+/// Event that ends a group's segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SegmentEnd {
     /// The force of a row falls to zero.
     Release(usize),
     /// A contact runs off its features, or a rail's piece ends.
     Change(usize),
-    /// A contact that is touched without force sinks.
+    /// A contact that touches without force sinks.
     Sink(usize),
     /// A unilateral connector within the group closes.
     Stop(ConnectorId),
@@ -40,9 +40,9 @@ pub(crate) struct Stop {
     pub(crate) id: ConnectorId,
     /// Piece of the rail.
     pub(crate) hint: Option<RailHint>,
-    /// How far [m] it may sink before it fires: more than nothing where it is touched without force.
+    /// Distance [m] by which it may sink before it fires; more than 0 where it is touched without force.
     pub(crate) slack: f64,
-    /// Where its point has come to has been noted: its body is about to leave the segment.
+    /// The place that its point has come to is noted: its body is about to leave the segment.
     pub(crate) is_noted: bool,
 }
 
@@ -51,96 +51,101 @@ pub(crate) struct Stop {
 pub(crate) struct Group {
     /// Its bodies, ascending.
     pub(crate) bodies: Vec<BodyId>,
-    /// The rows that are held: independent ones, and every row of its connectors.
+    /// The held rows: independent ones of the contacts, and every row of the connectors.
     pub(crate) rows: Vec<HeldRow>,
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
     pub(crate) sides: Vec<[Option<u32>; 2]>,
-    /// Contacts within the group that are touched without force, each with the gap [m] below which it fires.
+    /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
     pub(crate) idle: Vec<HeldRow>,
     pub(crate) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
     pub(crate) laws: Vec<usize>,
     pub(crate) works: Vec<Work>,
     pub(crate) held: HeldRows,
-    /// In whose coordinates it is stepped, if it hangs together by pins alone.
+    /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
     pub(crate) tree: JointTree,
-    /// Whether its connectors close any.
+    /// Whether its connectors close a loop.
     pub(crate) loops: Loops,
-    /// What rows of loops keep that depend on each other for a moment.
+    /// Kept shares of the rows of its loops, which tell of bifurcation points (`singular`).
     pub(crate) kept: Kept,
-    /// How many rows depend on others all along, where such rows share what they hold.
+    /// Number of rows that depend on others all along, where such rows are soft and share their force.
     pub(crate) dependent: usize,
-    /// When its segment started.
+    /// Time at which its segment starts.
     pub(crate) start: Time,
     /// Length of the segment [s].
     pub(crate) span: f64,
     /// Position (x, y, angle) of each body, then velocities likewise, then works.
     pub(crate) state: Vec<f64>,
+    /// Rates of `state` at the start of the segment.
     pub(crate) rates: Vec<f64>,
-    /// The same at the end of the segment.
+    /// State at the end of the segment.
     pub(crate) end_state: Vec<f64>,
+    /// Rates at the end of the segment.
     pub(crate) end_rates: Vec<f64>,
     /// Force [N] of each row at the start of the segment.
     pub(crate) forces: Vec<f64>,
     /// Force [N] of each row at the end of the segment.
     pub(crate) end_forces: Vec<f64>,
-    /// Another group was ended when this one was made, as a contact pulled from the start: it may again.
+    /// Another group was ended at the time at which this one was made, because a contact pulled from the start; here it
+    /// may pull again.
     pub(crate) is_patient: bool,
-    /// How far [m] each row was off its features already when that was first seen; 0 if it was not.
+    /// Distance [m] by which each row had run off its features when that was first seen; 0 if it had not.
     pub(crate) overrun: Vec<f64>,
-    /// By what force [N] each row pulled already when that was first seen; 0 if it did not.
+    /// Force [N] by which each row pulled when that was first seen; 0 if it did not.
     pub(crate) pulled: Vec<f64>,
     /// x, y and angle of each body along the segment.
     pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
-    /// Their velocities, by place as in the state, and then works [J], along the segment. The paths' own
-    /// derivatives hold what a projection has moved the end by, too: over a short step that is much.
+    /// Velocities of the bodies, in the order of the state, and then works [J], along the segment. The derivatives of
+    /// `paths` are no substitute: they contain the displacement of the end by its projection, which is much over a
+    /// short step.
     pub(crate) rate_paths: Vec<SegmentPolynomial>,
     /// Length of the next step to try [s]; `None` if nothing is known.
     pub(crate) next_step: Option<f64>,
-    /// The same, of the method that is asked for, while a brief one goes on.
+    /// Length [s] of the next step of the method asked for, while brief steps are made.
     pub(crate) full_step: Option<f64>,
-    /// When the group was made.
+    /// Time at which the group was made.
     pub(crate) made: Time,
-    /// The next event is near: a step of few stages reaches it.
+    /// Its steps are brief: the next event is so near that a step of few stages reaches it.
     pub(crate) is_brief: bool,
-    /// Nothing ends its segments early: dense output may wait until somebody looks.
+    /// No event can end its segments early: dense output may be postponed until it is asked for.
     pub(crate) is_unwatched: bool,
     /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
     pub(crate) has_kinks: bool,
     pub(crate) stiffness: Stiffness,
-    /// By how much [1/s^2] the acceleration of each body varied last where the bodies were moved by a little;
-    /// empty where nobody had to look, and among contacts.
+    /// Change of each body's acceleration per displacement [1/s^2], as the last probe found it; empty where none was
+    /// needed, and in groups with contacts.
     pub(crate) roughness: Vec<f64>,
-    /// The last step of the group as it is now.
+    /// The last accepted step of the group as it is now.
     pub(crate) accepted: Option<Accepted>,
-    /// Its length [s], if no contact varied along it: neither its force nor, of those without force, its gap.
+    /// Length [s] of the last step, if along it neither the forces of contacts varied nor the gaps of those without
+    /// force, and no force law acts on the group.
     pub(crate) steady_step: Option<f64>,
-    /// Largest acceleration [m/s^2] that forces other than those of rows gave last.
+    /// Largest acceleration [m/s^2] of a point by forces other than those of rows, as last evaluated.
     pub(crate) free_acceleration: f64,
-    /// Length [m] over which forces of laws varied last, without end where they vary over no less than bodies
-    /// are large.
+    /// Length [m] over which the forces of laws vary, as last evaluated; infinite where they vary over no less than the
+    /// size of the bodies.
     pub(crate) force_length: f64,
-    /// Energy [J] that the projection of the end changed.
+    /// Energy [J] that the projection of the end has added.
     pub(crate) projected: f64,
-    /// Largest error of a held gap [m], in the middle of the segment, or at its end if nobody looked in between.
+    /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.
     pub(crate) largest_error: f64,
-    /// The least gap [m] of a held contact in the middle of the segment, if there is one and somebody looked.
+    /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
     pub(crate) least_gap: Option<f64>,
-    /// What ends the segment early, if something does, and its offset [s].
+    /// The event that ends the segment early, if there is one, and its offset [s].
     pub(crate) event: Option<(f64, SegmentEnd)>,
-    /// Offset [s] up to which no contact can lose its force, as the stages of the step tell, while nobody has
-    /// looked further.
+    /// Offset [s] up to which the stages of the step show that no contact loses its force, while the search for events
+    /// has not gone further.
     pub(crate) look: Option<f64>,
 }
 
 impl Group {
-    /// How deep [m] a held contact lies below where its bodies touch: rows that contradict each other do not
-    /// keep to their gaps.
+    /// Penetration [m] of the deepest held contact; 0 if there is none. Rows that contradict each other do not keep to
+    /// their gaps.
     pub(crate) fn depth(&self) -> f64 {
         self.least_gap.map_or(0.0, |gap| (-gap).max(0.0))
     }
 
-    /// Forgets everything but the room of its buffers.
+    /// Empties the group, and keeps the capacity of its buffers.
     pub(crate) fn clear(&mut self) {
         let mut old = std::mem::take(self);
         old.tree.clear();
@@ -173,7 +178,7 @@ impl Group {
         };
     }
 
-    /// The body by which the group is found.
+    /// The body under whose id the group is stored.
     pub(crate) fn leader(&self) -> BodyId {
         self.bodies[0]
     }
@@ -186,12 +191,12 @@ impl Group {
         self.sides.extend(self.rows.iter().map(|row| row.bodies.map(place)));
     }
 
-    /// Numbers in its state: positions, velocities, works.
+    /// Number of components of its state: positions, velocities, works.
     pub(crate) fn dimension(&self) -> usize {
         6 * self.bodies.len() + self.works.len()
     }
 
-    /// Where the velocities start in its state.
+    /// Index of the first velocity in its state.
     pub(crate) fn velocities(&self) -> usize {
         3 * self.bodies.len()
     }
@@ -201,19 +206,19 @@ impl Group {
         &self.rate_paths[self.velocities().min(self.rate_paths.len())..]
     }
 
-    /// When the segment ends, is interrupted by an event of the group itself, or has to be looked at further.
+    /// Time at which the segment ends, is interrupted by an event of the group itself, or has to be searched further.
     pub(crate) fn due(&self) -> Time {
         let end = self.event.map_or(self.span, |(offset, _)| offset);
         self.start.plus(self.look.unwrap_or(end))
     }
 
-    /// When the segment ends.
+    /// Time at which the segment ends.
     pub(crate) fn end(&self) -> Time {
         self.start.plus(self.span)
     }
 }
 
-/// A list without its entries, but with their room.
+/// An emptied list, which keeps its capacity.
 fn emptied<T>(mut list: Vec<T>) -> Vec<T> {
     list.clear();
     list
@@ -232,7 +237,7 @@ mod tests {
         let held = used.held.clone();
         used.clear();
         let mut fresh = Group::default();
-        // Whose rows are sorted how is found anew with each group.
+        // The order of the rows is found anew for each group.
         (fresh.held, fresh.tree, fresh.kept) = (held, used.tree.clone(), used.kept.clone());
         fresh.loops = used.loops.clone();
         assert_eq!(format!("{used:?}"), format!("{fresh:?}"));

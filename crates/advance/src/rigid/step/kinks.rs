@@ -1,22 +1,21 @@
-//! Steps up to the joints of rails through points. The third derivatives of a spline jump there, so that a
-//! step across loses the order of its method; one that ends there does not. Joints of lines and arcs are
-//! events (`watch`).
+//! Steps up to the joints of rails that are splines. The third derivative of a spline jumps there, so that a step
+//! across loses the order of its method; one that ends there does not. Joints of lines and arcs are events (`watch`).
 
 use super::dynamics::{Dynamics, body_state};
 use super::rows::{HeldRow, RowSource};
 use super::segment::StepControl;
 use halfgap_collision::{Moving, first_closing_time};
 
-/// By how much of h^2 a velocity errs, after a step h of the method of order 5, per jump of the derivative of
-/// its acceleration: between what the error estimate sees of it and what it can be, the largest values
-/// (0.0019 and 0.022) of their Peano kernels. Over m joints as far from each other it is m times as much, not
-/// m^2: between them the curve strays from a smooth one by as much on either side.
+/// Error of a velocity after a step h of the method of order 5, as a multiple of h^2 times the jump of the derivative
+/// of its acceleration. It lies between the largest values of two Peano kernels: 0.0019 for what the error estimate
+/// shows, and 0.022 for the error itself. Over m joints at equal distances the error is m times as large, not m^2
+/// times: between them the curve deviates from a smooth one by as much on either side.
 const KERNEL: f64 = 1.0 / 256.0;
 
 impl Dynamics<'_> {
-    /// The step [s] up to the next joint of a spline on which a point of the group runs, by its velocity and
-    /// acceleration at the start; longer ones where to cross it is no error. It need not be hit: what a step
-    /// errs falls with the part of it that lies beyond.
+    /// The longest step [s] of points that run on splines: up to the next joint, by the velocity and acceleration at
+    /// the start, or longer if joints may be crossed with little error; infinite without splines. The joint need not be
+    /// hit exactly: the error falls with the part of the step that lies beyond.
     pub(crate) fn longest_smooth_step(&self, control: &StepControl) -> f64 {
         if !self.group.has_kinks {
             return f64::INFINITY;
@@ -26,7 +25,7 @@ impl Dynamics<'_> {
         waits.fold(f64::INFINITY, f64::min)
     }
 
-    /// The step for one row, whose velocity may err by what is allowed [m/s].
+    /// The longest step [s] for one row, where velocities may err by `allowed` [m/s]; `None` if no joint is ahead.
     fn wait_for_joint(&self, row: &HeldRow, allowed: f64) -> Option<f64> {
         let (RowSource::Connector(id, _), Some(hint)) = (row.source, &row.hint) else { return None };
         let connector = &self.physics.mechanism.connectors[id.index()];
@@ -67,15 +66,14 @@ mod tests {
     const POINTS: u32 = 48;
     /// Angle from one to the next [rad].
     const SPACING: f64 = TAU / POINTS as f64;
-    /// Where the disc begins, in spacings past a point.
+    /// Start of the disc, in spacings past a point.
     const BEGIN: f64 = 0.3;
-    /// A tolerance at which the curve is not smooth, though the method goes as far.
+    /// A local error at which the joints count, though the method could step that far.
     const FINE_ERROR: f64 = 1e-8;
-    /// One at which it is as good as smooth.
+    /// A local error at which the curve is as good as smooth.
     const COARSE_ERROR: f64 = 1e-4;
 
-    /// A disc that runs at 1 m/s on the curve through the points; where its first step ends, in spacings from where it
-    /// was.
+    /// Way, in spacings, of the first step of a disc that runs on the curve through the points at a speed [m/s].
     fn way_of_a_step(local_error: f64, speed: f64) -> f64 {
         let at = |index: f64| DVec2::from_angle(SPACING * index);
         let points: Vec<DVec2> = (0..POINTS).map(|index| at(f64::from(index))).collect();
@@ -100,7 +98,7 @@ mod tests {
     fn a_step_ends_at_the_next_joint_of_a_spline() {
         for (speed, way) in [(1.0, 1.0 - BEGIN), (-1.0, -BEGIN)] {
             let went = way_of_a_step(FINE_ERROR, speed);
-            // What the prediction misses is of the third order of the spacing, an eighth of a radian.
+            // The prediction errs in the third order of the spacing, an eighth of a radian.
             assert!((went - way).abs() < 0.01, "{went} spacings");
         }
     }

@@ -1,7 +1,9 @@
-//! Whether connectors close a loop: only then may their rows come to depend on each other as they move.
+//! Detection of closed loops of connectors: only there can the Jacobian of the connectors' rows lose rank as they move,
+//! in a singular configuration (see `singular`).
 //!
-//! A group's connectors are the edges of a graph whose nodes are its bodies, and one node for all that cannot move.
-//! Contacts do not count: where rows of two contacts, or of a contact and a connector, become dependent, one lets go.
+//! The connectors of a group are the edges of a graph whose nodes are its bodies, with one node for all bodies that
+//! cannot move. Contacts do not count: where rows of two contacts, or of a contact and a connector, become dependent,
+//! one contact is released.
 
 use super::rows::{HeldRow, RowSource};
 use crate::rigid::forest::Forest;
@@ -9,7 +11,7 @@ use crate::rigid::forest::Forest;
 /// Whether the connectors of a group close a loop.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Loops {
-    /// Bodies that connectors join; the last place stands for all that cannot move.
+    /// Bodies that connectors join; the last place stands for all bodies that cannot move.
     joined: Forest,
     is_closed: bool,
 }
@@ -20,8 +22,8 @@ impl Loops {
         self.is_closed = false;
     }
 
-    /// Finds whether connectors close a loop among a number of bodies, from the rows and the places of the two bodies of
-    /// each; `None` for a body that cannot move.
+    /// Finds whether connectors close a loop among a number of bodies, from the rows and the places of the two bodies
+    /// of each; `None` for a body that cannot move.
     pub(crate) fn find(&mut self, bodies: usize, rows: &[HeldRow], sides: &[[Option<u32>; 2]]) {
         self.is_closed = false;
         let is_first = |row: &HeldRow| row.bilateral && matches!(row.source, RowSource::Connector(_, 0));
@@ -44,7 +46,7 @@ mod tests {
     use super::*;
     use halfgap_collision::{BodyId, ConnectorId};
 
-    /// Whether connectors between such places of three bodies close a loop, each of them with two rows.
+    /// Whether connectors of two rows each close a loop, given the places among three bodies that they join.
     fn any(ends: &[[Option<u32>; 2]]) -> bool {
         let row = |connector: usize, index: usize| HeldRow {
             source: RowSource::Connector(ConnectorId(connector as u32), index),
@@ -69,7 +71,7 @@ mod tests {
         assert!(!any(&[[None, Some(0)], [Some(0), Some(1)], [Some(2), Some(1)]]));
         assert!(!any(&[[Some(1), Some(0)], [Some(1), Some(2)], [Some(1), None]]));
         assert!(!any(&[[None, Some(0)], [None, Some(1)], [None, Some(2)]]));
-        // By way of bodies, of what cannot move, and of two connectors between the same.
+        // Through bodies, through the background, and by two connectors between the same two.
         assert!(any(&[[Some(0), Some(1)], [Some(1), Some(2)], [Some(2), Some(0)]]));
         assert!(any(&[[None, Some(0)], [Some(0), Some(1)], [Some(1), None]]));
         assert!(any(&[[None, Some(2)], [Some(2), None]]));

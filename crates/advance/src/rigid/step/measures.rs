@@ -1,4 +1,4 @@
-//! What a group's steps are measured by: its length, its speed, its rounding, and the errors that are just acceptable.
+//! Scales of a group's steps: its length, its speed, its rounding, and the errors that are just acceptable.
 
 use super::dynamics::Dynamics;
 use super::extending::Tools;
@@ -22,14 +22,15 @@ const UNRESOLVED: f64 = 1e4;
 const TOLD_FROM_GAP: f64 = 10.0;
 
 impl Dynamics<'_> {
-    /// Tells the stepper by how much each component may err.
+    /// Tells the stepper the error that each component may have.
     pub(super) fn scale_errors(&mut self, tools: &mut Tools<'_>) {
         self.set_scales(&tools.settings.steps, tools.scales);
         tools.stepper.set_scales(tools.scales);
     }
 
-    /// The longest step [s] over which rounding does not matter: rounding of accelerations, which grows with the square of
-    /// the step and which the error estimate does not see in a group at rest, and rounding of the positions at its end.
+    /// The longest step [s] over which rounding does not matter: rounding of accelerations, which grows with the square
+    /// of the step and which the error estimate does not see in a group at rest, and rounding of the positions at its
+    /// end.
     pub(super) fn longest_sound_step(&self) -> f64 {
         let allowed = ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / f64::EPSILON;
         let of_places = allowed / self.top_speed(&self.group.state);
@@ -68,9 +69,9 @@ impl Dynamics<'_> {
     }
 
     /// Factor, at most 1, by which acceptable errors are less where forces vary over a shorter length than
-    /// [`StepControl::length`], as near a centre of attraction. Bodies are much faster there than before and after: an error
-    /// that is small beside that speed is large beside the others. Under an inverse-square pull this factor keeps the
-    /// relative error of the energy.
+    /// [`StepControl::length`], as near a centre of attraction. Bodies are much faster there than before and after: an
+    /// error that is small beside that speed is large beside the others. Under an inverse-square pull this factor keeps
+    /// the relative error of the energy.
     fn depth_share(&self, control: &StepControl) -> f64 {
         (self.group.force_length / control.length).min(1.0)
     }
@@ -120,8 +121,8 @@ impl Dynamics<'_> {
         time * libm::pow(control.local_error, FIRST_STEP_POWER)
     }
 
-    /// Error [J] of a work that is just acceptable: the error of the energy that acceptable errors of velocities make. Works
-    /// mostly err by far less; but where the motion is simple, as under a constant force, they alone err at all.
+    /// Error [J] of a work that is just acceptable: the error of the energy that acceptable errors of velocities make.
+    /// Works mostly err by far less; but where the motion is simple, as under a constant force, they alone err at all.
     pub(super) fn work_scale(&self, control: &StepControl) -> f64 {
         let masses = self.group.bodies.iter().map(|&body| self.mass(body));
         let speed = self.speed(control);
@@ -167,8 +168,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Errors of positions [m] and velocities [m/s] that rounding of positions alone makes, where the group is fast because
-    /// forces are steep; no step could err by less. `rough_velocity` tells of other rounding of velocities, body by body.
+    /// Errors of positions [m] and velocities [m/s] that rounding of positions alone makes, where the group is fast
+    /// because forces are steep; no step could err by less. `rough_velocity` tells of other rounding of velocities,
+    /// body by body.
     fn least_errors(&self, share: f64, speed: f64) -> [f64; 2] {
         let rounding = self.rounding();
         let steep = if share < 1.0 { self.group.free_acceleration / speed } else { 0.0 };

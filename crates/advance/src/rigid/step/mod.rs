@@ -1,13 +1,14 @@
-//! Steps of the bodies that move together: a `group` and the `rows` it holds (contacts, connectors), from its
-//! equations of motion to its end on the rows. What ends a step early is in `ending`, what begins a group in
-//! `event`.
+//! Steps of a `group` of bodies that move together, and of the `rows` it holds (contacts and connectors): from the
+//! equations of motion to the end of the step on the rows. Events that end a step early are in `ending`, those that
+//! begin a group in `event`.
 //!
-//! * equations of motion: `dynamics`; `tree` where bodies hang together by pins, in angles; `on_rows` where
-//!   stages lie if rows depend on each other; `singular` where `loops` could go on in two ways;
-//! * one step: `attempt`, its dense output and its repetition, `segment`; the errors it may make, `measures`; by which
-//!   method, `brief` and `stiff`; how long it may be where contacts are `watched` or splines have `kinks`; its end moved onto the rows, `projection`; what it may not lose, `energy`;
-//! * in time: `extending` adds a step to a group, `deferred` puts that off until somebody looks, `placing`
-//!   says where the bodies are along it.
+//! * equations of motion: `dynamics` in bodies, `tree` in angles where bodies hang together by pins; `on_rows` moves
+//!   stages onto rows that depend on each other; `singular` leads steps over the bifurcation points of closed `loops`;
+//! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures`; its method,
+//!   `brief` and `stiff`; its length where contacts are `watched` or splines have `kinks`; its end moved onto the rows,
+//!   `projection`; the energy it must keep, `energy`;
+//! * in time: `extending` adds a step to a group, `deferred` postpones its dense output until it is asked for,
+//!   `placing` evaluates where the bodies are along it.
 
 pub(super) mod attempt;
 pub(super) mod brief;

@@ -1,18 +1,18 @@
-//! Stages of a step, moved onto held rows of which some depend on others, for ever or for a moment.
+//! Stages of a step, moved onto held rows of which some depend on others, permanently or near a bifurcation point.
 //!
-//! Where states are on the rows, what one of them asks for the others give already. A stage is off them, by
-//! far more than the error of its step: there the rows all but depend on each other, and what they disagree
-//! in makes large forces of nothing. To move a stage changes nothing of the motion, which is on the rows.
-//! Ends of steps are moved in `projection`, with more care.
+//! In a state on the rows dependent rows are consistent: one holds if the others do. A stage lies off the rows, by far
+//! more than the error of its step; there they are nearly dependent and contradict each other a little, which makes
+//! large spurious forces. Moving a stage does not change the motion, which is on the rows. Ends of steps are moved in
+//! `projection`, with more care.
 
 use super::dynamics::Dynamics;
 use super::projection::ALL_OF_IT;
 
-/// Newton steps of one stage.
+/// Largest number of Newton steps for one stage.
 const MOST_ROUNDS: usize = 8;
 
 impl Dynamics<'_> {
-    /// Rates where a state lies once it is moved onto the held rows.
+    /// Finds the rates of a state once it is moved onto the held rows.
     pub(crate) fn find_rates_on_rows(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         if !self.physics.projects {
             return self.find_rates(offset, state, rates, Self::solve_rows);
@@ -25,13 +25,12 @@ impl Dynamics<'_> {
         self.stage.on_rows = on_rows;
     }
 
-    /// Moves a state onto the held rows, and stops what its velocities would move it off them by.
+    /// Moves a state onto the held rows, and takes out the velocities that would move it off them.
     fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
         let length = self.physics.steps.length;
         let is_passing = self.passes_by_rows();
         let noise = if is_passing { self.noise(state, length) } else { 0.0 };
-        // Near a point where loops could go on in two ways every digit counts; else what is lacking comes
-        // with the next round.
+        // Near a bifurcation point every digit counts; elsewhere the next round adds what rough forces lack.
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..MOST_ROUNDS {
@@ -46,7 +45,7 @@ impl Dynamics<'_> {
                 break;
             }
             self.change(state, 0);
-            // And near such a point that is as much larger as the change is.
+            // Near a bifurcation point changes are larger than errors, and so are the errors that they leave.
             let left = if is_passing { change } else { error };
             if left <= f64::EPSILON.sqrt() * length {
                 break;

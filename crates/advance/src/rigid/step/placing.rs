@@ -1,5 +1,5 @@
-//! Where a group's bodies are along its segment: all of them with their velocities, or, as far as gaps depend
-//! on it, those that somebody watches.
+//! Places of a group's bodies along its segment: of all of them with their velocities, or only the poses of those whose
+//! gaps are watched.
 
 use super::dynamics::Dynamics;
 use super::group::Group;
@@ -8,7 +8,7 @@ use glam::DVec2;
 use halfgap_geometry::Pose;
 
 impl Dynamics<'_> {
-    /// Places the group's bodies where they are at an offset [s] of the segment.
+    /// Gives all of the group's bodies their poses and velocities at an offset [s] of the segment.
     pub(crate) fn place_at(&mut self, offset: f64) {
         self.find_state_at(offset);
         let trial = std::mem::take(&mut self.stage.trial);
@@ -16,7 +16,7 @@ impl Dynamics<'_> {
         self.stage.trial = trial;
     }
 
-    /// The state of the group at an offset [s] of the segment, left in the stage.
+    /// Finds the state of the group at an offset [s] of the segment, and leaves it in the stage.
     pub(crate) fn find_state_at(&mut self, offset: f64) {
         let trial = &mut self.stage.trial;
         trial.clear();
@@ -27,7 +27,7 @@ impl Dynamics<'_> {
         trial.resize(self.group.dimension(), 0.0);
     }
 
-    /// Chooses the bodies of some rows as those that are watched.
+    /// Chooses the watched bodies: those of the chosen rows, and of all contacts without force.
     pub(crate) fn watch_rows(&mut self, watches: impl Fn(usize) -> bool) {
         let Group { bodies, sides, idle, .. } = &*self.group;
         let of_rows = (0..sides.len()).filter(|&row| watches(row)).flat_map(|row| sides[row]).flatten();
@@ -40,21 +40,21 @@ impl Dynamics<'_> {
         watched.dedup();
     }
 
-    /// Puts the watched bodies where they are at an offset [s] of the segment; their velocities stay what they were.
+    /// Gives the watched bodies their poses at an offset [s] of the segment; their velocities are left as they are.
     pub(crate) fn put_watched_at(&mut self, offset: f64) {
         for index in 0..self.stage.watched.len() {
             self.put(self.stage.watched[index] as usize, offset);
         }
     }
 
-    /// The same of the bodies of a row.
+    /// Gives the bodies of a row their poses at an offset [s] of the segment.
     pub(crate) fn put_row_at(&mut self, row: usize, offset: f64) {
         for place in self.group.sides[row].into_iter().flatten() {
             self.put(place as usize, offset);
         }
     }
 
-    /// The same of the bodies of a contact that is touched without force.
+    /// Gives the bodies of a contact without force their poses at an offset [s] of the segment.
     pub(crate) fn put_idle_at(&mut self, row: usize, offset: f64) {
         for body in self.group.idle[row].bodies {
             if let Ok(place) = self.group.bodies.binary_search(&body) {
@@ -63,7 +63,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The same of all of the group's bodies.
+    /// Gives all of the group's bodies their poses at an offset [s] of the segment.
     pub(crate) fn put_at(&mut self, offset: f64) {
         (0..self.group.bodies.len()).for_each(|place| self.put(place, offset));
     }
@@ -83,8 +83,8 @@ mod tests {
     use glam::DVec2;
     use halfgap_collision::{BodyId, Moving};
 
-    /// The bodies of the group of a body that slides and turns, in the middle of its segment, as all are
-    /// placed and as the watched ones are put.
+    /// All bodies in the middle of a segment along which one slides and turns: by `place_at`, and with only the poses
+    /// put.
     fn placed_and_put(mut system: RigidSystem, body: BodyId) -> [Vec<Moving>; 2] {
         let mut group = system.groups.take(body).expect("it is held");
         system.with_group(&mut group, |dynamics, tools| {

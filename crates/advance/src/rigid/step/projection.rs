@@ -1,32 +1,36 @@
-//! The end of a step, moved onto the held rows, with all care; stages of steps are moved in `on_rows`.
+//! Projection of the end of a step onto the held rows, with all care; stages of steps are moved in `on_rows`.
+//!
+//! Rows that are redundant all along, or nearly dependent near a bifurcation point, may be soft: they share their
+//! force, and projections converge more slowly.
 
 use super::dynamics::Dynamics;
 use super::group::Group;
 use super::measures::ROUNDING_SHARE;
 use super::segment::StepControl;
 
-/// Newton steps of one projection.
+/// Largest number of Newton steps of one projection.
 const PROJECTIONS: usize = 5;
-/// The same where rows share what they hold, which converges more slowly, while each leaves less than so much
-/// of the error.
+/// Largest number of Newton steps where rows are soft or a bifurcation point may be near.
 const SOFT_PROJECTIONS: usize = 20;
+/// Another of those is made if the last one left less than this fraction of the error.
 const WORTHWHILE: f64 = 0.5;
-/// Bodies that move by so many times the error of their rows have other rates there: rows that all but depend
-/// on each other carry forces that do work on what is left of them.
+/// Multiple of the rows' error: where bodies were moved by more, the rates of the rows are measured anew. Rows that
+/// nearly depend on each other carry forces that would do work on the difference.
 const FAR: f64 = 8.0;
-/// What bodies of loops move by for less than this part of the length changes none of their rates.
+/// Fraction of the length L up to which moving the bodies of a loop near a bifurcation point leaves the rates of its
+/// rows as they are.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
-/// A row that keeps the square of s moves bodies by its error over s: no more than this part of s L, or the motion there
-/// is another one.
+/// A row with the kept share s^2 moves bodies by its error over s; by more than this fraction of s L the motion would
+/// be another one.
 const BENT: f64 = 1e-4;
-/// A gap is off by up to so many roundings of positions.
+/// Error of a gap by rounding, as a multiple of the rounding of positions.
 const GAP_ROUNDINGS: f64 = 4.0;
-/// A change of velocities by more than so many times what is fast corrects nothing: to stop a group
-/// altogether, some points change by a little more than the fastest moves.
+/// Largest change of velocities by a projection, as a multiple of the group's speed; a larger one corrects nothing. To
+/// stop a group altogether, some points change by a little more than the speed of the fastest.
 pub(crate) const ALL_OF_IT: f64 = 2.0;
 
 impl Dynamics<'_> {
-    /// Lets connectors share what they hold, if some depend on others at the end.
+    /// Makes the rows of connectors soft, so that they share their force, if some depend on others at the end.
     pub(crate) fn soften_dependent(&mut self) {
         if !self.group.rows.iter().any(|row| row.bilateral) {
             return;
@@ -43,8 +47,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Moves the end state onto the held rows, by the least displacement and the least change of velocities
-    /// in the metric of the masses; each row to the gap at which it formed.
+    /// Moves the end state onto the held rows, each to the gap at which it is held, by the least displacement and the
+    /// least change of velocities in the metric of the masses.
     pub(crate) fn project_end(&mut self, control: &StepControl) {
         let length = control.length;
         let mut end = std::mem::take(&mut self.group.end_state);
@@ -52,19 +56,19 @@ impl Dynamics<'_> {
         let speed = self.speed_in(&end, control);
         let velocities = self.group.velocities();
         let mut rates = std::mem::take(&mut self.stage.rates);
-        // Errors of loops decide which way they go on from where they could go both, unless there are hardly any.
+        // At a bifurcation point the errors of a loop would decide its branch unless they are hardly any.
         let is_singular = self.group.kept.may_near_singular();
         let is_soft = self.group.held.is_soft() || is_singular;
-        // What is off by little in several loops is made good as long as that bends no motion.
+        // Small errors of several loops are corrected as long as that does not change the motion.
         let noise = self.passes_by_rows().then(|| self.noise(&end, length));
         let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
             let error = self.measure_errors(&end, &mut rates);
             self.respond();
-            // A change by x leaves errors of the order of x^2/L. Rows that all but depend on each other ask
-            // for more than what holds near here, and for what rounding makes of their gaps: errors far
-            // within the zone are not worth more.
+            // A change by x leaves errors of the order of x^2/L. Rows that nearly depend on each other ask for changes
+            // beyond this linear range, and for changes that only rounding of their gaps makes: errors far within the
+            // target zone do not justify a change beyond it.
             let way = self.largest_change();
             let is_little = error < ROUNDING_SHARE * zone && way > zone;
             let is_sound = noise.is_some_and(|noise| error >= noise && way.powi(2) <= BENT * error * length);
@@ -99,13 +103,13 @@ impl Dynamics<'_> {
         self.group.end_state = end;
     }
 
-    /// By how far [m] a row may be off in a state that is as near as rounding allows.
+    /// Error [m] of a row that rounding may leave in a state on the rows.
     pub(crate) fn noise(&self, state: &[f64], length: f64) -> f64 {
         (ROUNDED * length).max(GAP_ROUNDINGS * self.rounding_in(state))
     }
 
-    /// Measures the rows in a state and factorises: by how far [m] each gap is off, left in the stage's
-    /// offsets, and its rate. Returns the largest error.
+    /// Measures the rows in a state and factorises. Leaves the error [m] of each gap in the stage's offsets, its rate
+    /// [m/s] in `rates`; returns the largest error [m].
     pub(crate) fn measure_errors(&mut self, state: &[f64], rates: &mut Vec<f64>) -> f64 {
         self.stage.load(&self.group.bodies, state);
         let mut offsets = std::mem::take(&mut self.stage.offsets);
@@ -120,7 +124,7 @@ impl Dynamics<'_> {
         error
     }
 
-    /// How far [m], or by how much [m/s], the changes in the stage move a point of a body at most.
+    /// Largest displacement [m], or change of velocity [m/s], of a point of a body by the changes in the stage.
     pub(crate) fn largest_change(&self) -> f64 {
         let sizes = self
             .group
@@ -131,7 +135,7 @@ impl Dynamics<'_> {
         sizes.fold(0.0, f64::max)
     }
 
-    /// Adds the changes in the stage to the numbers of a state that begin at a place: positions or velocities.
+    /// Adds the changes in the stage to the components of a state from index `at` on: positions or velocities.
     pub(crate) fn change(&mut self, state: &mut Vec<f64>, at: usize) {
         for (value, change) in state[at..].iter_mut().zip(self.stage.changes.iter().flatten()) {
             *value += change;
@@ -141,7 +145,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Brings the rates of bilateral rows to zero at the end and leaves those of the others as they are.
+    /// Changes the velocities at the end such that the rates of bilateral rows vanish and those of the others stay.
     pub(crate) fn fit_joint_velocities(&mut self) {
         let mut end = std::mem::take(&mut self.group.end_state);
         self.stage.load(&self.group.bodies, &end);

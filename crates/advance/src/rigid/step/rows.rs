@@ -8,24 +8,24 @@ use halfgap_collision::{
 };
 use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
 
-/// Part of the accuracy by which a contact may run off its features before it is said to have changed: more than the
-/// rounding by which one that has run off is still detected, far less than what forces can feel.
+/// Fraction of `accuracy` by which a contact may run off its features before it counts as changed: more than the
+/// rounding by which a contact that has run off is still detected, far less than forces are sensitive to.
 const CHANGE_SHARE: f64 = 1.0 / 64.0;
 
-/// Part of the accuracy by which a corner leans off its line that is said to: less than `CHANGE_SHARE`, at which it is
-/// told, so that it is told once.
+/// Fraction of `accuracy` above which a corner counts as leaning off its line: less than `CHANGE_SHARE`, at which the
+/// change is an event, so that it is one only once.
 const LEAN_SHARE: f64 = 0.5 * CHANGE_SHARE;
 
-/// What makes a row.
+/// Origin of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowSource {
     /// A feature of the primary and one of the normal body.
     Contact([FeatureId; 2]),
-    /// A row of a connector.
+    /// A row of a connector, by its index there.
     Connector(ConnectorId, usize),
 }
 
-/// A row that is held: its gap is to stay as it is.
+/// A held row: its gap is kept as it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeldRow {
     pub(crate) source: RowSource,
@@ -34,11 +34,11 @@ pub(crate) struct HeldRow {
     pub(crate) bilateral: bool,
     /// Gap [m] at which it is held: the one at which it formed, but for rows that are lifted.
     pub(crate) gap: f64,
-    /// Piece of the rail, of a connector that has one.
+    /// Piece of the rail, if the connector has one.
     pub(crate) hint: Option<RailHint>,
-    /// A corner, sharp or round, that leans off its line.
+    /// It is a corner, sharp or round, that leans off its line.
     pub(crate) leans: bool,
-    /// It is lifted into its zone, which is wide enough to be seen.
+    /// It is lifted into its target zone, which is wide enough for that to be seen.
     pub(crate) is_lifted: bool,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct RowMoment {
     pub(crate) kinematics: GapKinematics,
 }
 
-/// What rows are measured on: bodies and connectors.
+/// Bodies, connectors and tolerances by which rows are measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mechanism<'a> {
     pub(crate) flyers: &'a [Flyer],
@@ -58,7 +58,7 @@ pub(crate) struct Mechanism<'a> {
     pub(crate) tolerances: &'a Tolerances,
 }
 
-/// A body among those that move, or the background.
+/// The motion of a body, or of the background.
 #[inline]
 pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> &Moving {
     if body.is_world() { &Moving::BACKGROUND } else { &movings[body.index()] }
@@ -88,14 +88,14 @@ impl Mechanism<'_> {
         }
     }
 
-    /// Gap [m] of a row; of the bodies only the placements matter.
+    /// Gap [m] of a row; depends only on the poses of the bodies.
     pub(crate) fn gap(&self, row: &HeldRow, movings: &[Moving]) -> f64 {
         let RowSource::Contact(features) = row.source else { return self.measure(row, movings).gap };
         self.sample_here(row.bodies, features, row.bodies.map(|body| moving_of(movings, body))).gap
     }
 
-    /// Gap and kinematics of a contact; inlined with all that it calls, so that what is not asked for is not
-    /// computed and what is does not go through memory.
+    /// Gap and kinematics of a contact. Inlined with everything it calls, so that unused results are not computed and
+    /// the others stay in registers.
     #[inline(always)]
     pub(crate) fn measure_contact(
         &self,
@@ -107,7 +107,8 @@ impl Mechanism<'_> {
         RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, movings[0], movings[1]) }
     }
 
-    /// As [`Mechanism::measure`], of rows in turn: the second row of a pin is measured with the first.
+    /// Gap and kinematics of a row, for rows in their order: the second row of a pin is measured with the first and
+    /// kept in `twin`.
     #[inline]
     pub(crate) fn measure_next(
         &self,
@@ -133,7 +134,7 @@ impl Mechanism<'_> {
         }
     }
 
-    /// The gap of the features of a row, wherever on them it is.
+    /// The gap of two features of a row, even beyond their ends.
     pub(crate) fn sample(
         &self,
         bodies: [BodyId; 2],
@@ -165,13 +166,13 @@ impl Mechanism<'_> {
         }
     }
 
-    /// True for a side of the corner of a rail in which its point rests: it only pushes.
+    /// True for one side of a corner of a rail in which its point rests: such a row only pushes.
     pub(crate) fn is_in_corner(&self, row: &HeldRow) -> bool {
         let RowSource::Connector(id, _) = row.source else { return false };
         !row.bilateral && self.connectors[id.index()].is_bilateral()
     }
 
-    /// Where a row's force acts on its primary body [m], and its normal.
+    /// Point [m] in the world at which a row's force acts on its primary body, and the normal.
     pub(crate) fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
@@ -186,13 +187,13 @@ impl Mechanism<'_> {
         }
     }
 
-    /// How far [m] past its features a contact may run before it counts as changed.
+    /// Distance [m] by which a contact may run off its features before it counts as changed.
     pub(crate) fn change_margin(&self) -> f64 {
         CHANGE_SHARE * self.tolerances.accuracy
     }
 
-    /// How far [m] a held row is from running off its features or its piece of a rail; negative once it has. `None` for
-    /// rows that cannot.
+    /// Distance [m] from a held row to the end of its features or its piece of a rail; negative once it has run off.
+    /// `None` for rows that cannot.
     pub(crate) fn way_to_end(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
         if !self.can_change(row) {
             return None;
@@ -214,7 +215,8 @@ impl Mechanism<'_> {
         }
     }
 
-    /// How far [m] a contact that lies within its features is from their ends, by their angles straight across.
+    /// Distance [m] from a contact that lies within its features to their ends; on an arc, the angle to its end times a
+    /// lever.
     fn inside(
         &self,
         sample: &GapSample,
@@ -241,8 +243,9 @@ impl Mechanism<'_> {
         to_ends(0).min(to_ends(1)).max(0.0)
     }
 
-    /// How far [m] a contact lies beyond the ends of its lines and arcs: these go on without end, and meet
-    /// what touches them from behind after half a turn. How far a sharp corner leans does not count.
+    /// Distance [m] by which a contact lies beyond the ends of its lines and arcs. A gap is measured as if these had no
+    /// ends, so that after half a turn it would be to the back of the other body. The lean of a sharp corner does not
+    /// count.
     pub(crate) fn overrun(
         &self,
         bodies: [BodyId; 2],
@@ -261,7 +264,7 @@ impl Mechanism<'_> {
         arcs.map(of_arc).fold(sample.overrun, f64::max)
     }
 
-    /// True if a row is a corner that leans off its line already: to lean further changes nothing.
+    /// True if a row is a corner that leans off its line already: leaning further is no change.
     pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
         let RowSource::Contact(features) = row.source else { return false };
         let sample = self.sample(row.bodies, features, movings);
@@ -271,7 +274,7 @@ impl Mechanism<'_> {
         self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
     }
 
-    /// True if a contact that is outside of its features has left them.
+    /// True if a contact outside of its features has left them: a corner that leans off its line has not.
     pub(crate) fn has_left(
         &self,
         bodies: [BodyId; 2],
@@ -282,9 +285,9 @@ impl Mechanism<'_> {
         sample.overrun > 0.0 || !self.is_corner_on_line(&sample, bodies, features, movings)
     }
 
-    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If it leans a
-    /// little off the line, so that the next corner along is nearer, it still touches it: so a block rocks
-    /// from one corner to the other.
+    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If the body leans a little,
+    /// so that its next corner is nearer to the line, the first one still touches: so a block rocks from one corner to
+    /// the other.
     fn is_corner_on_line(
         &self,
         sample: &GapSample,
@@ -305,7 +308,7 @@ impl Mechanism<'_> {
         }
     }
 
-    /// How far [m] a contact lies outside of its features by their angles.
+    /// Distance [m] by which a contact lies outside of its features: the angle beyond their ends times a lever.
     fn lean(
         &self,
         mut sample: GapSample,
@@ -326,16 +329,17 @@ fn is_full(feature: &Feature) -> bool {
     matches!(feature, Feature::Round(round) if round.range == DirectionRange::Full)
 }
 
-/// Distance [m] along a rail to the nearer end of the piece on which a point is: of those to both ends their product
-/// over their sum, which is smooth where they are alike, and of steady acceleration a quartic.
+/// Distance [m] along a rail to the nearer end of the piece on which a point is. If both ends have a joint, the product
+/// of the two distances over their sum: it is smooth where they are equal, and under a steady acceleration a quartic in
+/// time.
 fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
     let place = path.nearest(point, hint);
     let rooms = path.knots().iter().flat_map(|knot| knot_rooms(path, knot, &place));
     rooms.flatten().reduce(|room, other| room * other / (room + other))
 }
 
-/// Distance [m] along a rail to a joint at the end and to one at the start of the piece on which a place is,
-/// if it is one.
+/// Distances [m] along a rail from a place to a joint, as the joint at the end of its piece and as the one at its
+/// start; `None` where it is not.
 pub(crate) fn knot_rooms(path: &RailPath, knot: &RailKnot, place: &RailPlace) -> [Option<f64>; 2] {
     // On a closed path the joint at its start is at both of its ends.
     let end = if path.is_closed() && knot.arc_length == 0.0 { path.length() } else { knot.arc_length };
@@ -353,7 +357,7 @@ mod tests {
 
     #[test]
     fn a_corner_leans_by_what_it_is_long_itself_whichever_body_is_named_first() {
-        // A corner of 0.1 m on a floor of 20 m, which is body 0.
+        // A round corner with a radius of 0.1 m on a floor of 20 m, which is body 0.
         let system = block_on_its_corner();
         let group = system.group_of(BodyId(1)).expect("it is held");
         let row = HeldRow { leans: false, ..group.rows[0] };

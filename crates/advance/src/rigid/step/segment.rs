@@ -1,5 +1,5 @@
-//! A group's segment: its start, the repetition of its step up to an event, its dense output. The step itself is made in
-//! `attempt`, its end moved onto the held rows in `projection`.
+//! A group's segment: its start, the repetition of its step up to an event, its dense output. The step itself is made
+//! in `attempt`, its end moved onto the held rows in `projection`.
 
 use super::brief::Stepping;
 use super::dynamics::{Dynamics, body_state};
@@ -17,7 +17,8 @@ pub struct StepControl {
     pub length: f64,
     /// Speed [m/s] to which errors of velocity are relative in a group that is at rest.
     pub speed: f64,
-    /// Upper bound [s] of steps, and the very length of all steps of a method without error estimate; `None` for no bound.
+    /// Upper bound [s] of steps, and the very length of all steps of a method without error estimate; `None` for no
+    /// bound.
     pub largest_step: Option<f64>,
 }
 
@@ -49,8 +50,8 @@ impl Dynamics<'_> {
         self.group.rates != before
     }
 
-    /// Bounds the next step by a multiple of the one just made, unless that was led around a point where loops could go on
-    /// in two ways: then it tells nothing about the next, and only a factor of less than 1 counts.
+    /// Bounds the next step by a multiple of the one just made, unless that was shortened because of a bifurcation
+    /// point: then it tells nothing about the next, and only a factor of at most 1 counts.
     pub(crate) fn limit_next_step(&mut self, factor: f64) {
         if factor > 1.0 && self.group.kept.is_led {
             return;
@@ -59,8 +60,8 @@ impl Dynamics<'_> {
         self.group.next_step = Some(self.group.next_step.map_or(longest, |next| next.min(longest)));
     }
 
-    /// Repeats the step up to an offset [s] within the segment, into the end state; false if the error is more than a step
-    /// may make, as where the shorter step ends near a singular point that the whole step has passed astride.
+    /// Repeats the step up to an offset [s] within the segment, into the end state; false if the error is more than a
+    /// step may make, as where the shorter step ends near a bifurcation point that the whole step has passed astride.
     pub(crate) fn repeat_to(&mut self, tools: &mut Tools<'_>, offset: f64) -> bool {
         self.scale_errors(tools);
         if offset > 0.0 {
@@ -72,9 +73,9 @@ impl Dynamics<'_> {
         offset <= 0.0 || tools.stepper.needs_end_rates() || self.keeps(tools.stepper.error_norm(tools.scales))
     }
 
-    /// True if the error of dense output at an offset [s] is a small fraction of that which a step may make. Dense output of
-    /// explicit methods errs by about the error estimate; since it has the exact values and rates at the start, its
-    /// error falls with the square of the offset towards it.
+    /// True if the error of dense output at an offset [s] is a small fraction of that which a step may make. Dense
+    /// output of explicit methods errs by about the error estimate; since it has the exact values and rates at the
+    /// start, its error falls with the square of the offset towards it.
     pub(crate) fn is_dense_exact(&self, offset: f64) -> bool {
         let part = offset / self.group.span;
         let share = (EARLY_SHARE * part * part).min(1.0);
@@ -109,8 +110,8 @@ impl Dynamics<'_> {
         (self.group.end_state, self.group.end_rates) = (end, rates);
     }
 
-    /// Notes where the points of rails are on their splines at the end: searches that begin nearby are short, and keep to
-    /// their branch where a rail crosses itself. On rails of lines and arcs, events note it.
+    /// Notes the places of rails' points on their splines at the end: searches that begin nearby are short, and keep to
+    /// their branch where a rail crosses itself. On rails of lines and arcs, events note them.
     pub(crate) fn follow_rails(&mut self) {
         let mechanism = &self.physics.mechanism;
         let Group { rows, bodies, end_state, .. } = &mut *self.group;

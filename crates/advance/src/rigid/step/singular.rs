@@ -1,66 +1,71 @@
-//! Steps over points where the rows of loops depend on each other for a moment, as those of a parallelogram
-//! do when it lies flat.
+//! Steps over singular configurations of closed loops, in which the Jacobian J of the constraint rows loses rank, as
+//! that of a parallelogram linkage does when it lies flat.
 //!
-//! There a loop could go on in two ways, and its motion says in which it does. Forces near such a point
-//! follow from the rows divided by what a row keeps once the others are held, which falls with the square of
-//! the distance, so near it rates are all rounding, and errors of the loop decide which way it goes. Far from
-//! it nothing of that shows, so steps are made such that no stage comes near it: it is passed in the widest
-//! interval between stages, and these are moved onto the rows (`on_rows`). A stage that is off them by e makes
-//! accelerations of e over the cube of the distance from the point, whatever e is: a step that is too short
-//! makes much of rounding. Whether a loop does pass such a point, or only nearly, tells how it is held along
-//! the step, which `extending` looks at.
+//! Such a configuration is a bifurcation point: two branches of motion meet there, and the velocities decide on which
+//! one the loop goes on. The *kept share* of a row is the fraction of its square, the diagonal entry of the Delassus
+//! matrix J M^-1 J^T, that elimination of the rows before it leaves. Its root is the sine of the angle between the row
+//! and the span of those, in the metric of the masses; it falls linearly with the distance to the bifurcation point.
+//!
+//! Forces are found by division by the share, so near the point the rates are all rounding, and errors of the loop
+//! decide on the branch. Far from it none of that shows. So steps are placed such that no stage comes near the point:
+//! they go astride of it, with the point in the middle of the widest interval between stages, and the stages are moved
+//! onto the rows (`on_rows`). A stage off the rows by e makes accelerations of e over the cube of the distance from the
+//! point, however small e is: a step that is too short amplifies rounding. Whether a loop passes a bifurcation point,
+//! or only comes near one, shows in how well the rows are kept along the step (`extending`).
 
 use crate::ode::Method;
 
-/// A stage is near such a point when the point is less than this part of the step away.
+/// A stage is near a bifurcation point if it is less than this fraction of the step away from it.
 const CLOSE: f64 = 0.1;
-/// A step comes to such a point if the root of what a row keeps falls to this part of its largest.
+/// A step comes to a bifurcation point if the root of the least kept share falls to this fraction of its largest value.
 const LOW: f64 = 0.35;
-/// Such a point may be ahead where it has fallen to this part.
+/// A bifurcation point may be ahead if that root has fallen to this fraction of its largest value.
 const LOWER: f64 = 0.7;
-/// Stages are moved onto the rows where it has fallen to this part.
+/// Stages are moved onto the rows if that root has fallen to this fraction of its largest value.
 const NEAR: f64 = 0.15;
-/// A step so many times as long as the way to such a point leaves it before its first stage.
+/// A step longer than this multiple of the way to a bifurcation point passes it before its first stage.
 const EARLY: f64 = 40.0;
-/// Where a step cannot pass the point between its stages, it ends so early that one of its length can, after at
-/// least this part of the way there.
+/// Least length of a step that ends short of a bifurcation point, as a fraction of the way there. Unless that is
+/// longer, it ends where a next step of the full length goes astride.
 const LEAST_WAY: f64 = 0.1;
 
-/// A step astride of such a point may err by so many times what is acceptable: to come nearer to the point
-/// costs more than that.
+/// Error norm up to which a step astride of a bifurcation point is accepted: to come nearer to the point costs more.
 const ASTRIDE_ERROR: f64 = 4.0;
-/// And by so much relative to what is usual, if shorter ones err by no less: that is rounding.
+/// Error up to which a step astride is accepted if shorter ones err by no less, relative to the length and speed that
+/// errors of steps are relative to: that is rounding.
 const ROUNDING: f64 = 1e-7;
-/// It is made shorter by no more than this at once: what rounding makes of it grows with the square of that.
+/// Least factor by which a step astride is shortened at once: rounding errors grow with the inverse square of its
+/// length.
 const SHORTENING: f64 = 0.5;
 
-/// What the rows of loops kept at the stages of a step.
+/// Kept shares of the rows of loops at the stages of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Kept {
-    /// Offset [s] and the root of the least part that a row kept.
+    /// Offset [s] of each stage, and the root of the least kept share there.
     stages: Vec<(f64, f64)>,
-    /// The root where the first stage of the next step is, if what rows keep is measured otherwise from there on.
+    /// That root at the start of the next step, in the first measure, if shares are measured in another way from there
+    /// on.
     known: Option<f64>,
-    /// What roots that are measured otherwise are multiplied by, so that they compare with those from before.
+    /// Factor that makes roots in the other measure comparable with those in the first.
     unit: Option<f64>,
-    /// The largest such root since there is the group.
+    /// The largest root since the group was made.
     most: f64,
-    /// The least of the last step.
+    /// The least root of the last step.
     least: f64,
-    /// The place in the list of the stage at which a row kept least, if that is little.
+    /// Index in `stages` of the least root, if the last step came to a bifurcation point.
     lowest: Option<usize>,
-    /// A step is made.
+    /// A step is being made.
     is_open: bool,
-    /// The last step was made shorter for such a point, and tells nothing about those after it.
+    /// The last step was made shorter because of a bifurcation point, and tells nothing about those after it.
     pub(crate) is_led: bool,
-    /// Error norm of the last step astride of a point that erred by too much.
+    /// Error norm of the last step astride whose error was larger than that of other steps may be.
     missed: Option<f64>,
-    /// Error norm of the last step astride of a point that passed although it is larger than others may be.
+    /// Error norm of the last step, if it was accepted because it went astride.
     passed: Option<f64>,
 }
 
 impl Kept {
-    /// Forgets another group.
+    /// Forgets the shares of another group.
     pub(crate) fn clear(&mut self) {
         self.stages.clear();
         (self.most, self.least, self.lowest) = (0.0, 0.0, None);
@@ -88,18 +93,18 @@ impl Kept {
         }
     }
 
-    /// Tells that rows keep parts of another measure from the next step on, which begins where the last one did.
+    /// Announces that shares are measured in another way from the next step on, which starts where the last one did.
     pub(crate) fn change_measure(&mut self) {
         let first = self.stages.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         (self.known, self.unit) = (first.map(|stage| stage.1), None);
     }
 
-    /// Tells that rows keep parts of the first measure again.
+    /// Announces that shares are measured in the first way again.
     pub(crate) fn restore_measure(&mut self) {
         (self.known, self.unit) = (None, None);
     }
 
-    /// Makes the roots of a step comparable with those from before they were measured otherwise.
+    /// Converts the roots of a step to the first measure.
     fn measure_as_before(&mut self) {
         if let Some(known) = self.known.take() {
             let first = self.stages.iter().min_by(|a, b| a.0.total_cmp(&b.0));
@@ -110,26 +115,27 @@ impl Kept {
         }
     }
 
-    /// Whether stages are noted now: those of a step are, and nothing else that asks for rates.
+    /// True if stages are noted now: only while a step is being made, not at other evaluations of rates.
     pub(crate) fn is_open(&self) -> bool {
         self.is_open
     }
 
-    /// Notes the least part that a row keeps at an offset [s].
+    /// Notes the least kept share at a stage with an offset [s].
     pub(crate) fn note(&mut self, offset: f64, kept: f64) {
         if self.is_open {
             self.stages.push((offset, kept.sqrt()));
         }
     }
 
-    /// How fast [1/s] the root of what a row keeps falls towards a point where it keeps nothing, and rises again.
+    /// Rate [1/s] at which the root of the least kept share falls towards a bifurcation point, and rises again.
     fn slope(&self) -> f64 {
         let slopes =
             self.stages.windows(2).map(|pair| ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).abs());
         slopes.fold(0.0, f64::max)
     }
 
-    /// The point [s] where a row keeps nothing, or nearly, and how far [s] from it the nearest stage is.
+    /// Offset [s] of the bifurcation point, and the distance [s] from it to the nearest stage; `None` if the last step
+    /// has not come to one.
     fn point(&self) -> Option<(f64, f64)> {
         let place = self.lowest?;
         let (offset, root) = self.stages[place];
@@ -138,7 +144,7 @@ impl Kept {
             return None;
         }
         let away = root / slope;
-        // Towards the point the root falls short of what its slope makes of the way to the next stage.
+        // The point lies on the side where the next stage's root is less than the slope would make it.
         let short = |other: Option<&(f64, f64)>| {
             other.map_or(0.0, |other| slope * (other.0 - offset).abs() - other.1)
         };
@@ -147,32 +153,32 @@ impl Kept {
         Some((if before > after { offset - away } else { offset + away }, away))
     }
 
-    /// True if the last step came to a point where rows depend on each other, or nearly.
+    /// True if the last step came to a bifurcation point, or nearly.
     pub(crate) fn nears_singular(&self) -> bool {
         self.lowest.is_some()
     }
 
-    /// True if the last step came so near such a point that stages off the rows make large forces of nothing.
+    /// True if the last step came so near a bifurcation point that stages off the rows make large spurious forces.
     pub(crate) fn is_near_singular(&self) -> bool {
         self.least < NEAR * self.most
     }
 
-    /// True if the next steps may come to such a point: what a loop is off by grows on the way there.
+    /// True if the next steps may come to a bifurcation point: errors of a loop grow on the way there.
     pub(crate) fn may_near_singular(&self) -> bool {
         self.least < LOWER * self.most
     }
 
-    /// A length [s], of `most` at most, for the last step, with which it will not come near such a point by one of its
-    /// stages; `None` if it has not.
+    /// A length [s] for the last step, of `most` at most, with which none of its stages will be near the bifurcation
+    /// point; `None` if none has been.
     pub(crate) fn better_length(&self, length: f64, most: f64, method: Method) -> Option<f64> {
         let (point, away) = self.point()?;
         let better = led(point, most, method)?;
         (away <= CLOSE * length || (point > length && better < length)).then_some(better)
     }
 
-    /// True if a step that passed such a point between its stages, and whose error norm is too large, may
-    /// pass all the same: it is not by much, or a longer one before it erred by no more, so no shorter one
-    /// will err by less. A norm of 1 is an error of so much relative to what is usual.
+    /// True if a step astride of a bifurcation point, whose error norm is too large, is accepted all the same: its
+    /// error is not too large by much, or a longer step before it erred by no more, so that no shorter one will err by
+    /// less. A norm of 1 is a relative error of `local_error`.
     pub(crate) fn passes_astride(&mut self, length: f64, error: f64, local_error: f64) -> bool {
         if !self.is_astride(length) {
             return false;
@@ -185,12 +191,12 @@ impl Kept {
         passes
     }
 
-    /// By how many times what others may the last step may err: those astride of a point do so by more.
+    /// Factor, at least 1, by which the errors of the last step may exceed those of others, because it went astride.
     pub(crate) fn allowance(&self) -> f64 {
         self.passed.map_or(1.0, |error| error.max(1.0))
     }
 
-    /// Notes that a step was accepted: beyond a point, or where none is ahead, what erred before it tells
+    /// Notes that a step was accepted. Beyond a bifurcation point, or if none is ahead, errors of earlier steps tell
     /// nothing any more.
     pub(crate) fn note_accepted(&mut self, length: f64) {
         let rises = || self.stages.last().map(|stage| stage.1) >= self.stages.first().map(|stage| stage.1);
@@ -199,8 +205,8 @@ impl Kept {
         }
     }
 
-    /// The length [s] that a step gets which erred by so much that it is to be made shorter by a factor, and one no
-    /// longer with which it comes near such a point neither by its stages nor by its end.
+    /// Two lengths [s] for a step whose error asks for a `factor` below 1: the one asked for, and one no longer with
+    /// which neither its stages nor its end are near a bifurcation point.
     pub(crate) fn shorter_lengths(&self, length: f64, factor: f64, method: Method) -> [f64; 2] {
         let factor = if self.is_astride(length) { factor.max(SHORTENING) } else { factor };
         let shorter = factor * length;
@@ -208,14 +214,15 @@ impl Kept {
         [shorter, better.map_or(shorter, |better| better.min(shorter))]
     }
 
-    /// True if a step passes such a point between its stages.
+    /// True if a step goes astride of a bifurcation point: passes it far from its stages.
     fn is_astride(&self, length: f64) -> bool {
         self.point().is_some_and(|(point, away)| point < length && away > CLOSE * length)
     }
 }
 
-/// A length [s] for a step that may be so long, with which it passes a point between its stages, or ends where the
-/// next one will; `None` if that is behind, or so near the start that no stage can be farther from it.
+/// A length [s], of `length` at most, with which a step goes astride of a point at an offset [s], or ends short of it
+/// such that the next step can; `None` if the point is behind, or so near the start that no stage can be farther from
+/// it.
 fn led(point: f64, length: f64, method: Method) -> Option<f64> {
     let middle = method.middle_between_stages()?;
     let is_at_start = point <= 0.0 || EARLY * point <= length;
@@ -230,7 +237,8 @@ mod tests {
 
     const METHOD: Method = Method::Dop853;
 
-    /// What a row keeps that keeps the square of the way to a point [s], at the stages of a step of so many seconds.
+    /// Shares at the stages of a step of a length [s]: `floor` plus the square of the way to a point [s], up to a
+    /// factor.
     fn seen(length: f64, point: f64, floor: f64) -> Kept {
         let mut kept = Kept::default();
         kept.open();
@@ -248,7 +256,7 @@ mod tests {
             let better =
                 seen(length, point, 0.0).better_length(length, length, METHOD).expect("a stage is near");
             assert!(better < length);
-            // The next one sees the point in the widest interval, and is left as it is.
+            // The better step has the point in the middle of the widest interval, and is left as it is.
             assert!(
                 (point / better - METHOD.middle_between_stages().expect("it has stages")).abs() < 1e-2,
                 "{better}"
@@ -264,7 +272,7 @@ mod tests {
             let better = seen(1.0, point, 0.0).better_length(1.0, 1.0, METHOD).expect("it is near");
             assert!((better + middle - point).abs() < 1e-2, "{point}: {better}");
         }
-        // What is nearly in the middle already is passed from not much nearer.
+        // If the point is nearly in the middle, the step still goes part of the way.
         let better = seen(1.0, 0.57, 0.0).better_length(1.0, 1.0, METHOD).expect("a stage is near");
         assert!(better >= LEAST_WAY * 0.56, "{better}");
     }
@@ -289,13 +297,13 @@ mod tests {
         for (error, passes) in [(20.0, false), (10.0, false), (15.0, true), (1e4, false)] {
             assert_eq!(kept.passes_astride(1.0, error, LOCAL_ERROR), passes, "{error}");
         }
-        // Of what is not asked for with much care, little is rounding.
+        // With a coarse tolerance an error norm above 4 is no rounding.
         let mut kept = seen(1.0, 0.46, 0.0);
         for error in [10.0, 15.0] {
             assert!(!kept.passes_astride(1.0, error, 1e-5), "{error}");
             assert_eq!(kept.allowance(), 1.0);
         }
-        // What does not pass a point by its middle is rejected as ever.
+        // A step that is not astride is rejected as usual.
         for point in [0.3, 1.2] {
             assert!(!seen(1.0, point, 0.0).passes_astride(1.0, 3.0, LOCAL_ERROR), "{point}");
         }
@@ -303,7 +311,7 @@ mod tests {
 
     #[test]
     fn what_rows_keep_otherwise_leads_no_step() {
-        // Far from a point, or beyond it, or where rows come near to depending on each other but do not.
+        // The point is behind, or far ahead, or before the first stage, or astride; or the share does not vanish.
         for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
             assert_eq!(seen(1.0, point, floor).better_length(1.0, 1.0, METHOD), None, "{point}");
         }
@@ -312,7 +320,7 @@ mod tests {
 
     #[test]
     fn what_is_measured_otherwise_compares_with_what_was_before() {
-        /// A step from 0.5 s before a point on, of which what rows keep is measured in some unit.
+        /// Makes a step that starts 0.5 s before a point, with roots of the shares in some unit.
         fn step(kept: &mut Kept, unit: f64) {
             kept.open();
             for node in [0.1, 0.2, 0.4] {
@@ -328,7 +336,7 @@ mod tests {
             step(&mut kept, 1e-4);
             assert!((kept.least / least - 1.0).abs() < 1e-12 && kept.most == most, "{kept:?}");
         }
-        // As long as it lasts, and no longer.
+        // The other measure goes on until the first is restored.
         step(&mut kept, 1e-4);
         assert!((kept.least / least - 1.0).abs() < 1e-12);
         kept.restore_measure();
@@ -346,7 +354,7 @@ mod tests {
         for (point, factor) in [(2.0, 0.9), (-0.1, 0.9), (0.01, 0.9)] {
             assert_eq!(seen(1.0, point, 0.0).shorter_lengths(1.0, factor, METHOD), [factor; 2], "{point}");
         }
-        // Astride of a point rounding decides, and grows where steps are short.
+        // A step astride is shortened less at once: its errors are rounding, which grows as steps become shorter.
         let [asked, _] = seen(1.0, 0.46, 0.0).shorter_lengths(1.0, 0.2, METHOD);
         assert_eq!(asked, SHORTENING);
     }

@@ -1,5 +1,9 @@
-//! Groups parts of which decay so fast that an explicit method is held up: their steps are implicit, as long
-//! as that costs less. Which steps are made otherwise is in `brief`.
+//! Stiff groups: a part of the group decays so fast that the stability limit of the explicit method, not its error,
+//! bounds the step. Their steps are implicit as long as that costs less. The choice among explicit methods is in
+//! `brief`.
+//!
+//! The fastest rate [1/s] of a group is the size of its fastest eigenvalue, as estimated after steps. An explicit step
+//! is held up if that rate times its length comes near the stability limit of the method.
 
 use super::brief::Stepping;
 use super::dynamics::Dynamics;
@@ -8,86 +12,90 @@ use super::group::Group;
 use crate::ode::{Method, Point, StiffnessEstimate};
 use glam::DVec2;
 
-/// A step counts as held up when the fastest rate times its length comes to this part of the limit of the method.
+/// A step is held up if the fastest rate times its length comes to this fraction of the stability limit.
 const HELD_UP: f64 = 0.9;
-/// The same where rounding may be what errors are made of: an explicit method feels that of the fastest
-/// forces whatever its steps, an implicit one does not.
+/// That fraction where errors may be rounding: steep forces amplify rounding in an explicit method however short its
+/// steps, but not in an implicit one.
 const ROUGH_HELD_UP: f64 = 0.1;
-/// What is less than this part of it is far from held up.
+/// A step is far from held up below this fraction of the stability limit.
 const FAR: f64 = 0.5;
-/// Explicit steps over which nobody looks again after one that was far from held up.
+/// Number of explicit steps without an estimate after one that was far from held up.
 const UNTOLD_STEPS: u32 = 15;
-/// Somebody looks sooner where steps have shrunk to this part: what ends them may be new.
+/// Steps are estimated sooner if they shrink below this fraction of the last estimated one: their limit may be new.
 const SHRUNK: f64 = 0.5;
-/// So many more steps are held up than are not before implicit ones are tried; twice as many after each time
-/// in vain, and one where implicit ones have served before.
+/// Number by which held-up steps must exceed others before implicit ones are tried: doubled after each trial in vain,
+/// and 1 where implicit steps have served before.
 const TELLING_STEPS: u32 = 8;
-/// Cap on such doublings.
+/// Largest number of such doublings.
 const MOST_DOUBLINGS: u32 = 6;
-/// Groups with more numbers in their state are not tried: the equations would be larger than they are worth.
+/// Largest number of state components (works excluded) for implicit steps: the equations of more would cost too much.
 const MOST_NUMBERS: usize = 600;
-/// Explicit steps of the default method ask for so many rates, with their dense output.
+/// Number of evaluations of rates in an explicit step of the default method, with its dense output.
 const EXPLICIT_COST: f64 = 15.0;
-/// An implicit step asks for so many rates beside one for each number of the state.
+/// Number of evaluations of rates in an implicit step, beside one for each component of the state.
 const IMPLICIT_COST: f64 = 14.0;
-/// The equations cost so many rates for each square of the numbers of the state: an estimate, by the
-/// operations of both.
+/// Cost of an implicit step's linear equations, in evaluations of rates per square of the number of components: an
+/// estimate from the operations of both.
 const EQUATIONS_COST: f64 = 0.02;
-/// So many implicit steps that save nothing are in vain.
+/// Loss, in implicit steps that save nothing, after which these are given up as in vain; also the largest saving that
+/// is counted.
 const PATIENCE: f64 = 10.0;
-/// A step that may grow by no more than this is as long as its error allows.
+/// A step has its full length, which its error allows, if the next one may be longer by no more than this factor.
 const FULL_GROWN: f64 = 1.2;
 
-/// Places are moved by so many of their roundings to see how steep forces are.
+/// Displacement of a probe for the steepness of forces, as a multiple of the rounding of positions.
 const PROBE: f64 = 1e6;
-/// A probe that finds less than this part of what the last one found is taken for one in an idle direction.
+/// Least fraction of the last probe's rate that a probe may find: less is taken for a direction in which forces vary
+/// little.
 const FADING: f64 = 0.9;
 
-/// What is known of the fastest rate of a group.
+/// Experience with the fastest rate of a group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Stiffness {
     /// Steps are implicit.
     pub(crate) is_stiff: bool,
     /// Implicit steps have served before.
     is_known: bool,
-    /// The fastest rate [1/s], as last told.
+    /// The fastest rate [1/s], as last estimated.
     rate: f64,
-    /// The rate [1/s] that the steepest forces have, where rounding of places may matter: short steps do not tell it.
+    /// The rate [1/s] of the steepest forces by probes, where rounding of positions may matter; estimates from short
+    /// steps do not show it. 0 where it does not matter.
     steep: f64,
-    /// Steps that were held up, less those that were not.
+    /// Number of held-up steps less that of others, at least 0.
     held_up: u32,
-    /// Steps until somebody looks again.
+    /// Number of steps until the next estimate.
     wait: u32,
-    /// Length of the step [s] at which somebody looked last.
+    /// Length [s] of the last step with an estimate.
     looked: f64,
-    /// Explicit steps that implicit ones have saved so far, less what they cost.
+    /// Cost that implicit steps have saved so far, in explicit steps; negative if they cost more.
     saved: f64,
-    /// How often implicit steps cost more.
+    /// Number of times that implicit steps were given up since they last saved something.
     in_vain: u32,
 }
 
 impl Stiffness {
-    /// The more telling of two, of bodies that come to share their steps.
+    /// The more telling experience of two, for bodies that come to share their steps.
     pub(crate) fn or(self, other: Self) -> Self {
         let first_tells = (self.is_known, self.rate) >= (other.is_known, other.rate);
         let told = if first_tells { self } else { other };
         Self { in_vain: self.in_vain.max(other.in_vain), ..told }
     }
 
-    /// True if what is fast lets an explicit method go so long a step [s].
+    /// True if the fastest rate allows an explicit step of a length [s].
     pub(crate) fn allows(&self, step: f64) -> bool {
         self.rate * step < 1.0
     }
 }
 
-/// What an implicit step of so many numbers costs, in explicit ones.
+/// Cost of an implicit step for a number of state components, in explicit steps.
 fn cost(numbers: usize) -> f64 {
     let numbers = numbers as f64;
     (numbers + IMPLICIT_COST + EQUATIONS_COST * numbers * numbers) / EXPLICIT_COST
 }
 
 impl Dynamics<'_> {
-    /// How fast the fastest part of the group is, as a step tells whose end has its rates; `None` where nobody looks.
+    /// Estimates the fastest rate of the group from the last step, with the rates at its end; `None` if no estimate is
+    /// due.
     pub(crate) fn tell_stiffness(&mut self, tools: &mut Tools<'_>) -> Option<StiffnessEstimate> {
         if !tools.settings.method.is_adaptive() || self.group.is_brief {
             return None;
@@ -109,36 +117,35 @@ impl Dynamics<'_> {
         })
     }
 
-    /// The fastest rate [1/s] at which damping lets a body of the group come to rest. What is at rest already
-    /// does not show it.
+    /// The largest damping rate [1/s] of a body of the group. Estimates from steps do not show it in bodies at rest.
     fn damping_rate(&self) -> f64 {
         let laws = self.group.bodies.iter().map(|&body| self.physics.mechanism.flyers[body.index()].law());
         laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
     }
 
-    /// Notes how fast damping is, where nobody has looked how fast the fastest part of the group is.
+    /// Raises the fastest rate of the group to its damping rate, which may not have been estimated yet.
     pub(crate) fn note_damping(&mut self) {
         let rate = self.damping_rate();
         let stiffness = &mut self.group.stiffness;
         stiffness.rate = stiffness.rate.max(rate);
     }
 
-    /// The longest step [s] of a method that is stable under damping. A longer one from rest ends at rest,
-    /// too, by luck, but what rounding sets in motion grows on the way, and dense output is far off.
+    /// The longest step [s] for which a method is stable under damping. A longer step from rest may end at rest, too,
+    /// but rounding errors grow within it, and its dense output is far off.
     pub(crate) fn longest_stable_step(&self, method: Method) -> f64 {
         let rate = self.damping_rate();
         let limit = method.stability_limit().filter(|_| rate > 0.0 && method.is_adaptive());
         limit.map_or(f64::INFINITY, |limit| limit / rate)
     }
 
-    /// Notes how fast the fastest part of the group is, after a step that told it.
+    /// Notes the estimate of the fastest rate of the group after a step, if there is one.
     pub(crate) fn note_stiffness(&mut self, tools: &mut Tools<'_>, told: Option<StiffnessEstimate>) {
         let Some(StiffnessEstimate { fastest: told, .. }) = told else { return };
         self.probe(tools);
         let told = told.max(self.damping_rate() * self.group.span);
         let numbers = self.group.numbers();
         let rate = told / self.group.span;
-        // What is fast makes this of the rounding of positions in a step.
+        // Rounding of positions becomes accelerations by the square of this rate.
         let steep = rate.max(self.group.stiffness.steep);
         let is_rough =
             steep * steep * self.group.span * self.rounding() >= self.velocity_scale(&tools.settings.steps);
@@ -160,13 +167,13 @@ impl Dynamics<'_> {
 }
 
 impl Dynamics<'_> {
-    /// Finds how steep forces are at the end of an explicit step, if rounding may be what its errors are made
-    /// of: by what they change where bodies are moved a little, each time in other directions.
+    /// Probes the steepness of forces at the end of an explicit step, if its errors may be rounding: by the change of
+    /// accelerations as the bodies are moved a little, in other directions each time.
     fn probe(&mut self, tools: &Tools<'_>) {
         let (rounding, span) = (self.rounding(), self.group.span);
         let scale = self.velocity_scale(&tools.settings.steps);
         let Some(limit) = tools.stepper.method().stability_limit() else { return };
-        // What is steeper than this would have ended the step.
+        // Forces steep enough to matter would have bounded the step by the stability limit.
         if limit * limit * rounding < scale * span {
             self.group.stiffness.steep = 0.0;
             self.group.roughness.clear();
@@ -201,12 +208,12 @@ impl Dynamics<'_> {
                 (rates[at] - end_rates[at]).abs()
             };
             let changed = change(0).max(change(1)).max(change(2) * reach);
-            // The square of a rate: it fades twice.
+            // It is the square of a rate, so it fades by the square of the factor.
             *rough = (changed / moved).max(FADING * FADING * *rough);
             most = most.max(changed);
         }
         if self.group.rows.iter().any(|row| !row.bilateral) {
-            // Forces of contacts have a rounding of their own, which places do not tell.
+            // Contact forces have a rounding of their own, which a displacement does not show.
             self.group.roughness.clear();
         }
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
@@ -217,9 +224,9 @@ impl Dynamics<'_> {
 }
 
 impl Group {
-    /// What rounding of places [m] makes of the velocity [m/s] of a body, by its place, in a step as short as
-    /// the fastest part of the group asks for. Where it is not known how rough each body is, it may be of
-    /// that part. An implicit method knows what is rounding itself.
+    /// Error [m/s] that the rounding of positions [m] makes in the velocity of a body, given by its place, in a step as
+    /// short as the fastest rate of the group asks for. A body that was not probed may be the fastest part of the
+    /// group. 0 for implicit steps, whose method accounts for rounding.
     pub(crate) fn rough_velocity(&self, place: usize, rounding: f64) -> f64 {
         let rate = self.stiffness.rate.max(self.stiffness.steep);
         if rate == 0.0 || self.stepping() == Stepping::Stiff {
@@ -228,9 +235,8 @@ impl Group {
         rounding * self.roughness.get(place).map_or(rate, |roughness| roughness / rate)
     }
 
-    /// Goes over to implicit steps where explicit ones are held up. Goes back where that costs more, and
-    /// where steps are short enough for explicit ones: as something begins to decay, a higher order serves
-    /// better.
+    /// Changes to implicit steps if explicit ones are held up. Changes back if that costs more, or if steps are short
+    /// enough for explicit ones: as a motion begins to decay, a higher order serves better.
     pub(crate) fn choose_stiffness(&mut self, asked: Method) {
         let numbers = self.numbers();
         let cost = cost(numbers);
@@ -257,7 +263,7 @@ impl Group {
         }
     }
 
-    /// Goes back to explicit steps because implicit ones do not serve.
+    /// Changes back to explicit steps because implicit ones cost more.
     pub(crate) fn leave_stiffness(&mut self, asked: Method) {
         let known = &mut self.stiffness;
         *known = Stiffness { is_stiff: false, is_known: false, in_vain: known.in_vain + 1, ..*known };
@@ -271,7 +277,7 @@ impl Group {
         self.accepted = None;
     }
 
-    /// Numbers of its state without works.
+    /// Number of components of its state, works excluded.
     fn numbers(&self) -> usize {
         if self.tree.is_used() { 2 * self.tree.count() } else { 2 * self.velocities() }
     }

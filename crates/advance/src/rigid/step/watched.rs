@@ -1,5 +1,5 @@
-//! How long a step of bodies in contact may be, so that what their contacts do along it is sampled well: their
-//! forces, which no error estimate sees where nothing accelerates, and the gaps of those without force.
+//! Longest steps of bodies in contact. Along a step the forces of contacts, which no error estimate shows where nothing
+//! accelerates, and the gaps of contacts without force must be sampled well.
 
 use super::attempt::STEADY_GROWTH;
 use super::dynamics::{Dynamics, body_state};
@@ -8,13 +8,13 @@ use glam::DVec2;
 use halfgap_collision::{GapKinematics, Moving, first_closing_time};
 use halfgap_geometry::GapKind;
 
-/// Part of its reach by which a body with contacts may move in one step, as its contacts see it; the same as an
-/// angle [rad].
+/// Fraction of its reach by which a body may move in one step relative to its contacts; also the angle [rad] by which a
+/// contact may turn.
 const WATCHED_SHARE: f64 = 0.5;
 
 impl Dynamics<'_> {
-    /// The longest step [s] along which contacts are surely sampled well. Where forces have not varied along the
-    /// last step, as of what slides or is carried along, they need not be expected to.
+    /// The longest step [s] along which contacts are surely sampled well. Where forces have not varied along the last
+    /// step, as on a body that slides or is carried along, it may be longer.
     pub(crate) fn longest_watched_step(&self) -> f64 {
         let group = &*self.group;
         let any_idle = !group.idle.is_empty();
@@ -23,13 +23,13 @@ impl Dynamics<'_> {
         }
         let steady = group.steady_step.map_or(0.0, |step| STEADY_GROWTH * step);
         let by_way = steady.max(self.longest_step_by_way(!any_idle));
-        // To look at each contact takes longer: only where that is too short.
+        // Measuring each contact takes longer: that is done only if the first bound is too short.
         let is_enough = any_idle || group.next_step.is_some_and(|step| step <= by_way);
         if is_enough { by_way } else { by_way.max(self.longest_step_by_rows()) }
     }
 
-    /// The step along which no body moves by a part of its size, but for discs if these need not be looked at: what is
-    /// held of a disc does not vary as it turns.
+    /// The step [s] along which no point of a body moves by more than the fraction of its reach. Discs may be left out:
+    /// their contacts do not vary as they turn.
     fn longest_step_by_way(&self, spares_discs: bool) -> f64 {
         let group = &*self.group;
         let count = group.bodies.len();
@@ -47,16 +47,15 @@ impl Dynamics<'_> {
         waits.fold(f64::INFINITY, f64::min)
     }
 
-    /// The step along which no contact sees its bodies move by a part of their size: normals and bodies turn, and a
-    /// contact runs along the side of a body that moves. What moves straight along a floor does none of that,
-    /// however far, nor do bodies that go the same way together. Of contacts without force that would not do: of
-    /// them the gap is wanted, not how it turns.
+    /// The step [s] along which no held contact changes by more than the fraction: its normal and its bodies turn, and
+    /// it runs along the side of a moving body. A body that moves straight along a floor does none of that, however
+    /// far, nor do bodies that move together. For contacts without force this is no bound: their gaps vary, too.
     fn longest_step_by_rows(&self) -> f64 {
         let contacts = self.group.rows.iter().filter(|row| !row.bilateral);
         contacts.map(|row| self.wait_for_row(row)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The same for one row; that of a connector does not matter.
+    /// The longest step [s] for one row; infinite for a row of a connector.
     fn wait_for_row(&self, row: &HeldRow) -> f64 {
         let RowSource::Contact(features) = row.source else { return f64::INFINITY };
         let group = &*self.group;
@@ -68,7 +67,7 @@ impl Dynamics<'_> {
         });
         let sample = self.physics.mechanism.sample(row.bodies, features, [&movings[0], &movings[1]]);
         let kinematics = GapKinematics::of(&sample, &movings[0], &movings[1]);
-        // By what bodies that move turn, and how far their contact may be from their centres.
+        // Sums over the movable bodies: rates [rad/s] and accelerations [rad/s^2] of turning; their largest reach [m].
         let (mut turn, mut turn_rate, mut reach) = (kinematics.normal_rate.length(), 0.0, 0.0f64);
         let mut pull = DVec2::ZERO;
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
@@ -77,14 +76,14 @@ impl Dynamics<'_> {
             let flyer = &self.physics.mechanism.flyers[row.bodies[side].index()];
             reach = reach.max(flyer.reach());
             pull += rates.velocity * sign;
-            // A disc that turns shows it to nobody.
+            // The turning of a disc changes no contact.
             if flyer.disc().is_none() {
                 turn += movings[side].angular_velocity.abs();
                 turn_rate += rates.angular_velocity.abs();
             }
         }
         let along_side = match sample.kind {
-            // The contact runs along a side; of a body that stands still that does not matter.
+            // The contact runs along a side of a body; if that body cannot move, it does not matter.
             GapKind::CenterLine if places[1].is_none() => return wait(WATCHED_SHARE, turn, turn_rate),
             GapKind::CenterLine => sample.normal.perp().dot(kinematics.center_velocity).abs() / reach,
             GapKind::CenterCenter => 0.0,
@@ -97,7 +96,7 @@ impl Dynamics<'_> {
     }
 }
 
-/// Time [s] in which a way, or an angle, is done at a speed and an acceleration; infinite without either.
+/// Time [s] in which a distance or an angle is covered at a speed and an acceleration; infinite without either.
 fn wait(way: f64, speed: f64, acceleration: f64) -> f64 {
     first_closing_time(way, -speed, -acceleration).unwrap_or(f64::INFINITY)
 }

@@ -1,4 +1,4 @@
-//! Which body hangs on which.
+//! Construction of the tree of a group from its pins.
 
 use super::{Bundle, Hinge, JointTree, Link, Stance};
 use crate::rigid::motion::flyer::Flyer;
@@ -9,30 +9,32 @@ use crate::rigid::system::RigidSettings;
 use glam::DVec2;
 use halfgap_collision::Anchor;
 
-/// Order and size of the error of a polynomial through both ends of a step, with rates, and the inner nodes:
-/// where a point at the distance 1 turns steadily by two radians, it errs by so much at most.
+/// Order of the error of a polynomial through both ends of a step, with rates, and the inner nodes.
 const INNER_DEGREE: f64 = 9.0;
+/// Largest error of that polynomial for a point that turns steadily by 2 rad, as a fraction of its distance from the
+/// axis.
 const INNER_ERROR: f64 = 3.86e-8;
 
-/// Rows of pins from which on a group is stepped in angles though it has as many others beside them: three pins make a
-/// loop, which may fold, and only in angles it is led over that. Of fewer pins no more than half as many, or steps
-/// along the rows are cheaper.
+/// Number of rows of a tree's pins from which on there may be as many other rows beside them: a tree of three pins may
+/// be closed to a loop, which may fold, and only in angles it is led over that bifurcation point. Beside fewer pin rows
+/// there may be half as many, or steps in the coordinates of the bodies are cheaper.
 const LOOP: usize = 6;
-/// No more rows than this beside those of the tree: their matrix is full, where rows without a tree make a narrow one.
+/// Largest number of rows beside those of a tree's pins: their matrix is full, while that of all rows of the group has
+/// a narrow band.
 pub(super) const MOST_BESIDE: usize = 64;
 
 /// A pin between two bodies, or a body and the world.
 #[derive(Clone, Copy, Debug)]
 struct Pin {
     anchors: [Anchor; 2],
-    /// The first point as seen from the second [m].
+    /// From the second point to the first [m], in world directions.
     gap: DVec2,
 }
 
 impl Dynamics<'_> {
-    /// Finds how the connectors of the group hang together, whose bodies are in place: its tree, if it hangs by pins,
-    /// with few rows beside them, none of these redundant, and whether there are loops. Neither counts where it is stepped
-    /// with any of the remedies against drift that scenes may ask for, or without an error estimate.
+    /// Finds the structure of the group's connectors, with the bodies in place: its tree, if it hangs by pins with few
+    /// rows beside them, and whether there are closed loops. Neither is used if the scene asks for another remedy
+    /// against drift than projection, or for a method without error estimate.
     pub(crate) fn find_tree_and_loops(&mut self, settings: &RigidSettings) {
         let Group { tree, loops, .. } = &mut *self.group;
         tree.clear();
@@ -44,7 +46,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The same, where steps may err by a length [m].
+    /// Finds the tree of the group, if it has one, where steps may err by `error` [m].
     pub(super) fn find_tree_for(&mut self, error: f64) {
         let Group { tree, bodies, rows, held, .. } = &mut *self.group;
         let mechanism = &self.physics.mechanism;
@@ -118,8 +120,8 @@ impl JointTree {
         });
     }
 
-    /// Sums up what hangs on each body, finds by how much each may turn so that polynomials follow its points
-    /// to within an error [m], and makes room.
+    /// Sums up the bodies that hang on each, finds the angle by which each may turn in a step such that polynomials
+    /// follow its points to within an error [m], and resizes the buffers.
     fn complete(&mut self, error: f64) {
         for link in &mut self.links {
             let reach = link.lever_square.sqrt();
@@ -141,7 +143,7 @@ impl JointTree {
     }
 }
 
-/// The pin whose rows are two that follow each other.
+/// The pin that two consecutive rows belong to; `None` if they are not those of a pin.
 fn pin_of(rows: &[HeldRow], mechanism: &Mechanism<'_>) -> Option<Pin> {
     let &[first, second] = rows else { return None };
     let RowSource::Connector(id, 0) = first.source else { return None };

@@ -1,26 +1,26 @@
-//! Forces of the rows of a tree, whose accelerations are found without those of its pins: what a body accelerates by
-//! beyond its loads, and what hangs on it pulls, its own pin gives. One sweep from the tips to the roots, where the
-//! rows of the pins of a body with many arms would make a full matrix.
+//! Forces of the rows of a tree, whose accelerations are found without those of its pins. The force of a body's own pin
+//! is its mass times the acceleration beyond that of its loads, plus the forces of the pins on which others hang. One
+//! sweep from the tips to the roots finds them, where the pins' rows of a body with many arms would make a full matrix.
 
 use super::Hinge;
 use crate::rigid::step::dynamics::Dynamics;
 use crate::rigid::step::group::Group;
 use glam::DVec2;
 
-/// What a row with a Jacobian pulls a side's body by, per newton.
+/// Force on the body of a side per newton of a row's force, from the row's Jacobian.
 fn direction(jacobian: &[f64; 6], side: usize) -> DVec2 {
     DVec2::new(jacobian[3 * side], jacobian[3 * side + 1])
 }
 
 impl Dynamics<'_> {
-    /// Turns the accelerations in the stage, which are without forces of rows, into those of the tree, and finds the
+    /// Turns the accelerations in the stage, which are without forces of rows, into those with them, and finds the
     /// forces [N] of all rows; bodies are in place.
     pub(crate) fn hang_and_tell(&mut self) {
         let free = self.stage.accelerations.clone();
         self.pull_tree();
         let Group { tree, sides, rows, bodies, .. } = &*self.group;
         let mut forces = vec![0.0; rows.len()];
-        // What all rows together give each body of the group [N], then what its own pin gives.
+        // Force [N] of all rows on each body of the group; at the end that of its own pin.
         let mut given = vec![DVec2::ZERO; bodies.len()];
         for link in &tree.links {
             let [with, without] = [&self.stage.accelerations, &free].map(|of| of[link.place]);
@@ -46,7 +46,7 @@ impl Dynamics<'_> {
         let mut twin = None;
         for &row in &tree.hung {
             let moment = self.physics.mechanism.measure_next(&rows[row], &self.stage.movings, &mut twin);
-            // Of two bodies that one hangs on the other which comes later in the tree.
+            // Of the two bodies of a pin, the one that comes later in the tree hangs on the other.
             let link_of = |side: usize| sides[row][side].and_then(|place| tree.link_of[place as usize]);
             let side = usize::from(link_of(1) > link_of(0));
             if let Some(place) = sides[row][side] {

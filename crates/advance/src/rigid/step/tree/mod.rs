@@ -1,15 +1,15 @@
-//! Bodies that hang on each other by pins, as a tree: their motion in as many coordinates as they have freedoms.
+//! Trees of bodies that hang on each other by pins: their motion in reduced coordinates, one for each degree of
+//! freedom.
 //!
-//! Where a group is held by pins that close no loop, a state of angles, and of positions of those bodies that
-//! hang on nothing, says where everything is. Steps in these coordinates keep to the pins by themselves, have
-//! a third of the numbers, and their accelerations follow from one sweep from the tips to the roots and one
-//! back, without any system of equations but for a few rows beside the pins. All other rooms go on with
-//! bodies: this one translates at both ends of a step, and its dense output.
+//! Where a group is held by pins that close no loop, the angles of its bodies, and the positions of bodies that hang on
+//! nothing, determine its state. Steps in these coordinates keep to the pins by themselves and have a third of the
+//! components. The accelerations follow from one sweep from the tips to the roots and one back; a system of equations
+//! is solved only for the few rows beside the pins. All other modules work with bodies: this one translates at both
+//! ends of a step, and its dense output.
 //!
-//! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest`
-//! holds what is held beside the pins, `stepping` makes the steps of a group, `forces` tells what its rows
-//! give. Angles are those of the bodies, not those between them, so a coordinate of the tree is a number of
-//! the group's state.
+//! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest` holds the
+//! rows beside the pins, `stepping` makes the steps of a group, `forces` finds the forces of its rows. Angles are those
+//! of the bodies, not those between them, so each coordinate of the tree is also a component of the group's state.
 
 mod build;
 mod forces;
@@ -25,10 +25,10 @@ use glam::DVec2;
 use rest::Rest;
 use sweeps::Bundle;
 
-/// What a body of a tree hangs on.
+/// Support from which a body of a tree hangs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Hinge {
-    /// Nothing: its position counts among the coordinates.
+    /// None: the body's position is among the coordinates.
     Free,
     /// A point [m] of the world.
     World(DVec2),
@@ -38,12 +38,12 @@ enum Hinge {
         parent: usize,
         /// The pin [m] in that body's coordinates.
         arm: DVec2,
-        /// Where this body has the pin, as seen from there [m]: what the pin's gap was when it formed.
+        /// From there to this body's pin [m], in world directions: the gap of the pin when it formed.
         offset: DVec2,
     },
 }
 
-/// A body of a tree, with what it hangs on.
+/// A body of a tree, with its support.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Link {
     /// Its place in the group.
@@ -51,20 +51,20 @@ struct Link {
     hinge: Hinge,
     /// Its own pin [m] in its coordinates, zero if it is free.
     own: DVec2,
-    /// [kg]
+    /// Mass [kg].
     mass: f64,
-    /// About the centre of mass [kg m^2].
+    /// Moment of inertia about the centre of mass [kg m^2].
     moment: f64,
     /// The largest angle [rad] by which it may turn in a step.
     most_turn: f64,
-    /// Sum over all bodies of the squares of the distances [m] by which they move as this one turns by a
-    /// radian; its own points count by its reach.
+    /// Sum [m^2], over this body and all that hang on it, of the squares of the distances by which they move per radian
+    /// that this one turns; its own points count by its reach.
     lever_square: f64,
-    /// How many bodies hang on it, by whatever others.
+    /// Number of bodies that hang on it, directly or by others.
     descendants: usize,
 }
 
-/// How a body stands in the world, as far as its equations need it.
+/// Arms of a body in world directions, and its angular velocity, as its equations need them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Stance {
     /// From its centre of mass to its own pin [m].
@@ -75,38 +75,44 @@ struct Stance {
     spin_square: f64,
 }
 
-/// Which number of a group's positions each coordinate is: link by link, the angle, then the position of a free one.
+/// Index, among a group's positions, of each coordinate of the tree: link by link, the angle, then the position of a
+/// free one.
 #[derive(Clone, Debug, Default)]
 struct Numbers(Vec<usize>);
 
-/// Rows beside the pins of a tree that close more than one loop, but few. Where one folds, or the many of lazy tongs at
-/// once, steps in angles err by less.
+/// Numbers of rows beside the pins of a tree that close more than one loop, but few. At bifurcation points, steps in
+/// angles err by less for a single loop and for the many of lazy tongs, which fold at once.
 const ROWS_OF_FEW_LOOPS: std::ops::RangeInclusive<usize> = 3..=6;
 
-/// The bodies of a group as a tree, with its buffers. Without links there is none, and the group is stepped as it is.
+/// The bodies of a group as a tree, with its buffers. Without links there is no tree, and the group is stepped in the
+/// coordinates of its bodies.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointTree {
     /// Parents come before their children.
     links: Vec<Link>,
     numbers: Numbers,
-    /// Rows of the group whose pins the tree hangs by.
+    /// Rows of the group that are those of the tree's pins.
     hung: Vec<usize>,
     rest: Rest,
     stances: Vec<Stance>,
     bundles: Vec<Bundle>,
-    /// Coordinates, their rates, and works: at the start of a step, and at its end.
+    /// Coordinates, their velocities, and works, at the start of a step.
     state: Vec<f64>,
+    /// Rates of `state`.
     rates: Vec<f64>,
+    /// Coordinates, their velocities, and works, at the end of a step.
     end: Vec<f64>,
+    /// Rates of `end`.
     end_rates: Vec<f64>,
-    /// Dense output of the coordinates, and of their rates and the works.
+    /// Dense output of the coordinates.
     angles: Vec<SegmentPolynomial>,
+    /// Dense output of the velocities of the coordinates, then of the works.
     velocities: Vec<SegmentPolynomial>,
     /// Positions of bodies at the inner nodes.
     inner: Vec<[DVec2; SegmentPolynomial::INNER.len()]>,
-    /// Link of each body of the group.
+    /// Index of the link of each body of the group; `None` while it has none.
     link_of: Vec<Option<usize>>,
-    /// The group is stepped as it is for now, although there is a tree.
+    /// The group is stepped in the coordinates of its bodies for now, although there is a tree.
     is_bypassed: bool,
 }
 
@@ -118,14 +124,14 @@ impl JointTree {
         self.is_bypassed = false;
     }
 
-    /// Lets the group be stepped as it is from now on; true if it was stepped as a tree.
+    /// Has the group stepped in the coordinates of its bodies from now on; true if it was stepped as a tree.
     pub(crate) fn bypass(&mut self) -> bool {
         let was_used = self.is_used();
         self.is_bypassed = self.exists();
         was_used
     }
 
-    /// Lets the group be stepped as a tree again; true if it was not.
+    /// Has the group stepped as a tree again, if there is one; true if it was bypassed.
     pub(crate) fn use_again(&mut self) -> bool {
         std::mem::take(&mut self.is_bypassed)
     }
@@ -135,7 +141,7 @@ impl JointTree {
         !self.links.is_empty()
     }
 
-    /// True if there is a tree, but the group is stepped as it is for now.
+    /// True if there is a tree, but the group is stepped in the coordinates of its bodies for now.
     pub(crate) fn is_bypassed(&self) -> bool {
         self.is_bypassed
     }
@@ -146,17 +152,17 @@ impl JointTree {
         self.exists() && !self.is_bypassed
     }
 
-    /// True if bodies that are where its coordinates say are where all rows hold them.
+    /// True if the group is stepped as a tree and has no rows beside its pins: its coordinates keep to all rows.
     pub(crate) fn holds_all(&self) -> bool {
         self.is_used() && self.rest.rows.is_empty()
     }
 
-    /// True if it has more than one loop, but few.
+    /// True if the rows beside its pins close more than one loop, but few.
     pub(crate) fn has_few_loops(&self) -> bool {
         ROWS_OF_FEW_LOOPS.contains(&self.rest.rows.len())
     }
 
-    /// Coordinates.
+    /// Number of coordinates.
     pub(crate) fn count(&self) -> usize {
         self.numbers.0.len()
     }

@@ -1,4 +1,4 @@
-//! From the coordinates of a tree to its bodies.
+//! Poses and velocities of the bodies of a tree from its coordinates.
 
 use super::{Hinge, JointTree, Link, Numbers, Stance};
 use glam::DVec2;
@@ -6,7 +6,7 @@ use halfgap_collision::{BodyId, Moving};
 use halfgap_geometry::{Pose, Rotation};
 
 impl JointTree {
-    /// Places the bodies as coordinates and their rates say, both of which `state` begins with.
+    /// Places the bodies according to the coordinates and their velocities, with which `state` begins.
     pub(super) fn place(&mut self, state: &[f64], bodies: &[BodyId], movings: &mut [Moving]) {
         let (coordinates, rates) = state.split_at(self.count());
         let mut at = 0;
@@ -60,7 +60,7 @@ impl JointTree {
 }
 
 impl Numbers {
-    /// Picks the coordinates, their rates, and the works out of a group's state.
+    /// Extracts the coordinates, their velocities, and the works from a group's state.
     pub(super) fn gather(&self, whole: &[f64], velocities: usize, out: &mut Vec<f64>) {
         out.clear();
         out.extend(self.0.iter().map(|&number| whole[number]));

@@ -1,53 +1,56 @@
-//! Rows that are held beside the pins of a tree: those that close loops, slots, rods, rails.
+//! Held rows beside the pins of a tree: those of pins that close loops, of slots, rods, rails.
 //!
-//! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and
-//! J the rows, the forces follow from G f = -(J v' + gamma), G = J C. There are few of them, so G is dense.
+//! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and J the
+//! Jacobian of the rows, the forces f follow from G f = -(J v' + gamma), G = J C. The rows are few, so G is dense.
+//!
+//! The kept share of a row is the fraction of its square J M^-1 J^T, without pins, that the pins and the rows before it
+//! leave: it vanishes in singular configurations (see `singular`).
 
 use super::{Hinge, JointTree};
 use crate::rigid::step::dynamics::{Dynamics, Stage};
 use crate::rigid::step::group::Group;
 use glam::DVec2;
 
-/// A tree of which a row keeps a lesser part than this of its square in the measure of the masses, once pins
-/// and the other rows before it are held, is not stepped as one: its rows depend on each other.
+/// Kept share of a row at or below which a new tree is given up: its rows depend on each other.
 const SINGULAR: f64 = 1e-6;
 
-/// What is added to the part that a row keeps when it keeps nothing. Loops go through points where their rows
-/// depend on each other for a moment, and what holds them there is lost in rounding, though it is finite. The
-/// error this makes lasts as long as the loop is within the square root of this (as an angle) of such a
-/// point, and falls fast farther away.
+/// Softness that is added to a kept share of 0. Loops pass bifurcation points, where their rows depend on each other
+/// for a moment, and where the forces that hold them are finite but lost in rounding. The error that softness makes
+/// lasts while the loop is within the square root of this (as an angle) of the point, and falls fast farther away.
 const SOFTNESS: f64 = 1e-8;
 
-/// What a row may keep is measured by no more than so many times the square of its heavier side.
+/// Largest square of a row by which its kept share is measured, as a multiple of the square of its heavier side.
 const HEAVIER: f64 = 10.0;
 
-/// Cap on the rounds in which what softness leaves lacking is made good. Of what is lacking, each leaves the
-/// part that softness makes of what a row keeps, softness included: two do where a row keeps a millionth, as
-/// what a light body pushes along its pin. Nearer to nothing, the error falls as one over the rounds, and
-/// noise grows with them.
+/// Largest number of refinements that restore the forces which softness takes away. Each leaves, of the missing force,
+/// the fraction of the kept share, softness included, that is softness. Two suffice at a share of a millionth, as for a
+/// light body that pushes along its pin. Nearer to 0 the error falls with the inverse of their number, and noise grows
+/// with it.
 const MOST_REFINEMENTS: usize = 10;
 
 /// The rows beside the pins of a tree, with their buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rest {
-    /// Which rows of the group.
+    /// Indices of the rows in the group.
     pub(super) rows: Vec<usize>,
     /// Accelerations of the bodies of the group under each row's unit force, row by row.
     columns: Vec<[f64; 3]>,
     /// Lower triangle of the factors L D L^T of G, line by line.
     factor: Vec<f64>,
-    /// The least part of a row's square that was kept so far, and when the rows were factorised last.
+    /// The least kept share since the tree was made.
     pub(super) least_kept: f64,
+    /// The least kept share when the rows were factorised last.
     pub(super) kept: f64,
-    /// The largest part of what a row keeps, softness included, that is softness.
+    /// The largest fraction of a kept share, softness included, that is softness.
     softness: f64,
-    /// What forces leave of each row's equation, and the forces that this asks for.
+    /// Residual of each row's equation.
     lacking: Vec<f64>,
+    /// Corrections [N] of the forces for these residuals.
     corrections: Vec<f64>,
 }
 
 impl JointTree {
-    /// Factorises G for rows in their order, with the sweep inwards done.
+    /// Factorises G for the rows in their order, after the sweep inwards.
     fn factorize(&mut self, jacobians: &[[f64; 6]], sides: impl Fn(usize) -> [Option<u32>; 2]) {
         let bodies = self.links.len();
         let mut columns = std::mem::take(&mut self.rest.columns);
@@ -68,9 +71,8 @@ impl JointTree {
         self.rest.columns = columns;
     }
 
-    /// J M^-1 J^T of a row by itself, without pins, of which no more counts than some times that of the
-    /// heavier side: what a much lighter body may add, it often cannot, because it hangs on a pin that the
-    /// row points to.
+    /// J M^-1 J^T of a row by itself, without pins, at most [`HEAVIER`] times that of its heavier side. The part of a
+    /// much lighter body would be larger, but is often held by a pin to which the row points.
     fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
         let of_side = |(side, place): (usize, Option<u32>)| {
             let Some(link) =
@@ -124,7 +126,7 @@ impl JointTree {
 }
 
 impl Rest {
-    /// Makes the last line of G one of its factors, for a row with a square that is so large by itself.
+    /// Turns the last line of G into one of its factor, for a row whose square is `whole`.
     fn eliminate(&mut self, row: usize, whole: f64) {
         let begin = row * (row + 1) / 2;
         let (done, line) = self.factor.split_at_mut(begin);
@@ -139,7 +141,7 @@ impl Rest {
             line[row] -= entry * line[column];
             line[column] = entry;
         }
-        // A row that moves nothing depends on any other.
+        // A row that moves no body depends on the others.
         let whole = if whole > 0.0 { whole } else { 1.0 };
         let kept = line[row].max(0.0) / whole;
         self.kept = self.kept.min(kept);
@@ -168,7 +170,7 @@ impl Rest {
         }
     }
 
-    /// Adds to changes of the motion of bodies what forces along the rows make of it.
+    /// Adds the responses C f of the bodies to forces f along the rows to `changes`.
     fn pull_all(&self, forces: &[f64], changes: &mut [[f64; 3]]) {
         for (column, force) in self.columns.chunks(changes.len()).zip(forces) {
             for (change, response) in changes.iter_mut().zip(column) {
@@ -180,7 +182,7 @@ impl Rest {
     }
 }
 
-/// What accelerations of bodies make of a row's rate in a second.
+/// J a: acceleration [m/s^2] of a row's gap by accelerations of its bodies.
 fn rate(jacobian: &[f64; 6], sides: [Option<u32>; 2], accelerations: &[[f64; 3]]) -> f64 {
     let of_side = |(side, place): (usize, Option<u32>)| {
         let acceleration = place.map_or([0.0; 3], |place| accelerations[place as usize]);
@@ -190,7 +192,7 @@ fn rate(jacobian: &[f64; 6], sides: [Option<u32>; 2], accelerations: &[[f64; 3]]
 }
 
 impl Dynamics<'_> {
-    /// Gives the tree up if the rows beside its pins have turned out to depend on each other; true if so.
+    /// Gives the tree up if the rows beside its pins have turned out to depend on each other; true if they have.
     pub(crate) fn leave_singular_tree(&mut self) -> bool {
         let rest = &self.group.tree.rest;
         let is_singular = !rest.rows.is_empty() && rest.least_kept <= SINGULAR;
@@ -200,7 +202,8 @@ impl Dynamics<'_> {
         is_singular
     }
 
-    /// Adds what the rows beside the pins do to the accelerations in the stage, which are those of the tree.
+    /// Adds the response to the rows beside the pins to the accelerations in the stage, which are those with the pins
+    /// alone.
     pub(super) fn hold_rest(&mut self) {
         if self.group.tree.rest.rows.is_empty() {
             return;
@@ -231,8 +234,8 @@ impl Dynamics<'_> {
         tree.rest.rows = rows;
     }
 
-    /// Measures the rows beside the pins, with the bodies in place, and factorises; calls `visit` with the
-    /// gap of each less the one at which it formed, and its rate.
+    /// Measures the rows beside the pins, with the bodies in place, and factorises; calls `visit` with the error [m] of
+    /// each gap and its rate [m/s].
     pub(crate) fn factorize_by_tree(&mut self, mut visit: impl FnMut(f64, f64)) {
         self.stage.jacobians.clear();
         let mut twin = None;

@@ -7,15 +7,15 @@ use crate::rigid::step::group::Group;
 use glam::DVec2;
 use std::convert::Infallible;
 
-/// Part of what errors may be that is allowed to angles. Their estimates see less than those of positions,
-/// which vary faster: at equal estimates a pendulum errs by ten times as much.
+/// Fraction of the acceptable errors that angles may have. Positions vary faster than angles, so that their error
+/// estimates show more: at equal estimates a pendulum in angles errs by ten times as much.
 const SHARE: f64 = 0.25;
 
-/// A body that turns ever faster is followed as well as one that turns by the same angle steadily, and by the
-/// square root of its angular acceleration times this, in radians, for each second of a step.
+/// Additional spin, as a multiple of the square root of the angular acceleration: dense output follows a body that
+/// turns ever faster as well as one that turns steadily and by that much faster.
 const UNSTEADY: f64 = 1.6;
 
-/// A group whose state is that of its tree.
+/// A group stepped in the coordinates of its tree.
 struct Hanging<'a, 'b>(&'a mut Dynamics<'b>);
 
 impl Ode for Hanging<'_, '_> {
@@ -46,7 +46,7 @@ impl Ode for Hanging<'_, '_> {
 }
 
 impl Group {
-    /// Takes the start of a step over into the tree, with its rates.
+    /// Copies the start of a step, with its rates, into the tree.
     fn gather_start(&mut self) {
         let velocities = self.velocities();
         let Self { tree, state, rates, .. } = self;
@@ -54,7 +54,7 @@ impl Group {
         tree.numbers.gather(rates, velocities, &mut tree.rates);
     }
 
-    /// Takes the end of a step over into the tree, with its rates.
+    /// Copies the end of a step, with its rates, into the tree.
     fn gather_end(&mut self) {
         let velocities = self.velocities();
         let Self { tree, end_state, end_rates, .. } = self;
@@ -64,7 +64,7 @@ impl Group {
 }
 
 impl Dynamics<'_> {
-    /// Goes a step from the group's state and rates to its end state, in the coordinates of its tree.
+    /// Makes a step from the group's state and rates to its end state, in the coordinates of its tree.
     pub(crate) fn step_tree(&mut self, stepper: &mut Stepper, step: f64) {
         self.group.gather_start();
         let tree = &mut self.group.tree;
@@ -81,7 +81,7 @@ impl Dynamics<'_> {
         (tree.state, tree.rates, tree.end) = (state, rates, end);
     }
 
-    /// Tells the stepper the rates at the end of a step whose error takes them.
+    /// Gives the stepper the rates at the end of a step, for a method whose error estimate takes them.
     pub(crate) fn close_step_of_tree(&mut self, stepper: &mut Stepper) {
         self.group.gather_end();
         stepper.close(&self.group.tree.end_rates);
@@ -108,7 +108,7 @@ impl Dynamics<'_> {
         whole.extend_from_slice(&state[2 * count..]);
     }
 
-    /// Brings bodies onto the pins of the tree, by their angles and what is free.
+    /// Moves bodies onto the pins of the tree: keeps their angles and the positions of free ones.
     pub(crate) fn fit_to_tree(&mut self, whole: &mut Vec<f64>) {
         let velocities = self.group.velocities();
         let tree = &mut self.group.tree;
@@ -118,8 +118,8 @@ impl Dynamics<'_> {
         self.group.tree.end = state;
     }
 
-    /// Turns the accelerations in the stage, which are without forces of rows, into those of the tree; bodies
-    /// are in place. Forces of rows are not known then.
+    /// Turns the accelerations in the stage, which are without forces of rows, into those with them; bodies are in
+    /// place. The forces of rows are not found.
     pub(crate) fn hang(&mut self) {
         self.pull_tree();
         self.stage.forces.clear();
@@ -134,16 +134,16 @@ impl Dynamics<'_> {
         self.hold_rest();
     }
 
-    /// How fast the fastest part of the tree is, as the stepper tells it of its last step.
+    /// Estimates the fastest rate of the tree from the last step.
     pub(crate) fn stiffness_of_tree(&mut self, stepper: &mut Stepper, scales: &[f64]) -> StiffnessEstimate {
         self.group.gather_end();
         let Group { tree, span, .. } = &*self.group;
         stepper.stiffness(Point { offset: *span, state: &tree.end, rates: &tree.end_rates }, scales)
     }
 
-    /// Errors that are just acceptable of the tree's coordinates and rates, where those of bodies are so
-    /// large: the mean square over the coordinates is to be that of the farthest points of the bodies. An
-    /// angle turns its body about its pin, and shifts all that hangs on it.
+    /// Writes the errors of the tree's coordinates and their velocities that are just acceptable, from those of bodies,
+    /// `linear` ([m], [m/s]). The mean square over the coordinates is to be that of the farthest points of the bodies:
+    /// a change of an angle turns its body about its pin, and shifts all bodies that hang on it.
     pub(crate) fn scale_tree(&self, linear: [f64; 2], scales: &mut Vec<f64>) {
         let tree = &self.group.tree;
         let share = tree.count() as f64 / tree.links.len() as f64;
@@ -158,9 +158,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The longest step [s] over which no body of the tree turns by more than it may. Dense output of what
-    /// turns unsteadily errs as if it turned by more: high derivatives of its points are of angles and of
-    /// angular accelerations.
+    /// The longest step [s] over which no body of the tree turns by more than its `most_turn`. Dense output of a body
+    /// that turns unsteadily errs as if it turned by more: the high derivatives of its points contain angular
+    /// accelerations, too.
     pub(crate) fn longest_turning_step(&self) -> f64 {
         let Group { tree, state, rates, .. } = &*self.group;
         let velocities = self.group.velocities();
@@ -176,8 +176,9 @@ impl Dynamics<'_> {
         steps.fold(f64::INFINITY, f64::min)
     }
 
-    /// Dense output of the last step of a tree, into the group's paths: of the coordinates by the stepper, of the other
-    /// positions through what the coordinates say at the ends and between.
+    /// Writes the dense output of the last step of a tree into the group's paths: that of the coordinates is made by
+    /// the stepper, those of the other positions interpolate the places given by the coordinates at the ends and
+    /// between.
     pub(crate) fn make_dense_of_tree(&mut self, stepper: &mut Stepper) {
         self.group.gather_start();
         self.group.gather_end();
@@ -200,7 +201,7 @@ impl Dynamics<'_> {
         (tree.state, tree.end, tree.end_rates) = (state, end, end_rates);
     }
 
-    /// Finds where the bodies are at the inner nodes of the step; `state` is a buffer.
+    /// Finds the positions of the bodies at the inner nodes of the step; `state` is a buffer.
     fn place_inner(&mut self, state: &mut [f64]) {
         let Group { tree, bodies, span, .. } = &mut *self.group;
         let count = tree.count();
@@ -215,7 +216,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Makes the paths of the bodies; `velocities` are those of the coordinates, followed by works.
+    /// Makes the paths of the bodies; `velocities` are those of the coordinates, followed by the works.
     fn join_inner(&mut self, velocities: &[SegmentPolynomial]) {
         let first_velocity = self.group.velocities();
         let Group { tree, bodies, paths, rate_paths, state, end_state, span, .. } = &mut *self.group;

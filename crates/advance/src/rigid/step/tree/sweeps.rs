@@ -1,14 +1,17 @@
-//! Accelerations of a tree by articulated bodies: R. Featherstone, Rigid Body Dynamics Algorithms (2008),
+//! Accelerations of a tree by the articulated-body algorithm: R. Featherstone, Rigid Body Dynamics Algorithms (2008),
 //! chapter 7, written for pins in the plane.
 //!
-//! What hangs on a pin resists the pin's acceleration a by the force A a + d. A body's own unknowns are the
-//! acceleration a of its pin and its angular acceleration; what hangs on it, at the arm u from its own pin,
-//! adds to the equations of both:
+//! The bodies that hang on a pin resist its acceleration a by the force A a + d. The unknowns of a body are the
+//! acceleration a of its own pin and its angular acceleration alpha. A pin on which others hang, at the arm u from its
+//! own pin, adds to both of its equations:
 //!
-//! force on the pin: M a + g alpha + e, with M = m + sum A, g = m c' + sum A u', e = sum (d - w^2 A u) - w^2
-//! m c - F
-//!
-//! moment about it: g.a + H alpha + h = 0,   with H = I + m c^2 + sum u'.A u',   h = sum u'.(d - w^2 A u) - c'.F - T
+//! ```text
+//! force on the pin:  M a + g alpha + e,      M = m + sum A,
+//!                                            g = m c' + sum A u',
+//!                                            e = sum (d - w^2 A u) - w^2 m c - F
+//! moment about it:   g.a + H alpha + h = 0,  H = I + m c^2 + sum u'.A u',
+//!                                            h = sum u'.(d - w^2 A u) - c'.F - T
+//! ```
 //!
 //! where c is the arm of the centre of mass, w the angular velocity, F and T force and torque without pins,
 //! and ' a quarter turn. The second gives alpha; put into the first, A = M - g g^T/H and d = e - g h/H.
@@ -30,7 +33,7 @@ impl Symmetric {
         DVec2::new(self.xx * v.x + self.xy * v.y, self.xy * v.x + self.yy * v.y)
     }
 
-    /// Adds another.
+    /// Adds another matrix.
     #[inline]
     fn add(&mut self, other: &Symmetric) {
         self.xx += other.xx;
@@ -38,7 +41,7 @@ impl Symmetric {
         self.yy += other.yy;
     }
 
-    /// Less g g^T times a factor.
+    /// This matrix less g g^T times a factor.
     #[inline]
     fn less_square(&self, g: DVec2, factor: f64) -> Self {
         Self {
@@ -63,7 +66,7 @@ impl Symmetric {
     }
 }
 
-/// A body's equations, of force and of moment: its own part, to which all add that hang on it.
+/// Equations of force and of moment of a body: its own part, and those of all bodies that hang on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bundle {
     /// M [kg].
@@ -72,7 +75,7 @@ pub(super) struct Bundle {
     coupling: DVec2,
     /// H [kg m^2].
     moment: f64,
-    /// 1 / H, once all is added.
+    /// 1 / H, once all parts are added.
     per_moment: f64,
     /// e [N].
     pub(super) force: DVec2,
@@ -85,7 +88,7 @@ pub(super) struct Bundle {
 }
 
 impl Bundle {
-    /// Adds the body's own part, which has an acceleration (x, y, angle) without pins.
+    /// Adds the body's own part; the body has an acceleration (x, y, angle) without pins.
     #[inline]
     fn add_body(&mut self, link: &Link, stance: &Stance, &[x, y, angular]: &[f64; 3]) {
         let (force, center) = (link.mass * DVec2::new(x, y), -stance.own);
@@ -98,20 +101,20 @@ impl Bundle {
         self.torque -= across.dot(force) + link.moment * angular;
     }
 
-    /// d: what the pin must give if it does not accelerate.
+    /// d: force [N] of the pin if it does not accelerate.
     #[inline]
     pub(super) fn resistance(&self) -> DVec2 {
         self.force - self.coupling * (self.torque * self.per_moment)
     }
 
-    /// Acceleration [m/s^2] of a body that hangs on nothing.
+    /// Acceleration [m/s^2] of the own pin of a body that hangs on nothing.
     #[inline]
     pub(super) fn free_acceleration(&self) -> DVec2 {
         self.mass.less_square(self.coupling, self.per_moment).solve(-self.resistance())
     }
 
-    /// Notes the pin's acceleration and what follows for the angle; the acceleration of the centre of mass,
-    /// but for what it has by turning, where the pin is at an arm from it.
+    /// Notes the pin's acceleration [m/s^2] and the angular acceleration that follows. Returns the acceleration of the
+    /// centre of mass without its centripetal part; `own` is the arm from there to the pin [m].
     #[inline]
     pub(super) fn turn(&mut self, acceleration: DVec2, own: DVec2) -> DVec2 {
         self.acceleration = acceleration;
@@ -121,14 +124,14 @@ impl Bundle {
 }
 
 impl JointTree {
-    /// Turns accelerations without the forces of pins, body by body of the group, into those with them. The
-    /// stances must be right.
+    /// Turns accelerations without the forces of pins, body by body of the group, into those with them. The stances
+    /// must be up to date.
     pub(super) fn accelerate(&mut self, accelerations: &mut [[f64; 3]]) {
         self.sweep_in(accelerations);
         self.sweep_out(accelerations);
     }
 
-    /// From the tips to the roots: what hangs on each pin, into the equations of the body that has it.
+    /// Sweeps from the tips to the roots: adds the equations of each body to those of the body on which it hangs.
     #[inline]
     pub(super) fn sweep_in(&mut self, accelerations: &[[f64; 3]]) {
         self.bundles.fill(Bundle::default());
@@ -153,7 +156,7 @@ impl JointTree {
         }
     }
 
-    /// From the roots to the tips: accelerations of the pins, then of the bodies.
+    /// Sweeps from the roots to the tips: finds the accelerations of each pin, then of its body.
     #[inline]
     fn sweep_out(&mut self, accelerations: &mut [[f64; 3]]) {
         for (index, (link, stance)) in self.links.iter().zip(&self.stances).enumerate() {

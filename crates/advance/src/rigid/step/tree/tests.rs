@@ -1,4 +1,4 @@
-//! Trees say the same as the rows of their pins.
+//! Accelerations and forces of trees agree with those of the rows of their pins.
 
 use super::build::MOST_BESIDE;
 use crate::rigid::motion::flyer::{FlightLaw, Flyer};
@@ -16,20 +16,20 @@ use halfgap_geometry::Shape;
 use proptest::prelude::*;
 
 const TOLERANCES: Tolerances = Tolerances { target_gap: 1e-3, accuracy: 6e-4, velocity_tol: 1e-2 };
-/// By how much a step may err [m].
+/// Acceptable error of a step [m].
 const STEP_ERROR: f64 = 1e-9;
-/// Difference of two accelerations that is rounding, as a part of the largest [m/s^2 or rad/s^2].
+/// Difference of two rates or forces that is rounding, as a fraction of the largest one, or of 1 if that is more.
 const ROUNDING: f64 = 1e-9;
-/// Part that a row must keep of its square, beside pins and other rows, so that softening does not show.
+/// Kept share of a row beside pins and other rows above which softness has no visible effect.
 const WELL_KEPT: f64 = 1e-3;
 const GRAVITY: DVec2 = DVec2::new(0.3, -9.81);
 
-/// What a body hangs on.
+/// Support from which a body hangs.
 #[derive(Clone, Copy, Debug)]
 enum On {
     Nothing,
     World,
-    /// One of the bodies before it, whichever a number from 0 to 1 says.
+    /// One of the bodies before it, chosen by a number from 0 to 1.
     Earlier(f64),
 }
 
@@ -152,7 +152,7 @@ impl Scene {
         act(&mut Dynamics { physics, group, stage: &mut stage, start: Time::ZERO })
     }
 
-    /// What the rows and the tree say.
+    /// Finds rates and forces by the rows and by the tree.
     fn told(self) -> Told {
         self.with_dynamics(|dynamics| {
             dynamics.set_out();
@@ -171,17 +171,18 @@ impl Scene {
     }
 }
 
-/// What the rows of a group and its tree say.
+/// Rates and forces of a group, by its rows and by its tree.
 #[derive(Debug, Default)]
 struct Told {
-    /// Rates of the group's state.
+    /// Rates of the group's state by its rows.
     by_rows: Vec<f64>,
+    /// Rates of the group's state by its tree.
     by_tree: Vec<f64>,
-    /// Forces [N] of the rows by both.
+    /// Forces [N] of the rows, by the rows and by the tree.
     forces: [Vec<f64>; 2],
-    /// How many coordinates the tree has.
+    /// Number of coordinates of the tree.
     coordinates: usize,
-    /// The least part that any row keeps beside the tree.
+    /// The least kept share of a row beside the tree's pins.
     kept: f64,
 }
 
@@ -223,7 +224,7 @@ proptest! {
             _ => ConnectorKind::Rod { a: Anchor { point: a.point + DVec2::X, ..a }, b, length: 1.0 },
         });
         let told = scene.told();
-        // Nearly dependent rows are softened.
+        // Softness would show in nearly dependent rows.
         prop_assume!(told.kept > WELL_KEPT);
         prop_assert_eq!(told.coordinates, hung.len());
         prop_assert!(told.agrees(), "{told:?}");
@@ -260,7 +261,7 @@ fn more_loops_than_a_full_matrix_is_worth_are_left_to_the_rows() {
         state: BodyState::default(),
         mass: 1.0,
     };
-    // A chain of forty, with pins beside: of two rows each.
+    // A chain of forty bodies, with pins of two rows each beside.
     for (loops, is_used) in [(1, true), (MOST_BESIDE / 2, true), (MOST_BESIDE / 2 + 1, false)] {
         let mut scene = Scene::new(&vec![link.clone(); 40]);
         for _ in 0..loops {
@@ -274,7 +275,7 @@ fn more_loops_than_a_full_matrix_is_worth_are_left_to_the_rows() {
     }
 }
 
-/// A slot, with a normal, at (0.2, 0.1) between a body that is pinned to the origin and another.
+/// A slot with a given normal at (0.2, 0.1), between a body that is pinned to the world and another.
 fn slot_beside_a_pin(masses: [f64; 2], second: On, normal: DVec2) -> Scene {
     let body = |on, mass| Hung {
         on,
@@ -290,7 +291,7 @@ fn slot_beside_a_pin(masses: [f64; 2], second: On, normal: DVec2) -> Scene {
 
 #[test]
 fn what_softness_leaves_lacking_is_made_good() {
-    // A slot that pushes bodies all but towards their pins keeps some millionths of its square.
+    // The row of a slot that pushes bodies nearly towards their pins has a kept share of some millionths.
     const KEPT: f64 = 1e-5;
     let scene = slot_beside_a_pin([1.0, 2.0], On::World, DVec2::new(2.0, 1.01));
     let told = scene.told();
@@ -301,8 +302,8 @@ fn what_softness_leaves_lacking_is_made_good() {
 
 #[test]
 fn what_a_light_body_passes_on_to_a_heavy_one_is_not_softened() {
-    // A slot that pushes a light body towards its pin moves nothing but a heavy one: a part of the light
-    // one's square that is less than all softness. The lighter the body, the less it matters how light.
+    // A slot that pushes a light body towards its pin moves only the heavy body: a fraction of the light one's square
+    // that is below all softness. The lighter the light body, the less its mass matters.
     const LIGHT: f64 = 1e-6;
     const LIGHTER: f64 = 1e-9;
     let of = |mass| slot_beside_a_pin([mass, 1.0], On::Nothing, DVec2::new(2.0, 1.0)).told();
