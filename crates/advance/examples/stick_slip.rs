@@ -114,7 +114,8 @@ impl Block {
         Ok(())
     }
 
-    /// When the velocity, on the step, comes up to that of the belt: bracketed, then halved down to rounding.
+    /// Offset [s] on the step at which the velocity comes up to that of the belt: bracketed, then halved down to
+    /// rounding.
     fn find_catch(&self, length: f64) -> Option<f64> {
         let slower = |offset: f64| self.step[1].value_at(offset) < BELT_SPEED;
         let at = |look: u32| length * f64::from(look) / f64::from(LOOKS);

@@ -7,16 +7,16 @@ use super::radau::Radau;
 use super::{Ode, Point};
 use std::ops::Range;
 
-/// Estimate, by one step, of the fastest part of a system and what it does to the motion.
+/// Estimate, from one step, of the fastest part of a system and its effect on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StiffnessEstimate {
     /// Product [-] of the fastest rate, in size, and the step. When it comes to [`Method::stability_limit`], the fast
     /// part rather than the error limits the steps of an explicit method.
     pub fastest: f64,
     /// Error of the motion along the step by this part, in the units of [`Stepper::error_norm`], which does not include
-    /// it; 0 where nothing is that fast. The end of the step may be right all the same. It is not known, and 0, for
-    /// implicit methods: over a step as long as what drives a stiff system takes to come and go, the motion between its
-    /// ends is that of a cubic.
+    /// it; 0 where nothing is that fast. The end of the step may be right all the same. Always 0 for implicit methods,
+    /// where it is not known: over a step as long as a load on a stiff system takes to come and go, the motion between
+    /// its ends is that of a cubic.
     pub dense_error: f64,
 }
 
@@ -175,7 +175,7 @@ impl Stepper {
         }
     }
 
-    /// Estimates the fastest part of the system, and what it does to the motion along the last step. `end` is the state
+    /// Estimates the fastest part of the system, and its effect on the motion along the last step. `end` is the state
     /// at the end of that step with its rates, `scales` are as in [`error_norm`](Self::error_norm).
     #[must_use]
     pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {

@@ -5,14 +5,14 @@
 //! `dense_stages`.
 //!
 //! Dense output has the form of E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd
-//! ed., Springer 1993, II.6 (and of the authors' programs): with `x` the fraction of the step that has passed and `z =
-//! 1 - x`,
+//! ed., Springer 1993, II.6 (and of the authors' programs), where `x` is the fraction of the step that has passed, and
+//! `z` the fraction left:
 //!
 //! ```text
 //! y(x) = y0 + x (c2 + z (c3 + x (c4 + z (c5 + x (c6 + z (c7 + x c8))))))
 //! ```
 //!
-//! where `c2`, `c3`, `c4` make it the cubic of Hermite and the others are weighted sums of the stages times the step.
+//! Here `c2`, `c3`, `c4` make it the cubic of Hermite, and the others are weighted sums of the stages times the step.
 
 /// A stage and the weight of its rates.
 pub(super) type Term = (usize, f64);

@@ -39,7 +39,7 @@ impl RowForce {
     }
 }
 
-/// What callers may ask about the last event.
+/// Outcome of the last event, for callers that ask.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Told {
     pub(crate) last_impact: ImpactReport,

@@ -68,7 +68,7 @@ pub struct RigidSettings {
     pub resolution_time: f64,
 }
 
-/// Counts and extremes of what a system has done since its start.
+/// Counts and extremes of a system since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
     /// Segments started by movable bodies.
@@ -210,7 +210,7 @@ impl RigidSystem {
         &self.flyers[body.index()]
     }
 
-    /// Counts and extremes of what the system has done since its start.
+    /// Counts and extremes of the system since its start.
     #[must_use]
     pub fn counts(&self) -> Counts {
         let (evaluations, solves) = (self.stage.evaluations, self.stage.solves);

@@ -20,8 +20,8 @@ const ROUNDINGS: f64 = 16.0;
 /// Fraction of a correction that is taken to be left to correct, at least, however much smaller it is than the one
 /// before: the first is the whole way of the step, and its slow part may hide that the fast part has yet to follow.
 const LEAST_LEFT: f64 = 1e-2;
-/// Correction, as a fraction of the acceptable error, up to which it counts as none: where a system rests, each is what
-/// rounding makes of its rates, and does not get smaller.
+/// Correction, as a fraction of the acceptable error, up to which it counts as none: in a system at rest corrections
+/// come from the rounding of its rates, and do not get smaller.
 const NEGLIGIBLE: f64 = 1e-6;
 /// Largest number of corrections in one step; more mean that a shorter step costs less.
 const MOST_CORRECTIONS: usize = 10;
@@ -301,8 +301,8 @@ impl Radau {
         }
     }
 
-    /// Estimates the error, HW (8.19). Their second filter, (8.20), is left out: it takes parts that have yet to decay
-    /// for none, and the motion along the step would not be that of the system.
+    /// Estimates the error, HW (8.19). Their second filter, (8.20), is left out: it would take the error of parts that
+    /// have yet to decay for none, and the motion along the step would not be that of the system.
     fn estimate_error(&mut self, from: Point<'_>) {
         for at in 0..self.active {
             let stages: f64 = (0..3).map(|stage| ERROR[stage] * self.stages[stage][at]).sum();

@@ -361,14 +361,15 @@ mod tests {
             let fall = after_rise(room).expect("it leaves");
             assert!((fall - room).abs() < 1e-12 && fall >= room, "{fall}");
         }
-        // What only goes farther beyond has not been within, and what is within at the first node has not left.
+        // A function that only goes farther below has not been above, and one that is above at the first node has not
+        // left.
         assert_eq!(after_rise(-0.1), None);
         assert_eq!(after_rise(1.0), None);
     }
 
     #[test]
     fn a_dip_soon_after_the_start_is_found() {
-        // It rises as t^6, to some ten thousand times what it dips by.
+        // It rises as t^6, to some ten thousand times the depth of its dip.
         let f = |t: f64| 1e-14 - 1e-10 * t * t + 1e-6 * t.powi(6);
         let early = |span: f64| std::array::from_fn(|index| f(early_node(index, span)));
         let fall = early_fall(f(0.0), &early(1.0), 1.0, f).expect("it dips");
@@ -389,12 +390,12 @@ mod tests {
             let offset = fall(allowed, 1e-3).expect("it falls");
             assert!((offset / (1e3 * (allowed - BELOW)) - 1.0).abs() < 1e-2, "{offset}");
         }
-        // What stays where it is, or rises, has not.
+        // A function that stays where it is, or rises, has not.
         assert_eq!(fall(2.0 * BELOW, 0.0), None);
         assert_eq!(fall(2.0 * BELOW, -1.0), None);
-        // What is lower already has.
+        // One that is lower already has.
         assert_eq!(fall(0.5 * BELOW, -1.0), Some(0.0));
-        // What is back by the first node had.
+        // One that is back by the first node had.
         let dips = |t: f64| -BELOW - t * (0.3 - t);
         let values = std::array::from_fn(|index| dips(node(index, 2.0)));
         let offset = fall_from_below(&values, 2.0, 2.0 * BELOW, dips).expect("it dips");

@@ -72,7 +72,7 @@ mod tests {
         }
     }
 
-    /// Steps the group of body 1, which is changed first, anew, and finds what ends the step.
+    /// Changes the group of body 1, steps it anew, and finds the end of the step.
     fn stepped(mut system: RigidSystem, change: impl FnOnce(&mut Group)) -> Box<Group> {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         change(&mut group);

@@ -53,7 +53,7 @@ impl Dynamics<'_> {
         path.filter(|path| path.is_closed()).map(|path| path.length())
     }
 
-    /// Gaps of a stop [m], raised by what it may sink, at the nodes of a part of the segment [s].
+    /// Gaps of a stop [m], raised by its slack, at the nodes of a part of the segment [s].
     fn sample_stop(&mut self, stop: Stop, reach: f64, lap: Option<f64>) -> [f64; NODES] {
         let mut values = [0.0; NODES];
         for index in 0..NODES {
@@ -64,7 +64,7 @@ impl Dynamics<'_> {
         values
     }
 
-    /// Gap of a stop [m], raised by what it may sink, at an offset [s].
+    /// Gap of a stop [m], raised by its slack, at an offset [s].
     fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
         self.place_at(offset);
         let connector = &self.physics.mechanism.connectors[stop.id.index()];

@@ -22,14 +22,14 @@ const FORCE_SHARE: f64 = 1e-9;
 /// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
 const PULL: f64 = 16.0;
 
-/// Change of the gap of a contact without force, as a fraction of what it may sink by, up to which it stays where it
-/// is.
+/// Change of the gap of a contact without force, as a fraction of the distance by which it may sink, up to which it
+/// stays where it is.
 const STILL_SHARE: f64 = 1e-3;
 
 /// Error of a held contact's gap within a step that is allowed, as a fraction of the accuracy.
 const INNER_SHARE: f64 = 0.5;
-/// Error of a connector within a step that is allowed, as a multiple of the error of a step: dense output errs by some
-/// tens of times what ends do, and by much more where connectors determine angles poorly.
+/// Error of a connector within a step that is allowed, as a multiple of the error of a step: dense output errs some
+/// tens of times more than the ends of steps, and much more where connectors determine angles poorly.
 const INNER_ERRORS: f64 = 50.0;
 /// Place in a step, as a fraction of it, at which the errors of connectors are read.
 const MIDDLE: f64 = 0.5;
@@ -527,7 +527,7 @@ mod tests {
         // It falls by 8 N along the step, and to begin with no more than four times as fast.
         assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
         assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
-        // What starts without force is looked at once.
+        // A contact that starts without force is looked at at once.
         assert_eq!(firm_part(0.0, 5.0), Some(0.0));
         assert_eq!(firm_part(0.0, 0.0), Some(0.0));
     }
@@ -555,7 +555,7 @@ mod tests {
             system.queue.time_of(system.source_id(Source::Group(leader))),
             Some(group.start.plus(offset))
         );
-        // What is found for a time that has gone by happens now.
+        // An event found for a time that has gone by happens now.
         let mut group = system.groups.take(leader).expect("it goes on");
         let late = 2.0 * group.span;
         (group.event, group.look) = (None, Some(late));

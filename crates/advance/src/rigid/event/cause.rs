@@ -19,7 +19,7 @@ pub(crate) enum Cause {
     Taut(ConnectorId),
     /// A contact has run off its features: its neighbours take over, if they touch.
     RunOff(Touch),
-    /// A contact has lost its force: a small force found on it now may come from others having moved meanwhile.
+    /// A contact has lost its force: a small force found on it now may come from the motion of other bodies meanwhile.
     Released(Touch),
     /// Sunk contacts are put back, where contacts carry impulses only.
     Tick,

@@ -57,7 +57,8 @@ pub(crate) struct ConnectorState {
     /// Time at which a rope goes taut; `None` if it does not while the motions are known, or the search has not come so
     /// far.
     taut: Option<Time>,
-    /// Excess [m] over its length at which a rope goes taut that is at its length and does not tighten.
+    /// Excess length [m] that a rope is given while it is at its length and does not tighten: it goes taut at the sum
+    /// of both.
     slack: f64,
     /// True if it is unilateral and held: its row then takes part in events at any gap.
     held: bool,

@@ -147,7 +147,8 @@ impl RigidSystem {
         is_still && only_rows && self.laws.of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
     }
 
-    /// Stops the velocity of a point across the side along which it leaves a corner: it is too slow for an impact.
+    /// Stops the velocity of a point across the side along which it leaves a corner; that velocity is too slow for an
+    /// impact.
     fn stop_across(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
         let (now, rest) = (self.now, self.rest_speed());
         let mut records = work.region.records.iter();

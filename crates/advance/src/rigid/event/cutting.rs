@@ -18,7 +18,8 @@ use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_geometry::Relation;
 
-/// Error of the gap that fired, as a fraction of the accuracy, above which an event's time is corrected.
+/// Error of the gap of the contact, rope or stop that fired above which an event's time is corrected, as a fraction of
+/// the accuracy.
 const TIME_SHARE: f64 = 1e-2;
 /// Largest number of corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
@@ -56,8 +57,8 @@ impl RigidSystem {
         }
     }
 
-    /// Cuts the groups of a region by repeated steps, at the time at which the gap that fired is that which the search
-    /// saw [m]; returns this time.
+    /// Cuts the groups of a region by repeated steps, at the time at which the contact, rope or stop that fired has the
+    /// gap [m] that the search saw; returns this time.
     fn cut_exactly(&mut self, region: &Region, gap: Option<f64>) -> Time {
         let mut time = self.now;
         for round in 0..=MOST_CORRECTIONS {
@@ -80,8 +81,8 @@ impl RigidSystem {
         time
     }
 
-    /// Corrected time, at which the gap that fired is that wanted [m]; `None` if it is near enough at the given time,
-    /// or closes too slowly to tell.
+    /// Corrected time, at which the contact, rope or stop that fired has the gap wanted [m]; `None` if it has nearly
+    /// that at the given time, or closes too slowly to tell.
     fn corrected(&self, cause: Cause, wanted: Option<f64>, time: Time) -> Option<Time> {
         let (gap, rate) = self.gap_of_cause(cause, time)?;
         let error = gap - wanted?;
@@ -108,7 +109,7 @@ impl RigidSystem {
         contacts.min()
     }
 
-    /// True if touching features of a region are not where the search saw them: the gap that fired, seen at a gap [m],
+    /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
     /// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
     fn is_off(&self, region: &Region, gap: Option<f64>, time: Time) -> bool {
         let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;

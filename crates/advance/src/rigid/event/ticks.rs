@@ -38,7 +38,7 @@ const FIRST_SHARE: f64 = 0.6;
 const DEEPEST_SHARE: f64 = 0.9;
 /// Fraction of the room by which a pair may sink further whenever it fires again, slowly.
 const FURTHER_SHARE: f64 = 1.0 / 96.0;
-/// Multiple of the room below which features lie on the far side of a body.
+/// Multiple of the room: features that are deeper lie on the far side of a body.
 const BEHIND: f64 = 1.25;
 /// Fraction of the room beyond which a fast pair has sunk, rather than just been seen.
 const DEEP_SHARE: f64 = 0.3;
@@ -132,9 +132,9 @@ impl RigidSystem {
         of_bodies.max(accuracy / FIRST_SHARE) + velocity_tol * step
     }
 
-    /// Gap [m] at which a contact without force fires that has a gap now and does not open. Forces on its bodies, or
-    /// their turning, may press on at once a contact that was stopped below its zone until it is put back: it may go a
-    /// fraction of the way that is left to the depth beyond which it sinks no further.
+    /// Gap [m] at which a contact without force that does not open fires, by its present gap [m]. Forces on its bodies,
+    /// or their turning, may press on at once a contact that was stopped below its zone until it is put back: it may go
+    /// a fraction of the way that is left to the depth beyond which it sinks no further.
     pub(crate) fn sinks_to(&self, touch: Touch, gap: f64) -> f64 {
         let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
         if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {

@@ -12,8 +12,8 @@ use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
 use halfgap_geometry::Aabb;
 
-/// Number of neighbours above which a box shrinks. Fewer cost more moves of boxes in a gas, more cost more predictions:
-/// from 8 to 14 there is little between them.
+/// Number of neighbours above which a box shrinks. Fewer neighbours cost more moves of boxes in a gas, more cost more
+/// predictions: from 8 to 14 there is little between them.
 const MANY: usize = 10;
 /// Number of neighbours below which a box grows.
 const FEW: usize = 5;
@@ -24,7 +24,7 @@ const FACTOR: f64 = 1.5;
 const AHEAD: f64 = 0.6;
 /// Least margin as a multiple of the body's reach.
 const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
-/// Largest margin as a multiple of the body's reach, beyond all coordinates: under a lower bound a body that flies off,
+/// Largest margin as a multiple of the body's reach, beyond all coordinates: with a smaller one a body that flies off,
 /// or is small and far from all others, as a moon, would leave its boxes without end.
 const LARGEST_MARGIN: f64 = 1e80;
 

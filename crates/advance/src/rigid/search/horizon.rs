@@ -35,7 +35,7 @@ impl RigidSystem {
         self.search.first_contacts[body.index()] = Time::NEVER;
     }
 
-    /// Bodies of a group share an entry: what changes the motion of one changes that of all.
+    /// Index of a body's entry. Bodies of a group share one: a change of one's motion is a change of all.
     fn slot(&self, body: BodyId) -> usize {
         self.groups.leader_of[body.index()].unwrap_or(body).index()
     }

@@ -48,7 +48,7 @@ pub(crate) struct PairPast {
     rules: Vec<FeatureRule>,
     /// Feature pairs that have touched lately.
     seen: Vec<Seen>,
-    /// Number of contacts handled after one another without time going by, less one.
+    /// Number of contacts handled without time going by since the first of them.
     pub(crate) repeats: u32,
     /// Time of the last contact.
     pub(crate) last_contact: Option<Time>,

@@ -109,7 +109,8 @@ impl RigidSystem {
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
 
-    /// Searches from a time on for the next contact of a pair; `disc` is its first body in flight, if that is a disc.
+    /// Searches from a time on for the next contact of a pair; `disc` is the flight of the body that the link starts
+    /// from, if that is a disc.
     #[inline]
     fn predict_from(&mut self, from: Time, disc: Option<&DiscAt>, link: Link) {
         match disc.and_then(|disc| self.look_at_discs(from, disc, link)) {

@@ -20,14 +20,14 @@ impl RigidSystem {
         self.settings.tolerances.sink()
     }
 
-    /// Gap [m] at which a contact without force fires again that has a gap now.
+    /// Gap [m] at which a contact without force fires again, by its present gap [m].
     pub(crate) fn refire_gap(&self, gap: f64) -> f64 {
         (gap - self.sink()).min(self.settings.tolerances.target_gap)
     }
 
-    /// Gap [m] at which an opening contact fires: the target of any pair, however low the halos of its bodies. When
-    /// others are brought to the gaps at which they are held, it may be moved so deep that the search would take it for
-    /// the far side of a body, and it may come back before it is out: such a contact fires where it lies.
+    /// Gap [m] at which an opening contact fires: the target of any pair, however low the halos of its bodies. A
+    /// contact may have been moved so deep, as others were brought to the gaps at which they are held, that the search
+    /// would take it for the far side of a body, and it may come back before it is out: it fires where it lies.
     fn returns_to(&self, touch: Touch) -> f64 {
         let [a, b] = [0, 1]
             .map(|side: usize| self.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
