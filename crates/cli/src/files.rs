@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use halfgap::picture::{ScenePictures, energy_picture, events_picture};
-use halfgap::{Frame, Recording, RunResult, World};
+use halfgap::{Frame, Recording, RunError, RunResult, World};
+use halfgap_contact::ContactFile;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -41,6 +42,24 @@ pub(crate) fn write_all(
     remove_further(folder, evenly(&recording.frames, pictures).count())?;
     write(folder, "energy.svg", |out| out.write_all(energy_picture(recording).as_bytes()))?;
     write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))
+}
+
+/// Name of the contact problem that stopped a run, in its folder.
+pub(crate) const PROBLEM: &str = "problem.json";
+
+/// Writes the contact problem that stopped a run, if that is why it stopped; true if there is one. One that an earlier run
+/// has left is removed.
+pub(crate) fn write_problem(folder: &Path, error: Option<&RunError>) -> Result<bool, Failure> {
+    let path = folder.join(PROBLEM);
+    let Some(RunError::Contacts { problem, .. }) = error else {
+        if path.exists() {
+            std::fs::remove_file(&path).map_err(|error| Failure::Write(path, error))?;
+        }
+        return Ok(false);
+    };
+    let text = ContactFile::of(problem).to_json();
+    write(folder, PROBLEM, |out| writeln!(out, "{}", text.map_err(io::Error::other)?))?;
+    Ok(true)
 }
 
 fn picture_name(index: usize) -> String {

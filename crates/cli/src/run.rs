@@ -45,6 +45,8 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     let written = options.out.as_ref().map_or(Ok(()), |folder| {
         files::write_all(folder, &world, &report.recording, &result, options.pictures)
     });
+    let problem =
+        options.out.as_ref().map_or(Ok(false), |folder| files::write_problem(folder, report.error.as_ref()));
     let printed = match (options.json, options.quiet) {
         (true, _) => output::print(&format!("{}\n", result.to_json())),
         (false, false) => output::print(&table::of_result(&result)),
@@ -56,7 +58,12 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     if let Some(error) = &report.error {
         eprintln!("error: {}: stopped early at t = {} s: {error}", options.scene.display(), result.time);
     }
+    if let (Ok(true), Some(folder)) = (&problem, &options.out) {
+        let path = folder.join(files::PROBLEM);
+        eprintln!("note: `halfgap solve {}` explains the contact problem that has no answer", path.display());
+    }
     written?;
+    problem?;
     printed?;
     Ok(if report.error.is_none() { End::Done } else { End::Stopped })
 }

@@ -1,6 +1,6 @@
-//! A spinning capsule is thrown at a disc: when and where do they first touch?
+//! First contact of a spinning capsule, thrown at a disc: its time, place and record.
 //!
-//! `cargo run -p halfgap-collision --example first_contact`
+//! Run it with `cargo run -p halfgap-collision --example first_contact`.
 
 use glam::DVec2;
 use halfgap_collision::{
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let turns = flight.state_at(time).angle / std::f64::consts::TAU;
     println!("The capsule touches the disc after {time:.9} s and {turns:.2} turns.\n");
 
-    // The record of that moment: what a contact solver would be given.
+    // The record of that moment, as a contact solver would get it.
     let a = Moment { id: BodyId(0), body: &capsule, moving: flight.moving_at(time) };
     let b = Moment { id: BodyId(1), body: &disc, moving: rest.moving_at(time) };
     let mut records = Vec::new();

@@ -1,4 +1,4 @@
-//! A body as collisions see it: a shape about its centre of mass, its inertia, its bounciness.
+//! A body as collisions see it: a shape about its centre of mass, its inertia and its elasticity.
 
 use crate::motion::BodyState;
 use halfgap_geometry::Shape;
@@ -11,10 +11,10 @@ impl BodyId {
     /// The immovable background, to which connectors may tie a body: no body of the world, with the pose of the origin.
     pub const WORLD: BodyId = BodyId(u32::MAX);
 
-    /// The body at a place in a list of bodies.
+    /// The id of the body at an index of a list of bodies.
     ///
     /// # Panics
-    /// If the list is so long, 2^32 - 1 bodies or more, that this would be the background or no number at all.
+    /// If the index is 2^32 - 1, which stands for the background, or more.
     #[must_use]
     #[inline]
     pub fn from_index(index: usize) -> Self {
@@ -29,7 +29,7 @@ impl BodyId {
         self == Self::WORLD
     }
 
-    /// The index as a number to look up with.
+    /// The index as a `usize`, for lists of bodies.
     #[must_use]
     #[inline]
     pub fn index(self) -> usize {
@@ -46,18 +46,20 @@ pub struct Body {
     pub inverse_mass: f64,
     /// 1/moment of inertia about the centre of mass [1/(kg m^2)]; 0 for a fixed body.
     pub inverse_moment: f64,
-    /// Share of the closing speed with which the body leaves an impact, 0 to 1; a pair uses the lesser.
+    /// Coefficient of restitution [-], 0 to 1: the fraction of the closing speed that remains after an impact. A pair
+    /// of bodies uses the lesser of the two.
     pub elasticity: f64,
 }
 
 impl Body {
-    /// True for a body that nothing moves.
+    /// True for a fixed body: both its inverse mass and its inverse moment are 0.
     #[must_use]
     pub fn is_fixed(&self) -> bool {
         self.inverse_mass == 0.0 && self.inverse_moment == 0.0
     }
 
-    /// Kinetic energy \[J\] in a state; none of what nothing moves.
+    /// Kinetic energy \[J\] in a state. Translation counts as 0 if the inverse mass is 0, rotation if the inverse
+    /// moment is.
     #[must_use]
     pub fn kinetic_energy(&self, state: &BodyState) -> f64 {
         let part = |square: f64, inverse: f64| if inverse > 0.0 { 0.5 * square / inverse } else { 0.0 };

@@ -1,30 +1,30 @@
-//! Which bodies are near each other: a dynamic tree of fat boxes.
+//! A dynamic tree of fat boxes, which finds the bodies near a box.
 //!
-//! Each body has a box with room to move; only when it leaves the box is the tree touched. A query costs the
-//! logarithm of the number of bodies plus what it finds. The tree chooses where to insert by the least growth
+//! Each body has a box with room to move; only when it leaves the box does the tree change. A query costs the logarithm
+//! of the number of bodies plus the number of bodies found. The tree chooses where to insert by the least growth
 //! of half perimeters (J. Goldsmith and J. Salmon, "Automatic creation of object hierarchies for ray
 //! tracing", 1987), swaps a child with a niece where that makes boxes smaller (A. Kensler, "Tree rotations
 //! for improving bounding volume hierarchies", 2008), and lifts the higher child where it becomes lopsided,
 //! as an AVL tree does, so that its height stays logarithmic.
 //!
-//! A node keeps the boxes of its children, and bodies have no nodes: with thousands of bodies what costs is
-//! how many places in memory are looked at.
+//! A node keeps the boxes of its children, and bodies have no nodes: with thousands of bodies the number of places in
+//! memory that are read decides the cost.
 
 use crate::body::BodyId;
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
-/// Heights of two children may differ by so much: small boxes matter more than perfect balance.
+/// Largest difference of the heights of two children [levels]: small boxes matter more than perfect balance.
 const LOPSIDED: u32 = 4;
-/// Nodes and bodies for which a search has room to begin with.
+/// Number of nodes, and of bodies, for which a search reserves room at first.
 const FIRST_ROOM: usize = 16;
 
-/// A child of a node, or the root: another node, or a body.
+/// Reference to a child of a node, or to the root: another node, or a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Link(u32);
 
 impl Link {
-    /// Set where it is a body.
+    /// Bit that marks a body.
     const BODY: u32 = 1 << 31;
 
     fn of_node(index: u32) -> Self {
@@ -40,20 +40,20 @@ impl Link {
         self.0 & Self::BODY != 0
     }
 
-    /// The number of the body or node.
+    /// Index of the body or node.
     #[inline]
     fn index(self) -> usize {
         (self.0 & !Self::BODY) as usize
     }
 
-    /// The node, unless it is a body.
+    /// Index of the node; `None` for a body.
     #[inline]
     fn node(self) -> Option<usize> {
         (!self.is_body()).then_some(self.index())
     }
 }
 
-/// Where something hangs: a side of a node, or nothing at the root.
+/// Place of a child in the tree: a side of a node, or the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Slot {
     node: u32,
@@ -67,23 +67,23 @@ impl Slot {
         Self { node: number(node), side: number(side) }
     }
 
-    /// The node and the side, below the root.
+    /// Indices of the node and of its side; `None` for the root.
     #[inline]
     fn place(self) -> Option<(usize, usize)> {
         (self != Self::ROOT).then_some((self.node as usize, self.side as usize))
     }
 }
 
-/// A child: its box, what it is, and the levels below it.
+/// A child of a node: its box, its reference, and the number of levels below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Child {
     bounds: Aabb,
     link: Link,
-    /// 0 for a body.
+    /// Number of levels below; 0 for a body.
     height: u32,
 }
 
-/// Two lines of the cache that are read together.
+/// A node with its two children, aligned to two lines of the cache that are read together.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(128))]
 struct Node {
@@ -101,7 +101,7 @@ impl Node {
     }
 }
 
-/// The box of a body and where it hangs.
+/// The box of a body and its place in the tree.
 #[derive(Clone, Copy, Debug)]
 struct Leaf {
     bounds: Aabb,
@@ -114,7 +114,7 @@ pub struct BroadPhase {
     nodes: Vec<Node>,
     root: Option<Link>,
     free: Vec<usize>,
-    /// Nodes whose children a search looks at, one level after another.
+    /// Nodes whose children a search tests, one level after another.
     frontier: Vec<u32>,
     /// Leaf of each body, by index.
     leaves: Vec<Option<Leaf>>,
@@ -127,29 +127,29 @@ impl BroadPhase {
         Self::default()
     }
 
-    /// The box of a body, if it has one.
+    /// The box [m] of a body; `None` if it has none.
     #[must_use]
     pub fn bounds(&self, body: BodyId) -> Option<&Aabb> {
         self.leaves.get(body.index())?.as_ref().map(|leaf| &leaf.bounds)
     }
 
-    /// Gives a body its box [m], in place of the one it had.
+    /// Sets the box [m] of a body, in place of the one it had, if any.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
         if self.leaves.len() <= body.index() {
             self.leaves.resize(body.index() + 1, None);
         }
-        // A box that moves seldom goes far: the search for its new place begins where it was.
+        // A box that moves seldom goes far: the search for its new place begins at its old one.
         let near = self.take_out(body).map(|sibling| self.least_around(sibling, &bounds));
         self.insert(body, bounds, near);
     }
 
-    /// Takes a body's box away, as of one that leaves the scene, which none does in the layers above; nothing
-    /// happens if it has none.
+    /// Removes the box of a body, such as one that leaves the scene (which none does in the layers above). Does nothing
+    /// if the body has no box.
     pub fn remove(&mut self, body: BodyId) {
         self.take_out(body);
     }
 
-    /// Takes a body's box away; what was beside it, if there was anything.
+    /// Removes the box of a body and returns its sibling, if there was one.
     fn take_out(&mut self, body: BodyId) -> Option<Link> {
         let leaf = self.leaves.get_mut(body.index()).and_then(Option::take)?;
         let Some((parent, side)) = leaf.slot.place() else {
@@ -163,7 +163,7 @@ impl BroadPhase {
         Some(sibling.link)
     }
 
-    /// The least box around a child that holds the given one, or the root.
+    /// The lowest of a child and its ancestors whose box contains the given one; the root if none does.
     fn least_around(&self, mut link: Link, bounds: &Aabb) -> Link {
         while let Some((node, side)) = self.slot_of(link).place() {
             if self.nodes[node].children[side].bounds.contains(bounds) {
@@ -174,7 +174,8 @@ impl BroadPhase {
         link
     }
 
-    /// Finds every body whose box overlaps the given one, the higher in the tree the earlier.
+    /// Replaces the contents of `found` by all bodies whose boxes overlap the given one [m], in the order of their
+    /// levels from the root down.
     pub fn find_overlapping(&mut self, bounds: &Aabb, found: &mut Vec<BodyId>) {
         found.clear();
         let Some(root) = self.root else { return };
@@ -183,8 +184,8 @@ impl BroadPhase {
             found.extend(self.bounds(body).filter(|own| own.overlaps(bounds)).map(|_| body));
             return;
         }
-        // Level by level: which nodes come next is known long before their boxes have come from memory. What
-        // overlaps cannot be foretold: everything is written down, and kept if it does.
+        // Level by level: the next nodes are known long before their boxes have come from memory. Whether boxes overlap
+        // is unpredictable: every child is written down without a branch, and kept if it overlaps.
         let (mut next, mut end, mut count) = (0, 1, 0);
         self.frontier.resize(self.frontier.len().max(FIRST_ROOM), 0);
         self.frontier[0] = root.0;
@@ -224,7 +225,7 @@ impl BroadPhase {
         }
     }
 
-    /// Hangs something where there may have been something else.
+    /// Puts a child into a slot, in place of the child that may have been there.
     fn hang(&mut self, child: Child, slot: Slot) {
         match child.link.node() {
             Some(node) => self.nodes[node].slot = slot,
@@ -236,13 +237,13 @@ impl BroadPhase {
         }
     }
 
-    /// A node as its parent sees it.
+    /// The entry of a node among its parent's children.
     fn as_child(&self, node: usize) -> Child {
         let here = &self.nodes[node];
         Child { bounds: here.bounds(), link: Link::of_node(number(node)), height: here.height() }
     }
 
-    /// Inserts a body below a place in the tree, or below the root.
+    /// Inserts a body below a child or, without one, below the root.
     fn insert(&mut self, body: BodyId, bounds: Aabb, below: Option<Link>) {
         let own = Child { bounds, link: Link::of_body(body), height: 0 };
         let Some(below) = below.or(self.root) else {
@@ -258,7 +259,7 @@ impl BroadPhase {
         self.refit_from(above);
     }
 
-    /// What hangs somewhere.
+    /// The child that a link refers to, with its box and height.
     fn child(&self, link: Link) -> Child {
         match (self.slot_of(link).place(), link.node()) {
             (Some((node, side)), _) => self.nodes[node].children[side],
@@ -270,7 +271,7 @@ impl BroadPhase {
         }
     }
 
-    /// Descends from a child to where a new box makes the boxes above grow least.
+    /// Descends from a child to the sibling for which a new box makes the boxes above grow least.
     fn best_sibling(&self, mut child: Child, bounds: &Aabb) -> Child {
         while let Some(node) = child.link.node() {
             let here = &self.nodes[node];
@@ -285,7 +286,7 @@ impl BroadPhase {
         child
     }
 
-    /// Mends boxes, heights and balance from a node up to the root, or to where nothing changes any more.
+    /// Updates boxes, heights and balance from a node up to the root, or until nothing changes any more.
     fn refit_from(&mut self, mut slot: Slot) {
         while let Some((node, _)) = slot.place() {
             slot = self.nodes[node].slot;
@@ -299,7 +300,7 @@ impl BroadPhase {
         }
     }
 
-    /// Swaps a child with a child of the other where that shrinks the other's box.
+    /// Swaps one child of a node with a child of the other one, if that shrinks the other's box.
     fn swap_with_niece(&mut self, node: usize) {
         let children = self.nodes[node].children;
         let mut best = (0.0, 0, 0);
@@ -323,8 +324,8 @@ impl BroadPhase {
         self.hang(self.as_child(other), Slot::new(node, 1 - side));
     }
 
-    /// Rotates the higher child up if the two differ by much; returns the root of the subtree, which is to
-    /// hang where the node did.
+    /// Rotates the higher child up if the heights differ by more than [`LOPSIDED`]; returns the root of the subtree,
+    /// which has to take the node's place.
     fn balance(&mut self, node: usize) -> usize {
         let [left, right] = self.nodes[node].children;
         let side = usize::from(right.height > left.height);
@@ -342,13 +343,13 @@ impl BroadPhase {
     }
 }
 
-/// By how much the boxes from a child on grow at least if a new one goes below it.
+/// Least growth [m] of half perimeters, from a child down, if a new box goes below it.
 fn descent_cost(child: &Child, bounds: &Aabb) -> f64 {
     let together = child.bounds.union(*bounds).half_perimeter();
     if child.link.is_body() { together } else { together - child.bounds.half_perimeter() }
 }
 
-/// An index as it is kept: bodies are counted in 32 bits, and a tree has fewer nodes than bodies.
+/// An index in 32 bits: bodies are counted in as many, and a tree has fewer nodes than bodies.
 #[inline]
 fn number(index: usize) -> u32 {
     debug_assert!(u32::try_from(index).is_ok());
@@ -360,7 +361,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    /// A cheap generator of places that look random.
+    /// A cheap generator of pseudo-random places.
     fn place(index: u32) -> DVec2 {
         let turn = f64::from(index) * 0.618_033_988_749_895;
         DVec2::new(turn.fract() * 100.0, (turn * 7.1).fract() * 100.0)

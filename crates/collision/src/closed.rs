@@ -10,29 +10,29 @@ use crate::tolerances::rounding;
 use glam::DVec2;
 use halfgap_geometry::{Feature, LineFeature, PairKind, Pose, RoundFeature, touching_distance};
 
-/// The gap of a feature pair, less its target, as c + v t + a t^2/2 in some unit whose zero is the target.
+/// The gap of a feature pair, less its target, as c + v t + a t^2/2 in a unit that is zero at the target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quadratic {
     c: f64,
     v: f64,
     a: f64,
-    /// v^2 - 2 a c.
+    /// The discriminant v^2 - 2 a c.
     discriminant: f64,
-    /// The unit of c per metre of gap near the target: turns c back into a distance.
+    /// Units of c per metre of gap near the target: c over it is a distance [m].
     scale: f64,
-    /// A rate below this is rounding.
+    /// Rounding of v, in its unit: a smaller rate is rounding only.
     v_rounding: f64,
 }
 
 impl Quadratic {
-    /// First time at which the pair is at or below its target and closes.
+    /// First time [s] at which the pair is at or below its target and closes; `None` if it never does.
     ///
     /// A pair that starts deeper than `depth` [m] lies behind: it must rise to its target before it can close to it.
     #[inline]
     pub(crate) fn first_closing(&self, depth: f64) -> Option<f64> {
         let deepest = -depth * self.scale;
         if self.c < deepest {
-            // A rate that is only rounding does not make it rise.
+            // A rate that is only rounding does not count as rising.
             let rises = self.v > self.v_rounding
                 && self.a < 0.0
                 && self.c - 0.5 * self.v * self.v / self.a >= deepest;
@@ -49,7 +49,7 @@ impl Quadratic {
         }
     }
 
-    /// Until when a pair that closes at a time goes on to do so, and is no deeper than `depth` [m].
+    /// Time [s] up to which a pair that closes at `time` [s] goes on closing and is no deeper than `depth` [m].
     pub(crate) fn closes_until(&self, time: f64, depth: f64) -> f64 {
         let (c, v) = (self.c + (self.v + 0.5 * self.a * time) * time, self.v + self.a * time);
         let turns = if self.a > 0.0 { (-v / self.a).max(0.0) } else { f64::INFINITY };
@@ -57,10 +57,10 @@ impl Quadratic {
         time + turns.min(is_deep)
     }
 
-    /// [`Self::first_closing`] of two centres outside of each other, for which a is not negative; infinite if
+    /// [`Self::first_closing`] [s] of two centres outside of each other, for which a is not negative; infinite if
     /// there is none.
     ///
-    /// Whether two discs near each other meet cannot be foretold: apart from those that touch already, they are judged
+    /// Whether two discs near each other meet is unpredictable: except for discs that touch already, this is computed
     /// without branches.
     #[inline]
     pub(crate) fn first_meeting(&self, depth: f64) -> f64 {
@@ -73,7 +73,8 @@ impl Quadratic {
     }
 }
 
-/// The quadratic of a feature pair, if it has one; `offsets` [s] say where in their motions the bodies start.
+/// The quadratic of a feature pair, `None` if it has none. `offsets` [s] are the offsets in the two motions at t = 0,
+/// `target` [m] is the target gap.
 pub(crate) fn quadratic<A: Motion, B: Motion>(
     kind: PairKind,
     (feature_a, motion_a): (&Feature, &A),
@@ -100,7 +101,7 @@ pub(crate) fn quadratic<A: Motion, B: Motion>(
     }
 }
 
-/// The parabola of a feature's centre, if it follows one.
+/// The parabola of a feature's centre from `offset` [s] on; `None` if it follows another curve.
 fn center_path<M: Motion>(round: &RoundFeature, motion: &M, offset: f64) -> Option<Polynomial> {
     let body = motion.polynomial_from(offset)?;
     if round.center == DVec2::ZERO {
@@ -112,7 +113,8 @@ fn center_path<M: Motion>(round: &RoundFeature, motion: &M, offset: f64) -> Opti
     })
 }
 
-/// The quadratic of two centres on parabolas, whose discs have radii of the given sum [m].
+/// The quadratic of two centres on parabolas, `radii` [m] being the sum of the signed radii, `target` [m] the target
+/// gap. `None` if their accelerations differ.
 #[inline]
 pub(crate) fn of_centers(
     a: &Polynomial,
@@ -133,8 +135,8 @@ pub(crate) fn of_centers(
     let distance = d.length();
     let c = sign * (distance - reach) * (distance + reach);
     let (v, a) = (2.0 * sign * d.dot(u), 2.0 * sign * u.length_squared());
-    // v^2 - 2 a c is 4 (|u|^2 reach^2 - (d x u)^2): so the distance at which the centres pass keeps its digits, however
-    // far away they are now and however small the radii.
+    // v^2 - 2 a c is 4 (|u|^2 reach^2 - (d x u)^2): in this form the distance at which the centres pass keeps its
+    // digits, however far away they are now and however small the radii.
     let (near, pass) = (u.length() * reach, d.perp_dot(u).abs());
     let discriminant = 4.0 * (near - pass) * (near + pass);
     let v_rounding = 2.0 * distance * rounding(speeds);

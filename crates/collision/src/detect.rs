@@ -11,16 +11,17 @@ use halfgap_geometry::{Feature, FeatureId, FeatureKind, GapSample, Shape, touchi
 /// A body at the moment of detection.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// Which body.
+    /// Id of the body.
     pub id: BodyId,
-    /// What it is.
+    /// Shape, inertia and elasticity of the body.
     pub body: &'a Body,
-    /// Where it is and how it moves.
+    /// Pose and velocities of the body.
     pub moving: Moving,
 }
 
-/// Adds to `found` a record for every place where the two bodies are within `distance_tol` of each other,
-/// overlapping by at most `depth` [m]; the same place found twice is recorded once.
+/// Adds to `found` a record for every place where the two bodies are within `distance_tol` of each other, overlapping
+/// by at most `depth` [m], at the time [s] of the two moments. A place found by several pairs of features is recorded
+/// once.
 pub fn detect_pair(
     a: &Moment<'_>,
     b: &Moment<'_>,
@@ -38,7 +39,8 @@ pub fn detect_pair(
     }
 }
 
-/// As [`detect_pair`], but a place found by several pairs of features is recorded for each of them.
+/// Adds to `found` the records of [`detect_pair`], except that a place found by several pairs of features is recorded
+/// for each of them.
 pub fn detect_features_of_pair(
     a: &Moment<'_>,
     b: &Moment<'_>,
@@ -64,9 +66,11 @@ pub fn detect_features_of_pair(
     );
 }
 
-/// The record of one pair of features, wherever on them its contact is and however far they are apart: of a
-/// pair that a search says is in contact. `None` if the two cannot touch inside their ranges, as corners so
-/// near each other that the direction between them is all rounding, and not such that they touch.
+/// Returns the record at `time` [s] of one pair of features that a search found in contact, wherever on the features
+/// the contact lies and however far apart they are.
+///
+/// `None` if the two cannot touch inside their ranges, or if they are two vertices so near each other that the
+/// direction between them may be all rounding: one that lies outside of a normal cone by more than 0.1 rad.
 #[must_use]
 pub fn record_features(
     [a, b]: [&Moment<'_>; 2],
@@ -136,7 +140,8 @@ fn detector(kinds: [FeatureKind; 2]) -> Detector {
     }
 }
 
-/// The thresholds of a pair of features: a convex arc in a hollow barely larger has its own.
+/// Returns the thresholds of a pair of features: the given ones, or lesser ones for a vertex or convex arc in a barely
+/// larger concave arc (see [`Tolerances::for_clearance`]).
 #[must_use]
 pub fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tolerances {
     match (a, b) {
@@ -147,11 +152,11 @@ pub fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tol
     }
 }
 
-/// True if the contact lies within both features, or outside by so little that it cannot be told.
+/// True if the contact lies within both features, or outside by no more than the accuracy.
 ///
 /// A vertex outside of its normal cone is not the nearest point of its body: its neighbour along an edge is.
-/// While the neighbour is nearer by less than the accuracy, both touch: so a block lands flat on two corners.
-/// An angle outside of a range makes up the accuracy over the feature's lever.
+/// While the neighbour is nearer by less than the accuracy, both touch; thus a block lands flat on two corners.
+/// An angle outside of a range counts as a distance: the angle times the feature's lever.
 fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &Tolerances) -> bool {
     let excess = if sample.primary_is_a {
         [sample.excess_primary, sample.excess_normal]
@@ -163,9 +168,9 @@ fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &T
     sample.overrun <= tolerances.accuracy && leans(0) && leans(1)
 }
 
-/// Lengths [m] over which angles outside of the ranges of two features that touch become distances: the
-/// levers of both, but that of a corner on a line is no longer than the line. So far at most the two bodies
-/// lie flat on each other.
+/// Lengths [m] by which angles outside of the ranges of two touching features are multiplied to become distances: the
+/// [`Shape::lever`]s of both, except that the lever of a vertex on a line is at most the line's length, over which the
+/// two bodies can lie flat on each other.
 #[must_use]
 pub fn contact_levers(sides: [(&Shape, FeatureId); 2]) -> [f64; 2] {
     let [own, other] = sides.map(|(shape, id)| shape.lever(id));

@@ -1,8 +1,8 @@
-//! The estimate of when a collision's distance reaches its target gap, from two of its states.
+//! Estimate of the time at which a collision's distance reaches its target gap, from two of its states.
 
 use crate::quadratic::first_closing_time;
 
-/// A collision at one of the two moments that an estimate needs.
+/// State of a collision at one of the two moments that an estimate needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatePoint {
     /// Time [s].
@@ -13,8 +13,8 @@ pub struct EstimatePoint {
     pub normal_velocity: f64,
 }
 
-/// Estimates when the distance reaches `target_gap` [m]: between `earlier`, the state after the back-up, and
-/// `later`, the state at which the collision was detected, with the acceleration that the two velocities
+/// Estimates the time [s] at which the distance reaches `target_gap` [m], between `earlier`, the state after the
+/// back-up, and `later`, the state at which the collision was detected, with the acceleration that the two velocities
 /// imply.
 ///
 /// The distance at `later` is not used. `None` if by this estimate the target is not reached in between,

@@ -1,6 +1,6 @@
-//! When do two moving shapes first come so near that a feature pair closes to its target gap?
+//! The first time at which a feature pair of two moving shapes closes to its target gap.
 //!
-//! Nothing is missed: the search moves through windows of time, in each of which bounds on the motion leave
+//! No contact is missed: the search moves through windows of time, in each of which bounds on the motion leave
 //! only feature pairs that can come near; each of these is decided by a closed form or by a march that never
 //! passes a contact.
 
@@ -11,35 +11,35 @@ use crate::motion::{BodyState, Center, Motion, Polynomial};
 use crate::tolerances::Tolerances;
 use halfgap_geometry::{Feature, FeatureId, PairKind, Pose, Shape, pair_kind};
 
-/// Part of the accuracy by which a corner may lean off a line and still fires.
+/// Lean of a corner off a line (angle times lever) at which it still fires, as a fraction of the accuracy [-].
 const LEAN_SHARE: f64 = 1.0 / 16.0;
 
-/// Part of the accuracy by which a contact may lie beyond the end of a line and still fires. The end is then
-/// farther away than the line by the square of this: nothing to be seen.
+/// Distance beyond the end of a line at which a contact still fires, as a fraction of the accuracy [-]. The end is then
+/// farther away than the line only by the order of the square of that distance, which is negligible.
 const OVERRUN_SHARE: f64 = 1.0 / 1024.0;
 
-/// Windows that are searched after a march that came to the end of its steps, each as long as it came.
+/// Number of windows that are searched after a march that used up its steps, the first as long as the time it covered.
 const CREEPING_WINDOWS: u32 = 64;
 
-/// A shape in motion, as the search sees it.
+/// A shape in motion, as a search reads it.
 #[derive(Clone, Copy, Debug)]
 pub struct MovingShape<'a, M> {
     /// The shape in body coordinates.
     pub shape: &'a Shape,
-    /// Its motion.
+    /// The motion of the body.
     pub motion: &'a M,
-    /// Offset [s] in the motion at which the search's time is 0.
+    /// Offset [s] in the motion at time 0 of the search.
     pub offset: f64,
 }
 
 impl<M: Motion> MovingShape<'_, M> {
-    /// Largest distance [m] of a point whose place depends on how the shape is turned: none of a disc about
-    /// the centre of mass.
+    /// Largest distance [m] from the centre of mass of a point that moves when the shape turns: 0 for a disc about the
+    /// centre of mass.
     fn turning_reach(&self) -> f64 {
         if self.shape.centered_disc().is_some() { 0.0 } else { self.shape.reach() }
     }
 
-    /// True if place and velocities are numbers at a time [s] of the search.
+    /// True if position, angle and velocities are finite at a time [s] of the search.
     fn is_finite(&self, time: f64) -> bool {
         let BodyState { position, angle, velocity, angular_velocity } =
             self.motion.state_at(self.offset + time);
@@ -47,27 +47,28 @@ impl<M: Motion> MovingShape<'_, M> {
     }
 }
 
-/// Limits of a search; all but the last two do not change what it finds.
+/// Limits of a search. Only `depth` and `rest` change its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchSettings {
-    /// Steps of one march before the search pauses; the next call goes on from there.
+    /// Number of steps of one march before the search pauses; the next call goes on from there. 0 counts as 1.
     pub march_steps: u32,
-    /// Feature pairs up to which all are tried by closed form over the whole span at once.
+    /// Largest number of feature pairs that are all tried by closed form over the whole span at once.
     pub direct_pairs: usize,
-    /// Feature pairs in a window above which the next window is shorter.
+    /// Number of feature pairs in a window above which the next window is shorter.
     pub crowded: usize,
-    /// Windows of one call of [`search_step`] in which any features are near each other.
+    /// Number of windows with near feature pairs in one call of [`search_step`] before it pauses. 0 counts as 1.
     pub windows: u32,
-    /// Features that overlap by up to this [m] count as touching, if it is more than `distance_tol`; deeper
-    /// ones lie on the far sides of their bodies.
+    /// Overlap [m] up to which features count as touching, or `distance_tol` if that is more; deeper ones lie on the
+    /// far sides of their bodies.
     pub depth: f64,
-    /// A march tells of what lies at its target or below and opens by no more than this [m/s], and, if it is
-    /// not zero, of what has not left its target in all its steps: it would crawl along it.
+    /// Opening rate [m/s] up to which a march still reports a pair at or below its target. If nonzero, a pair that has
+    /// not left its target in all steps of a march is reported too: the march would crawl along it. Closed forms ignore
+    /// it.
     pub rest: f64,
 }
 
 impl SearchSettings {
-    /// What serves most scenes.
+    /// Settings that serve most scenes.
     pub const STANDARD: Self =
         Self { march_steps: 200, direct_pairs: 64, crowded: 8, windows: 4, depth: 0.0, rest: 0.0 };
 }
@@ -89,21 +90,21 @@ pub struct FirstContact {
     pub feature_b: FeatureId,
 }
 
-/// What a search over a span of time found.
+/// Result of a search over a span of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Search {
     /// The first contact.
     Contact(FirstContact),
-    /// Proof that there is none before this time [s].
+    /// Proof that there is no contact before this time [s].
     NoneBefore(f64),
 }
 
 /// Finds the first time in [0, `span`), `span` finite [s], at which a feature pair of the two shapes is at or
 /// below its target gap and closes.
 ///
-/// Pairs that start at their target and open do not count until they close again. Total: ends with a contact
-/// or with `NoneBefore(span)`; of thresholds, or motions at either end, that are not finite nothing is
-/// proven: `NoneBefore(0.0)`.
+/// Pairs that start at their target and open do not count until they close again. The result is a contact or
+/// `NoneBefore(span)`; if a threshold, or a motion at either end, is not finite, nothing is proven, and the result is
+/// `NoneBefore(0.0)`.
 #[must_use]
 pub fn first_contact<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
@@ -126,8 +127,9 @@ pub fn first_contact<A: Motion, B: Motion>(
     }
 }
 
-/// Goes on with a search from a time [s] before which there is known to be no contact; may pause early, with proof for
-/// the part it has searched. Every call makes progress.
+/// Continues a search from a time `from` [s], before which there must be no contact, up to `span` [s].
+///
+/// It may pause early, with proof for the part it has searched. Every call makes progress.
 #[must_use]
 pub fn search_step<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
@@ -140,7 +142,7 @@ pub fn search_step<A: Motion, B: Motion>(
     PairSearch { a, b, tolerances, settings, rules: &[] }.step(from, span)
 }
 
-/// How one pair of features is searched that is not to be searched like all others.
+/// Exception for one pair of features in a search: another target gap, or no search at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeatureRule {
     /// Feature of the first and of the second shape.
@@ -149,8 +151,8 @@ pub struct FeatureRule {
     pub target: Option<f64>,
 }
 
-/// [`first_contact`] of two discs about their centres of mass, given as parabola and radius [m], without a
-/// look at their shapes; `None` if it has no closed form.
+/// Finds the [`first_contact`] in [0, `span`) [s] of two discs about their centres of mass, each given as parabola and
+/// radius [m] instead of a shape; `None` if there is no closed form, because the accelerations differ.
 #[must_use]
 #[inline]
 pub fn disc_contact(
@@ -175,15 +177,15 @@ pub struct PairSearch<'a, A, B> {
     pub a: &'a MovingShape<'a, A>,
     /// The second shape.
     pub b: &'a MovingShape<'a, B>,
-    /// When a pair counts as touching.
+    /// Thresholds of touching.
     pub tolerances: &'a Tolerances,
     /// Limits of the search.
     pub settings: &'a SearchSettings,
-    /// Feature pairs that are searched otherwise: contacts that are held already, or have just opened.
+    /// Exceptions for single feature pairs, such as contacts that are held already or have just opened.
     pub rules: &'a [FeatureRule],
 }
 
-/// The earliest contact so far, and how far everything has been searched.
+/// The earliest contact so far, and the time up to which all pairs have been searched.
 struct Progress {
     contact: Option<FirstContact>,
     /// No contact before this time [s], other than `contact`.
@@ -213,7 +215,8 @@ impl Progress {
 }
 
 impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
-    /// Goes on from a time [s] before which there is known to be no contact; see [`search_step`].
+    /// Continues the search from a time `from` [s], before which there must be no contact, up to `span` [s]; see
+    /// [`search_step`].
     #[must_use]
     pub fn step(&self, from: f64, span: f64) -> Search {
         if self.is_left_alone() {
@@ -222,20 +225,20 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         self.directly(from, span).unwrap_or_else(|| self.by_windows(from, span))
     }
 
-    /// True if there is one pair of features, which is not searched.
+    /// True if the shapes have only one pair of features, and a rule excludes it.
     fn is_left_alone(&self) -> bool {
         let is_only = self.a.shape.features().len() == 1 && self.b.shape.features().len() == 1;
         is_only && self.rules.iter().any(|rule| rule.target.is_none())
     }
 
-    /// True if both centres of mass follow parabolas: of other motions no feature pair has a closed form.
+    /// True if both centres of mass follow parabolas: with other motions no feature pair has a closed form.
     fn is_parabolic(&self, from: f64) -> bool {
         let (a, b) = (self.a, self.b);
         a.motion.polynomial_from(a.offset + from).is_some()
             && b.motion.polynomial_from(b.offset + from).is_some()
     }
 
-    /// At least one: every call makes progress.
+    /// Number of steps of a march, at least one, so that every call makes progress.
     fn march_steps(&self) -> u32 {
         self.settings.march_steps.max(1)
     }
@@ -246,21 +249,22 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         of_rules.fold(self.tolerances.target_gap, f64::max)
     }
 
-    /// The largest distance [m] of two features at which they may fire, beside each other or in each other.
+    /// The largest distance [m] of two features at which they may fire, apart or overlapping.
     fn farthest_touch(&self) -> f64 {
         let of_rules = self.rules.iter().filter_map(|rule| rule.target).map(f64::abs);
         let depth = self.tolerances.distance_tol().max(self.settings.depth);
         of_rules.fold(self.tolerances.target_gap, f64::max) + depth
     }
 
-    /// All feature pairs over the whole span by closed form; `None` if there are many or one has no closed form.
+    /// Searches all feature pairs over the whole span by closed form; `None` if there are too many or one has no closed
+    /// form.
     fn directly(&self, from: f64, span: f64) -> Option<Search> {
         let (features_a, features_b) = (self.a.shape.features(), self.b.shape.features());
         let count = features_a.len() * features_b.len();
         if count > self.settings.direct_pairs || !self.is_parabolic(from) {
             return None;
         }
-        // Most bodies that are neighbours do not meet.
+        // Most neighbouring bodies do not meet.
         if count > 1 && self.skip_far(from, span) >= span {
             return Some(Search::NoneBefore(span));
         }
@@ -278,8 +282,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         Some(progress.into_search())
     }
 
-    /// The contact of one pair after `from` and before `limit` by closed form: outer `None` if it has none, inner if it
-    /// does not touch.
+    /// The contact of one pair between `from` and `limit` [s] by closed form: outer `None` if there is no closed form,
+    /// inner `None` if the pair does not touch.
     fn closed_form(
         &self,
         pair: &Pair<'_>,
@@ -299,7 +303,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         if self.touches_at(pair, time) {
             return Some(Some(contact(time)));
         }
-        // Beside its features it may sink: it touches if it comes upon them before it is too deep for that.
+        // A contact point outside of the features may sink below the target: the pair touches if the point comes upon
+        // the features before it is deeper than `depth`.
         let end = limit.min(from + curve.closes_until(wait, pair.depth));
         if end <= time {
             return Some(None);
@@ -311,14 +316,15 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         }
     }
 
-    /// True if the contact point lies within both features at that time.
+    /// True if the contact point lies within both features at a time [s].
     fn touches_at(&self, pair: &Pair<'_>, time: f64) -> bool {
         let pose_a = self.a.motion.moving_at(self.a.offset + time).pose;
         let pose_b = self.b.motion.moving_at(self.b.offset + time).pose;
         contact_is_within(pair, [&pose_a, &pose_b])
     }
 
-    /// The pair as it is to be searched; `None` if it is not. Inlined, lest it go through memory.
+    /// The pair with its target and thresholds for the search; `None` if it is not searched. Inlined to keep it in
+    /// registers.
     #[inline(always)]
     fn pair<'p>(
         &self,
@@ -331,7 +337,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         let rule = self.rules.iter().find(|rule| rule.features == ids);
         let target = rule.map_or(Some(tolerances.target_gap), |rule| rule.target)?;
         let depth = tolerances.distance_tol().max(self.settings.depth);
-        // What lies behind does so at the same gap, whatever the rule.
+        // A target that a rule raises leaves the gap below which a pair lies behind as it is.
         let depth = depth + (target - tolerances.target_gap).max(0.0);
         let slack = [slack(a, self.a.shape.lever(ids[0]), b), slack(b, self.b.shape.lever(ids[1]), a)];
         let slack = slack.map(|share| share * tolerances.accuracy);
@@ -351,7 +357,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
                 return Search::NoneBefore(span);
             }
             start = near;
-            // A window shorter than the clock resolves: let it be one tick.
+            // A window shorter than the resolution of the clock is made one tick long.
             let end_after = |wanted: f64| span.min(start + wanted).max(start.next_up());
             let over = |end: f64| {
                 Window::new(self.a.motion, self.b.motion, [self.a.offset, self.b.offset], start, end)
@@ -373,14 +379,15 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
             match progress.into_search() {
                 Search::NoneBefore(time) if time >= end => start = end,
                 Search::NoneBefore(time) if !is_creeping => {
-                    // Bounds over less time are tighter: where a march has crept so far, it takes a few steps.
+                    // Bounds over a shorter window are tighter: a stretch along which a march has crept then takes a
+                    // few steps.
                     (is_creeping, left) = (true, CREEPING_WINDOWS);
                     (length, start) = (Some(time - start), time);
                     continue;
                 }
                 end => return end,
             }
-            // Where nothing is near windows soon get long: few are to come.
+            // Windows without near features are not counted: their lengths double, so that few of them follow.
             left -= u32::from(tried > 0);
             length = Some(if tried > self.settings.crowded {
                 0.5 * wanted
@@ -393,12 +400,12 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         Search::NoneBefore(start)
     }
 
-    /// A time before which the circles around the two bodies do not meet.
+    /// A time [s], not before `start`, up to which the circles around the two bodies do not meet.
     fn skip_far(&self, start: f64, span: f64) -> f64 {
         let circles = [reach_circle(self.a.shape.reach()), reach_circle(self.b.shape.reach())];
         let [circle_a, circle_b] = &circles;
         let target = self.widest_target();
-        // However deep the circles overlap, they do.
+        // The circles count as touching however deep they overlap.
         let pair = Pair {
             kind: PairKind::Outer,
             feature_a: circle_a,
@@ -427,7 +434,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         }
     }
 
-    /// A first window in which the bodies move by about a quarter of the smaller one.
+    /// Length [s] of a first window, in which the bodies move by at most half of the lesser reach.
     fn first_length(&self, whole: &Window<'_, A, B>) -> f64 {
         let (reach_a, reach_b) = (self.a.shape.reach(), self.b.shape.reach());
         let turning =
@@ -436,11 +443,11 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
         if speed > 0.0 { 0.5 * reach_a.min(reach_b) / speed } else { f64::INFINITY }
     }
 
-    /// Searches one window; also tells how many feature pairs had to be tried.
+    /// Searches one window; also returns the number of feature pairs that had to be tried.
     fn search_window(&self, window: &Window<'_, A, B>, start: f64, end: f64) -> (Progress, usize) {
         let half = 0.5 * (end - start);
         let (at_a, at_b) = window.at(start + half);
-        // A point turns by at most its arm times the angle, and never farther than across its circle.
+        // A point moves by at most its arm times the angle of a turn, and never farther than across its circle.
         let turned = |spin: f64, reach: f64| (spin * half).min(2.0) * reach;
         let moved = window.speed * half
             + turned(window.spin_a.speed, self.a.turning_reach())
@@ -496,8 +503,8 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     }
 }
 
-/// True if the first feature is round, and the second surely farther than `reach` [m] from its circle: for the
-/// tree, all that an arc goes around is near it.
+/// True if the first feature is round, and the second surely farther than `reach` [m] from its circle. The tree cannot
+/// tell, since the bounds of an arc contain its inside.
 fn is_off_circle((feature, pose): (&Feature, &Pose), (other, at): (&Feature, &Pose), reach: f64) -> bool {
     let Feature::Round(round) = feature else { return false };
     let (center, size) = match other {
@@ -508,11 +515,11 @@ fn is_off_circle((feature, pose): (&Feature, &Pose), (other, at): (&Feature, &Po
     (distance - round.radius.abs()).abs() > size + reach
 }
 
-/// Angle [rad/m] by which a corner may lean off a line, for each metre of the accuracy; nothing for all else.
+/// Angle per metre of accuracy [rad/m] by which a corner may lean off a line; 0 for all other pairs.
 ///
 /// Edges that lie flat on each other are parallel up to rounding: their corners are now within, now outside
-/// of their cones. A bound well above rounding keeps the search from asking at every tick of the clock. No
-/// corner fires too early by it: the next corner along the edge is nearer then.
+/// of their cones. A bound well above rounding keeps the search from stepping through every tick of the clock. No
+/// corner fires too early because of it: the next corner along the edge is nearer then.
 fn slack(feature: &Feature, lever: f64, other: &Feature) -> f64 {
     match (feature, other) {
         (Feature::Round(round), Feature::Line(_)) if round.radius == 0.0 => LEAN_SHARE / lever,

@@ -8,12 +8,13 @@ use crate::motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
 use glam::DVec2;
 use halfgap_geometry::{Pose, Rotation};
 
-/// Below this value of k t the functions p1 and p2 are summed as series, above in closed form.
+/// Largest k t [-] for which the functions p1 and p2 are summed as series; above it, closed forms are used.
 const SERIES_BELOW: f64 = 0.5;
-/// Terms of the series: enough for full precision below `SERIES_BELOW`; half of them do below `SMALL`.
+/// Number of terms of the series: enough for full precision up to [`SERIES_BELOW`].
 const SERIES_TERMS: usize = 16;
+/// Value of k t [-] below which half of the terms give full precision.
 const SMALL: f64 = 1.0 / 64.0;
-/// (-1)^n/(n + 2)!, the coefficients of p2.
+/// Coefficients (-1)^n/(n + 2)! of p2.
 const SERIES: [f64; SERIES_TERMS] = {
     let mut coefficients = [0.5; SERIES_TERMS];
     let mut n = 1;
@@ -35,9 +36,8 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// The flight from a state with the given acceleration [m/s^2] and rates [1/s] at which damping takes the
-    /// linear and the angular velocity. A rate that is negative, or not a number, counts as none: nothing here feeds
-    /// motions.
+    /// The flight from a state with the given acceleration [m/s^2] and the rates [1/s] at which damping reduces the
+    /// linear and the angular velocity. A rate that is negative or not a number counts as 0: damping never adds energy.
     #[must_use]
     pub fn new(start: BodyState, acceleration: DVec2, linear_rate: f64, angular_rate: f64) -> Self {
         let [linear_rate, angular_rate] = [linear_rate, angular_rate].map(|rate| rate.max(0.0));
@@ -45,7 +45,7 @@ impl Flight {
         Self { start, start_rotation, acceleration, linear_rate, angular_rate }
     }
 
-    /// Goes on from another state; a rotation that stays the same is not computed again.
+    /// Sets another start state; acceleration and rates stay. The rotation is computed again only if the angle differs.
     pub fn restart(&mut self, start: BodyState) {
         if start.angle != self.start.angle {
             self.start_rotation = Rotation::from_angle(start.angle);
@@ -53,7 +53,7 @@ impl Flight {
         self.start = start;
     }
 
-    /// A body that stays where it is.
+    /// The motion of a body that stays at a position [m] and an angle [rad].
     #[must_use]
     pub fn fixed(position: DVec2, angle: f64) -> Self {
         Self::new(BodyState { position, angle, ..BodyState::default() }, DVec2::ZERO, 0.0, 0.0)
@@ -71,7 +71,7 @@ impl Flight {
         self.acceleration
     }
 
-    /// Rates [1/s] at which damping takes the linear and the angular velocity.
+    /// Rates [1/s], not negative, at which damping reduces the linear and the angular velocity.
     #[must_use]
     pub fn rates(&self) -> [f64; 2] {
         [self.linear_rate, self.angular_rate]
@@ -94,7 +94,7 @@ impl Flight {
         self.acceleration - self.velocity_at(offset) * self.linear_rate
     }
 
-    /// Angular acceleration [rad/s^2] at an offset [s]: of damping alone.
+    /// Angular acceleration [rad/s^2] at an offset [s], which is due to damping alone.
     #[must_use]
     pub fn angular_acceleration_at(&self, offset: f64) -> f64 {
         -self.angular_rate * self.angular_velocity_at(offset)
@@ -109,13 +109,13 @@ impl Flight {
             && self.acceleration == DVec2::ZERO
     }
 
-    /// For how long [s] after an offset [s] the centre of mass surely stays within a distance [m] of where it is then;
-    /// `None` if for ever.
+    /// Time [s] after an offset [s] for which the centre of mass surely stays within a distance [m] of its position at
+    /// the offset; `None` if for ever.
     #[must_use]
     pub fn stays_within(&self, distance: f64, offset: f64) -> Option<f64> {
         let velocity = self.velocity_at(offset);
         let speed = velocity.length();
-        // Damping lets accelerations only fade.
+        // Under damping, accelerations only fade.
         let acceleration = self.acceleration_at(offset).length();
         if speed == 0.0 && acceleration == 0.0 {
             return None;
@@ -125,7 +125,7 @@ impl Flight {
         }
         let by_acceleration =
             2.0 * distance / (speed + (speed * speed + 2.0 * acceleration * distance).sqrt());
-        // Damped velocities run straight towards their final value.
+        // A damped velocity changes along a straight line towards its final value.
         let is_damped = self.linear_rate > 0.0;
         let fastest = is_damped.then(|| speed.max(self.acceleration.length() / self.linear_rate));
         Some(fastest.map_or(by_acceleration, |fastest| by_acceleration.max(distance / fastest)))
@@ -164,7 +164,7 @@ impl Flight {
         self.start.angular_velocity * self.angular_decay(t).left
     }
 
-    /// What damping leaves of the turning, where there is any.
+    /// The decay of the angular motion; [`Decay::NONE`] without damping or turning.
     fn angular_decay(&self, t: f64) -> Decay {
         let is_damped = t != 0.0 && self.angular_rate != 0.0 && self.start.angular_velocity != 0.0;
         if is_damped { Decay::new(self.angular_rate * t) } else { Decay::NONE }
@@ -197,7 +197,7 @@ impl Motion for Flight {
             let pose = Pose { position, rotation: self.start_rotation };
             return Moving { pose, velocity, angular_velocity: start.angular_velocity };
         }
-        // Mostly both are damped alike.
+        // Mostly both velocities are damped alike.
         let shared = linear.filter(|_| self.angular_rate == self.linear_rate);
         let angular = shared.unwrap_or_else(|| self.angular_decay(t));
         let angle = start.angle + start.angular_velocity * t * angular.p1;
@@ -224,8 +224,8 @@ impl Motion for Flight {
         if self.is_at_rest() {
             return MotionBounds::default();
         }
-        // Both curves of velocities are straight in the plane (a ray towards the final velocity when damped), so the
-        // ball over the two end velocities holds all between them.
+        // With and without damping the velocity changes along a straight line (when damped, towards the final
+        // velocity), so the ball over the two end velocities holds all between them.
         let (first, last) = (self.velocity_at(from), self.velocity_at(to));
         let velocity = Ball { center: 0.5 * (first + last), radius: 0.5 * (last - first).length() };
         let k = self.linear_rate;
@@ -251,9 +251,9 @@ impl Motion for Flight {
     }
 }
 
-/// What damping makes of a motion by the time t, with z = k t.
+/// Factors by which damping changes a motion up to the time t, as functions of z = k t [-].
 struct Decay {
-    /// e^-z: what is left of a velocity.
+    /// e^-z: the fraction of a velocity that is left.
     left: f64,
     p1: f64,
     p2: f64,
@@ -277,7 +277,7 @@ impl Decay {
         Self { left: 1.0 - z * p1, p1, p2 }
     }
 
-    /// Kept apart: few flights last so long.
+    /// The closed forms, for z above [`SERIES_BELOW`]. Not inlined, since few flights last so long.
     #[inline(never)]
     fn closed(z: f64) -> Self {
         let p1 = -libm::expm1(-z) / z;

@@ -1,4 +1,4 @@
-//! How a gap changes: its rate, its Jacobian, and the part of its acceleration that velocities alone cause.
+//! Rate of a gap, its Jacobian, and the part of its acceleration that velocities alone cause.
 //!
 //! With arms U1 = cA - xA and U2 = cB - xB from the centres of mass (line: b - xB, b the foot), u the
 //! relative velocity of the centres (line: against the material point at b) and p = n.(-wA^2 U1 + wB^2 U2):
@@ -18,9 +18,9 @@ use halfgap_geometry::{GapKind, GapSample};
 /// Arms from the two centres of mass to the two feature centres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arms {
-    /// From the primary body's centre of mass [m].
+    /// Arm from the primary body's centre of mass [m].
     pub primary: DVec2,
-    /// From the normal body's centre of mass [m].
+    /// Arm from the normal body's centre of mass [m].
     pub normal: DVec2,
 }
 
@@ -35,11 +35,12 @@ pub struct GapKinematics {
     pub gamma: f64,
     /// Time derivative of the normal [1/s].
     pub normal_rate: DVec2,
-    /// Velocity of the primary centre relative to the normal one [m/s].
+    /// Velocity [m/s] of the primary feature's centre relative to that of the normal feature (for a line, to its
+    /// material point at the foot).
     pub center_velocity: DVec2,
 }
 
-/// A body's linear and angular acceleration.
+/// Linear and angular acceleration of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spin {
     /// Acceleration of the centre of mass [m/s^2].

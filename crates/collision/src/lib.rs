@@ -1,4 +1,4 @@
-//! Moving bodies: which pairs touch, how, and when first.
+//! Contacts of moving bodies: pairs that touch, records of their contacts, and times of first contact.
 //!
 //! *Invariant*: this crate knows bodies, motions and thresholds, but no forces and no solvers.
 //!
@@ -33,13 +33,12 @@
 //!
 //! # Code map
 //!
-//! `motion` and `flight` say where a body is during an interval, `body` what it is. `record` is the collision
-//! record, with its `tolerances`, its `zone` predicates and its time `estimate`; `kinematics` gives the gap's
-//! rate, Jacobian and acceleration term. `detect` finds the records of two bodies at one moment and `merge`
-//! drops doubles. `first_contact` finds when two moving bodies first close to their target gap: by `closed`
-//! forms (roots of a `quadratic`) where motions are polynomial, by the `march` along second-order bounds
-//! otherwise. `connector` ties bodies by rows that are gaps too. `broad` keeps the pairs that are near enough
-//! to matter.
+//! `motion` and `flight` describe the motion of a body during an interval, `body` its shape and inertia. `record` is
+//! the collision record, with its `tolerances`, its `zone` predicates and its time `estimate`; `kinematics` gives the
+//! gap's rate, Jacobian and acceleration term. `detect` finds the records of two bodies at one moment and `merge` drops
+//! doubles. `first_contact` finds the time at which two moving bodies first close to their target gap: by `closed`
+//! forms (roots of a `quadratic`) where motions are polynomial, by the `march` along second-order bounds otherwise.
+//! `connector` ties bodies by rows that are gaps too. `broad` finds the bodies whose boxes overlap.
 
 #![forbid(unsafe_code)]
 

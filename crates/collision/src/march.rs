@@ -1,12 +1,12 @@
 //! First contact of a feature pair along any motions, by marching with second-order bounds.
 //!
 //! At a time t the gap less its target, c, and its rate v are known, and over the window its acceleration is
-//! bounded from below by -K. Then c + v s - K s^2/2 > 0 proves that nothing happens before the first root s:
-//! the march steps there and asks again. It never passes a contact and, since the bound touches the gap to
+//! bounded from below by -K. Then c + v s - K s^2/2 > 0 proves that the pair does not fire before the first root s:
+//! the march steps there and measures again. It never passes a contact and, since the bound touches the gap to
 //! second order, it converges to a transversal one as Newton's method does, from before.
 //!
-//! A bound on an acceleration keeps its direction as far as the normal can turn in the window, so that what both bodies
-//! have in common, or have along the contact, does not count.
+//! A bound on an acceleration keeps its direction, but for the angle by which the normal can turn in the window, so
+//! that accelerations that both bodies have in common, or that lie along the contact, do not count.
 //!
 //! Over a window, with a_rel and u bounding the relative acceleration and velocity of the two centres:
 //!
@@ -16,9 +16,9 @@
 //! * a line that turns with wB about the centre of mass xB: with E = cA - xB the gap is n.E less constants, so that
 //!   K = (|alphaB| + wB^2) |E| + 2 |wB| |E'| + |E''|. The place of the foot along the line obeys the same bound.
 //!
-//! A pair whose contact point lies outside of its features does nothing before that point can come within
-//! them; a pair deeper than `depth` lies on the far side of a body (its gap is negative, but nothing touches)
-//! and does nothing before it can come back.
+//! A pair whose contact point lies outside of its features does not fire before that point can come within
+//! them; a pair deeper than `depth` lies on the far side of a body (its gap is negative, but the features do not touch)
+//! and does not fire before it can come back.
 //!
 //! Source: the one-sided bound is conservative advancement (B. Mirtich, "Impulse-based dynamic simulation of rigid body
 //! systems", 1996, 2.3) carried to second order.
@@ -32,32 +32,34 @@ use halfgap_geometry::{
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
-/// Angle [rad] by which the direction between two centres may be unknown at most.
+/// Largest rounding [rad] that is allowed for in the direction between two centres.
 pub(crate) const UNKNOWN_DIRECTION: f64 = 0.1;
 
-/// Two bodies' motions over a window, with bounds that hold in all of it.
+/// Motions of two bodies over a window of time, with bounds that hold in all of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Window<'a, A, B> {
     pub(crate) motion_a: &'a A,
     pub(crate) motion_b: &'a B,
     /// Offsets [s] of the search's time 0 in the two motions.
     pub(crate) offsets: [f64; 2],
-    /// The time [s] at which the window begins, and where the bodies are then: every march looks there first.
+    /// Time of the search [s] at which the window begins.
     start: f64,
+    /// Poses and velocities of the bodies at `start`, which every march reads first.
     at_start: OnceCell<(Moving, Moving)>,
-    /// Bounds over the window on the relative velocity and acceleration of the centres of mass, of a against b.
+    /// Largest relative speed [m/s] of the centres of mass.
     pub(crate) speed: f64,
+    /// Bound on the acceleration [m/s^2] of the centre of mass of a relative to that of b.
     pub(crate) acceleration: Ball,
     pub(crate) spin_a: SpinBound,
     pub(crate) spin_b: SpinBound,
 }
 
-/// Bounds on a body's turning.
+/// Bounds on the angular motion of a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SpinBound {
-    /// Angular speed [rad/s].
+    /// Largest angular speed [rad/s].
     pub(crate) speed: f64,
-    /// Angular acceleration [rad/s^2].
+    /// Largest angular acceleration in size [rad/s^2].
     pub(crate) acceleration: f64,
 }
 
@@ -66,40 +68,41 @@ impl SpinBound {
         Self { speed: bounds.angular_speed, acceleration: bounds.angular_acceleration }
     }
 
-    /// Acceleration [m/s^2] of a point with the given arm [m] against the centre of mass.
+    /// Bound on the acceleration [m/s^2] of a point with the given arm [m] relative to the centre of mass.
     fn arm_acceleration(&self, arm: f64) -> f64 {
         (self.acceleration + self.speed * self.speed) * arm
     }
 }
 
-/// How a march ended.
+/// Result of a march.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarchEnd {
     /// The pair closes to its target at this time [s].
     Closes(f64),
-    /// Nothing happens before this time [s], at which the march stopped.
+    /// The pair does not fire before this time [s], at which the march stopped.
     NoneBefore(f64),
 }
 
-/// What is known of a pair at one time.
+/// State of a pair at one time, with bounds that hold over the rest of the window.
 #[derive(Clone, Copy, Debug)]
 struct Look {
-    /// Gap less target, or H for an inner pair.
+    /// Gap less target [m], or H [m^2] for two centres of an inner pair or of one that lies behind.
     value: f64,
-    /// Its rate.
+    /// Rate of the value, per second.
     rate: f64,
-    /// Bound on its downward acceleration, and on the upward one while behind.
+    /// Bound on the downward acceleration of the value, and on the upward one while behind, per second squared.
     curvature: f64,
-    /// A lower such bound that holds for a shorter time [s], if there is one.
+    /// A lower bound of that kind, and the time [s] for which it holds, if there is one.
     at_first: Option<(f64, f64)>,
     /// Gap less target [m].
     height: f64,
-    /// Values and rates below these are rounding.
+    /// Rounding of the value, in its unit.
     value_rounding: f64,
+    /// Rounding of the rate, in its unit, or the pair's `rest` if that is more.
     rate_rounding: f64,
-    /// In this time [s] nothing moves by more than rounding.
+    /// Time [s] in which the pair moves by no more than rounding.
     resolution: f64,
-    /// For how long [s] the contact point surely stays outside of the features; `None` if it is within.
+    /// Time [s] for which the contact point surely stays outside of the features; `None` if it is within.
     outside_for: Option<f64>,
 }
 
@@ -111,13 +114,13 @@ pub(crate) struct Pair<'a> {
     pub(crate) feature_b: &'a Feature,
     /// Target gap [m].
     pub(crate) target: f64,
-    /// A pair deeper than this [m] lies behind.
+    /// Depth [m] below the target beyond which the pair lies behind.
     pub(crate) depth: f64,
     /// Angles [rad] by which the contact may lie outside of the ranges of the two features and still counts as within.
     pub(crate) slack: [f64; 2],
-    /// Distance [m] beyond the ends of a line by which it still counts as within.
+    /// Distance [m] beyond the ends of a line at which the contact still counts as within.
     pub(crate) overrun: f64,
-    /// Rates [m/s] up to which what lies at the target counts as closing.
+    /// Opening rate [m/s] up to which a pair at its target counts as closing.
     pub(crate) rest: f64,
 }
 
@@ -143,7 +146,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         window
     }
 
-    /// Lets the window end at another time [s].
+    /// Sets another end of the window [s], with the bounds up to it.
     pub(crate) fn end_at(&mut self, end: f64) {
         let bounds_a = self.motion_a.bounds(self.offsets[0] + self.start, self.offsets[0] + end);
         let bounds_b = self.motion_b.bounds(self.offsets[1] + self.start, self.offsets[1] + end);
@@ -153,7 +156,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         self.spin_b = SpinBound::of(&bounds_b);
     }
 
-    /// Where the two bodies are at a time [s] of the search.
+    /// Poses and velocities of the two bodies at a time [s] of the search.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> (Moving, Moving) {
         (self.motion_a.moving_at(self.offsets[0] + time), self.motion_b.moving_at(self.offsets[1] + time))
@@ -162,7 +165,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     /// Marches one pair from `start` to `end` [s], at most `steps` steps.
     pub(crate) fn march(&self, pair: &Pair<'_>, start: f64, end: f64, steps: u32) -> MarchEnd {
         let mut time = start;
-        // What lies at its target all the while, and opens too slowly to leave it, is told as what rests there.
+        // A pair that is at its target in all steps, and opens too slowly to leave it, is reported as resting there.
         let mut stays = pair.rest > 0.0;
         for _ in 0..steps {
             let look = self.look(pair, time, end - time);
@@ -171,7 +174,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             }
             stays &= look.touches(pair.depth);
             let next = time + look.quiet_for(pair.depth).max(look.resolution);
-            // Below the resolution of the clock what is left of the gap is rounding.
+            // A step below the resolution of the clock is one tick: the rest of the gap is rounding.
             let next = if next > time { next } else { time.next_up() };
             if next >= end {
                 return MarchEnd::NoneBefore(end);
@@ -219,7 +222,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         let u_max = self.speed + self.spin_a.speed * arms[0] + self.spin_b.speed * arms[1];
         let of_arms = self.spin_a.arm_acceleration(arms[0]) + self.spin_b.arm_acceleration(arms[1]);
         let a_max = self.acceleration.largest() + of_arms;
-        // While the centres keep half of their distance the direction turns by at most u/(d/2).
+        // While the centres keep half of their distance the direction turns at a rate of at most u/(d/2).
         let direction_turn = quotient(2.0 * u_max, gap.center_distance);
         let turned =
             if quotient(0.5 * gap.center_distance, u_max) >= ahead { direction_turn * ahead } else { PI };
@@ -248,7 +251,8 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             look.rate *= 2.0 * distance;
             look.curvature = 2.0 * (u_max * u_max + d_max.max(reach) * a_max);
             if !look.is_behind(pair.depth) {
-                // A pin in its hole is slow beside its bodies, and not much faster for as long as it takes across the hole.
+                // A pin moves slowly in its hole compared with its bodies, and not much faster while it crosses the
+                // hole.
                 let across = quotient(reach, u.length()).min(quotient(reach, a_max).sqrt());
                 let u_first = u.length() + a_max * across;
                 look.at_first = Some((2.0 * (u_first * u_first + reach.max(distance) * a_max), across));
@@ -256,7 +260,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             look.value_rounding *= distance + reach;
             look.rate_rounding *= 2.0 * distance.max(reach);
         }
-        // The angles cost more than all else.
+        // The angles cost more than everything else.
         if !look.is_clear_for(ahead) {
             let rates = (turning_rate(&gap, u, inner), u.length(), u_max, a_max);
             look.outside_for = self.outside_ranges(pair, &gap, (round_a, a), (round_b, b), rates);
@@ -317,7 +321,8 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
         Look { outside_for: longer(beyond, askew), ..look }
     }
 
-    /// For how long [s] the direction between two centres surely stays outside of one of the ranges.
+    /// Time [s] for which the direction between two centres surely stays outside of one of the ranges; `None` if it is
+    /// within both.
     fn outside_ranges(
         &self,
         pair: &Pair<'_>,
@@ -342,7 +347,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
             (excess > slack).then(|| {
                 let room = excess - slack;
                 let by_speed = quotient(room, direction_speed + spin.speed);
-                // Centres that are near each other may be so for long: they hardly move against each other.
+                // Centres near each other may stay so for long, if they hardly move relative to each other.
                 let now = quotient(2.0 * u, distance) + spin.speed;
                 let by_speed = by_speed.max(first_descent(room, -now, quotient(2.0 * a_max, distance)));
                 let turning = (direction_rate - rate).abs();
@@ -357,7 +362,7 @@ impl<'a, A: Motion, B: Motion> Window<'a, A, B> {
     }
 }
 
-/// Rate [rad/s] at which the normal turns.
+/// Rate [rad/s] at which the normal turns, counter-clockwise positive; 0 for centres that coincide.
 fn turning_rate(gap: &CenterGap, u: DVec2, inner: bool) -> f64 {
     if gap.center_distance > 0.0 {
         let across = if inner { -gap.normal.perp_dot(u) } else { gap.normal.perp_dot(u) };
@@ -367,7 +372,8 @@ fn turning_rate(gap: &CenterGap, u: DVec2, inner: bool) -> f64 {
     }
 }
 
-/// Bound on the acceleration against a direction, which may turn by the given angle [rad], of what has one in the ball.
+/// Bound [m/s^2], not negative, on the component of the accelerations in the ball against a direction, which may turn
+/// by the given angle [rad].
 fn fastest_against(acceleration: &Ball, direction: DVec2, turned: f64) -> f64 {
     let off = turned.min(2.0) * acceleration.center.length();
     (acceleration.radius + off - direction.dot(acceleration.center)).max(0.0)
@@ -390,25 +396,25 @@ impl Look {
         self.height < -depth
     }
 
-    /// True if the gap alone tells that nothing happens for so long [s]: where the contact point is does not
-    /// matter then.
+    /// True if the gap alone proves that the pair does not fire for the next `ahead` [s], wherever the contact point
+    /// lies.
     #[inline]
     fn is_clear_for(&self, ahead: f64) -> bool {
         self.value > self.value_rounding && first_descent(self.value, self.rate, self.curvature) >= ahead
     }
 
-    /// At or below the target and within both features.
+    /// True if the pair is at or below its target, within both features, and not behind.
     fn touches(&self, depth: f64) -> bool {
         !self.is_behind(depth) && self.value <= self.value_rounding && self.outside_for.is_none()
     }
 
-    /// So, and not opening. A rate that is only rounding does not open: what rests there must be told, or the
-    /// march would crawl along it.
+    /// True if the pair touches and does not open. A rate that is only rounding does not count as opening: a pair at
+    /// rest must be reported, or the march would crawl along it.
     fn is_closing(&self, depth: f64) -> bool {
         self.touches(depth) && self.rate <= self.rate_rounding
     }
 
-    /// For how long [s] nothing happens.
+    /// Time [s] for which the pair surely does not fire.
     fn quiet_for(&self, depth: f64) -> f64 {
         let always = self.quiet_with(self.curvature, depth);
         let at_first = self.at_first.filter(|(curvature, _)| *curvature < self.curvature);
@@ -417,15 +423,15 @@ impl Look {
         self.outside_for.map_or(by_value, |wait| wait.max(by_value))
     }
 
-    /// For how long [s] nothing happens by the value, with a bound on its acceleration.
+    /// Time [s] for which the value surely does not let the pair fire, given a bound on its acceleration.
     fn quiet_with(&self, curvature: f64, depth: f64) -> f64 {
         if self.is_behind(depth) {
-            // Mirrored: before the value could rise to the target, nothing comes back.
+            // Mirrored: the pair does not come back before the value could rise to the target.
             first_descent(-self.value, -self.rate, curvature)
         } else if self.value > self.value_rounding {
             first_descent(self.value, self.rate, curvature)
         } else if self.rate >= 0.0 {
-            // At the target and opening: nothing fires before the rate could turn.
+            // At the target and opening: the pair does not fire before the rate could turn.
             quotient(self.rate, curvature)
         } else {
             0.0
@@ -433,20 +439,21 @@ impl Look {
     }
 }
 
-/// First root of c + v s - K s^2/2 for c > 0, K >= 0; infinite if there is none.
+/// First root s of c + v s - K s^2/2 for c > 0, K >= 0 (`curvature`); infinite if there is none.
 #[inline]
 fn first_descent(c: f64, v: f64, curvature: f64) -> f64 {
     let root = (v * v + 2.0 * curvature * c).sqrt();
     if v <= 0.0 { quotient(2.0 * c, root - v) } else { quotient(v + root, curvature) }
 }
 
-/// A quotient of numbers that are not negative, infinite over 0.
+/// The quotient of two numbers that are not negative; infinite over 0.
 #[inline]
 fn quotient(numerator: f64, denominator: f64) -> f64 {
     if denominator > 0.0 { numerator / denominator } else { f64::INFINITY }
 }
 
-/// For how long [s] the foot surely stays beyond the ends of the line, given its place, rate and bounded acceleration.
+/// Time [s] for which the foot surely stays beyond the ends of the line, given its place [m], its rate [m/s] and a
+/// bound on its acceleration [m/s^2]; `None` if it is not beyond them by more than `slack` [m].
 fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, slack: f64) -> Option<f64> {
     let (before, after) = (line.start - along, along - line.end);
     if before > slack {
@@ -458,15 +465,17 @@ fn overrun_for(along: f64, rate: f64, line: &LineFeature, curvature: f64, slack:
     }
 }
 
-/// Rounding [rad] of the direction between two centres. What is outside of its features by more has been so,
-/// for centres that all but coincide were farther apart before: corners that pass through each other have
-/// come from where they do not touch.
+/// Rounding [rad] of the direction between two centres, of which [`UNKNOWN_DIRECTION`] at most comes from their
+/// nearness.
+///
+/// A contact that lies outside of its features by more than this really does: centres that all but coincide were
+/// farther apart before, so corners that pass through each other have come from a place where they do not touch.
 pub(crate) fn direction_rounding(center_a: DVec2, center_b: DVec2) -> f64 {
     let size = center_a.abs().max(center_b.abs()).max_element();
     rounding(1.0) + quotient(rounding(size), center_a.distance(center_b)).min(UNKNOWN_DIRECTION)
 }
 
-/// The longer of two waits, either of which may be absent.
+/// The longer of two times [s], either of which may be absent.
 fn longer(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(a.max(b)),
@@ -505,7 +514,7 @@ fn is_within_line(
         && gap.excess(round, pose_round) <= rounding(1.0).max(slack)
 }
 
-/// The round feature that stands for a whole body far away: its reach about its centre of mass.
+/// The round feature that stands for a whole body far away: a circle of its reach [m] about its centre of mass.
 pub(crate) fn reach_circle(reach: f64) -> Feature {
     Feature::Round(RoundFeature {
         center: DVec2::ZERO,

@@ -1,26 +1,26 @@
-//! Two detectors can find one spot twice; the more exact record stays.
+//! Merging of records: where two detectors find one spot, the more exact record stays.
 
 use crate::march::direction_rounding;
 use crate::record::{Collision, Detector};
 use std::cmp::Ordering;
 
-/// Two normals are one when their directions agree to this sine [-] at least: far more than rounding, far less than a
-/// corner.
+/// Sine of the angle between two normals [-] below which they count as one: far more than rounding, far less than the
+/// turn at a corner.
 const PARALLEL: f64 = 1e-6;
 
-/// The same where one lies beyond its edge.
+/// Sine of the angle between two normals [-] below which they count as one if one of the contacts lies beyond its edge.
 const OVERHANG: f64 = 0.1;
 
-/// Two normals may differ by so many roundings.
+/// Angle by which the normal of two corners may differ from another, in multiples of its rounding [-].
 const UNKNOWN_SHARE: f64 = 4.0;
 
-/// Part of the accuracy by which a contact may lie outside of its features and counts as within.
+/// Distance outside of its features at which a contact counts as within, as a fraction of the accuracy [-].
 const HAIR: f64 = 1.0 / 64.0;
 
-/// True if two records are the same physical collision: the same two bodies touch at one place along one
-/// normal. Rows of connectors are never the same as anything.
+/// True if two records describe one physical collision: the same two bodies touch at one place along one
+/// normal. A row of a connector is never the same as another record.
 ///
-/// Places are one when they lie within `distance_tol` of each other: that is what cannot be told apart.
+/// Places within `distance_tol` of each other count as one: they cannot be told apart.
 #[must_use]
 pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     let bodies = |c: &Collision| {
@@ -44,16 +44,16 @@ pub fn is_same_collision(a: &Collision, b: &Collision) -> bool {
     parallel && apart <= near
 }
 
-/// Sine of the angle between the normals of one spot that is beyond an edge, but for the accuracy, and found
-/// within another, too.
+/// Sine [-] of the angle that is allowed between the normals of two records within the accuracy of each other, exactly
+/// one of which lies beyond its edge; else 0.
 fn overhang(a: &Collision, b: &Collision, apart: f64) -> f64 {
     let is_one_beyond = (beyond(a) > 0.0) != (beyond(b) > 0.0);
     let is_near = apart <= a.tolerances.accuracy.max(b.tolerances.accuracy);
     if is_one_beyond && is_near { OVERHANG } else { 0.0 }
 }
 
-/// Rounding [rad] of the normal of a record: that of two corners is the direction between them, as a search
-/// saw it and as it is measured now.
+/// Angle [rad] that is allowed for the rounding of the normal of two corners, which is the direction between them as a
+/// search found it and as it is measured now; 0 for other records.
 fn unknown(record: &Collision) -> f64 {
     if record.parties.detector != Detector::CornerCorner {
         return 0.0;
@@ -62,17 +62,17 @@ fn unknown(record: &Collision) -> f64 {
     UNKNOWN_SHARE * direction_rounding(a, b)
 }
 
-/// Angle [rad] between the normals of one spot found on both sides of a seam: over an arc's radius it makes
-/// up twice the accuracy, by which detection lets a contact lie outside of its feature.
+/// Angle [rad] that is allowed between the normals of one spot found on both sides of a seam. Times the least radius of
+/// the arcs it is twice the accuracy, the distance by which detection lets a contact lie outside of its feature.
 fn lean(a: &Collision, b: &Collision) -> f64 {
     let radii = [a, b].map(|c| [c.geometry.radius_primary, c.geometry.radius_normal]);
     let curved = radii.into_iter().flatten().flatten().map(f64::abs).filter(|&radius| radius > 0.0);
     2.0 * a.tolerances.accuracy.max(b.tolerances.accuracy) / curved.fold(f64::INFINITY, f64::min)
 }
 
-/// Drops records that are the same physical collision as a more exact one: the one within its edges wins,
-/// then edge-edge over vertex-edge over corner-corner, then the lesser distance, then the earlier place in
-/// the list. Keeps the order.
+/// Drops records of the same physical collision as a more exact one ([`is_same_collision`]): the one within its edges
+/// wins, then edge-edge over vertex-edge over corner-corner, then the lesser distance, then the earlier place in the
+/// list. Keeps the order.
 pub fn merge_collisions(records: &mut Vec<Collision>) {
     let mut kept = 0;
     for index in 0..records.len() {
@@ -89,8 +89,8 @@ pub fn merge_collisions(records: &mut Vec<Collision>) {
     records.truncate(kept);
 }
 
-/// By how much a contact lies outside of its features; nothing if it is so little that it may be rounding.
-/// The normal of two corners that lie on each other is all rounding: they must not win by a hair.
+/// Distance [m] by which a contact lies outside of its features; 0 if it is at most [`HAIR`] of the accuracy, which may
+/// be rounding. The normal of two corners that lie on each other is all rounding: they must not win by a hair.
 fn beyond(record: &Collision) -> f64 {
     let outside = record.geometry.outside;
     if outside > HAIR * record.tolerances.accuracy { outside } else { 0.0 }

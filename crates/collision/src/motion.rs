@@ -1,14 +1,14 @@
-//! Where a body is and how it moves, at a moment and over an interval.
+//! Position and velocity of a body, at a moment and over an interval.
 
 use glam::DVec2;
 use halfgap_geometry::Pose;
 
-/// Position and velocity of a body.
+/// Position, angle and velocities of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
     /// Centre of mass [m].
     pub position: DVec2,
-    /// Angle [rad], not reduced.
+    /// Angle [rad], counter-clockwise positive, not reduced to one turn.
     pub angle: f64,
     /// Velocity of the centre of mass [m/s].
     pub velocity: DVec2,
@@ -17,7 +17,7 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// The placement that goes with the state.
+    /// The pose at the state's position and angle.
     #[must_use]
     #[inline]
     pub fn pose(&self) -> Pose {
@@ -25,10 +25,10 @@ impl BodyState {
     }
 }
 
-/// A body at one moment, its rotation already taken.
+/// Pose and velocities of a body at one moment: a [`BodyState`] whose rotation is already computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moving {
-    /// Where it is.
+    /// Pose of the body, its origin at the centre of mass.
     pub pose: Pose,
     /// Velocity of the centre of mass [m/s].
     pub velocity: DVec2,
@@ -37,7 +37,7 @@ pub struct Moving {
 }
 
 impl Moving {
-    /// At rest at the origin: the immovable background.
+    /// The immovable background, at rest at the origin.
     pub const BACKGROUND: Moving =
         Moving { pose: Pose::IDENTITY, velocity: DVec2::ZERO, angular_velocity: 0.0 };
 
@@ -56,39 +56,38 @@ impl From<&BodyState> for Moving {
     }
 }
 
-/// All vectors within some distance of a centre: bounds that keep their direction, so that what is common to two bodies
-/// cancels.
+/// All vectors within some distance of a centre: a bound with a direction, so that parts common to two bodies cancel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ball {
     /// Centre, in the unit of the bounded quantity.
     pub center: DVec2,
-    /// Radius, in the same unit.
+    /// Radius, in the unit of the bounded quantity.
     pub radius: f64,
 }
 
 impl Ball {
-    /// Largest size of the difference between a vector of one ball and a vector of the other.
+    /// Largest size of the difference between a vector of this ball and one of the other, in the unit of the quantity.
     #[must_use]
     #[inline]
     pub fn largest_difference(&self, other: &Ball) -> f64 {
         (self.center - other.center).length() + self.radius + other.radius
     }
 
-    /// All differences of a vector of one ball and a vector of the other.
+    /// All differences of a vector of this ball and a vector of the other.
     #[must_use]
     #[inline]
     pub fn minus(&self, other: &Ball) -> Ball {
         Ball { center: self.center - other.center, radius: self.radius + other.radius }
     }
 
-    /// The vectors turned round.
+    /// The ball of the opposite vectors.
     #[must_use]
     #[inline]
     pub fn mirrored(&self) -> Ball {
         Ball { center: -self.center, radius: self.radius }
     }
 
-    /// Largest size of a vector.
+    /// Largest size of a vector of the ball, in the unit of the quantity.
     #[must_use]
     #[inline]
     pub fn largest(&self) -> f64 {
@@ -120,12 +119,12 @@ pub struct Polynomial {
     pub acceleration: DVec2,
 }
 
-/// The motion of a body along a segment, to be asked at any offset [s] from the segment's start.
+/// The motion of a body along a segment, as a function of the offset [s] from the segment's start.
 pub trait Motion {
     /// Position and velocity at an offset [s].
     fn state_at(&self, offset: f64) -> BodyState;
 
-    /// Placement and velocities at an offset [s].
+    /// Pose and velocities at an offset [s].
     fn moving_at(&self, offset: f64) -> Moving {
         Moving::from(&self.state_at(offset))
     }
@@ -139,14 +138,15 @@ pub trait Motion {
     /// Bounds that hold between two offsets [s].
     fn bounds(&self, from: f64, to: f64) -> MotionBounds;
 
-    /// The parabola of the centre of mass as it goes on from an offset [s]; `None` if it follows another curve.
+    /// The parabola of the centre of mass from an offset [s] on, its t = 0 at the offset; `None` if it follows another
+    /// curve.
     fn polynomial_from(&self, offset: f64) -> Option<Polynomial>;
 
     /// True if the body does not turn during the segment.
     fn is_rotation_free(&self) -> bool;
 }
 
-/// The centre of mass of a body in motion, whose turning does not matter.
+/// The motion of a body's centre of mass, without the body's turning.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Center<'a, M>(pub(crate) &'a M);
 

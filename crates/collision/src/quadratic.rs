@@ -1,22 +1,23 @@
-//! When a parabola first closes to zero, without cancellation.
+//! First time at which a parabola closes to zero, computed without cancellation.
 
-/// First time t >= 0 at which c + v t + a t^2/2 is at most 0 while not growing (v + a t <= 0).
+/// First time t >= 0 [s] at which the gap c + v t + a t^2/2 is at most 0 while not growing (v + a t <= 0), for c [m],
+/// v [m/s] and a [m/s^2].
 ///
-/// That is 0 if it starts there and closes; `None` if it never happens, or if it stands still at the start and
-/// does not close from there (v = 0 and a >= 0). Roots
-/// are taken in the form in which nothing cancels, so that a = 0 and a double root need no special care. Of
-/// numbers that are none, or whose squares and products are none, nothing is said.
+/// It is 0 if the gap starts at most 0 and closes; `None` if this never happens, or if the gap starts at most 0, stands
+/// still and does not close from there (v = 0 and a >= 0). Roots are taken in the form in which nothing cancels, so
+/// that a = 0 and a double root need no special care. The result is unspecified for numbers that are not finite, or
+/// whose squares and products overflow.
 #[must_use]
 #[inline]
 pub fn first_closing_time(c: f64, v: f64, a: f64) -> Option<f64> {
     first_closing_by(c, v, a, v * v - 2.0 * a * c)
 }
 
-/// [`first_closing_time`] for a caller who knows the discriminant v^2 - 2 a c more exactly than its terms tell.
+/// [`first_closing_time`] [s] for callers that know the discriminant v^2 - 2 a c more exactly than its terms give it.
 #[inline]
 pub(crate) fn first_closing_by(c: f64, v: f64, a: f64, discriminant: f64) -> Option<f64> {
     if c <= 0.0 {
-        // At the target already: at once if closing, else when the parabola turns back below it or comes down to it.
+        // At the target already: at once if closing, else when the parabola turns round below it or comes down to it.
         if v < 0.0 || (v == 0.0 && a < 0.0) {
             return Some(0.0);
         }

@@ -1,8 +1,8 @@
-//! The collision record: everything that is known of one place where two bodies touch or are about to.
+//! The collision record: all data of one place where two bodies touch or are about to.
 //!
-//! It is made for whoever uses this crate alone, to write an advance of their own. So it also holds and
-//! answers what the layers above find in other ways, or do not ask for: the first detection with the estimate
-//! that follows from it, `must_handle` and `updated`, curvature, arms, most predicates of `zone`.
+//! It also serves callers that use this crate alone, to write an advance of their own. It therefore holds data that the
+//! layers above find in other ways, or do not need: the first detection with the estimate that follows from it,
+//! `must_handle` and `updated`, curvature, arms, most predicates of `zone`.
 
 use crate::body::BodyId;
 use crate::connector::{Connector, ConnectorId, ConnectorSample};
@@ -13,7 +13,7 @@ use crate::tolerances::Tolerances;
 use glam::DVec2;
 use halfgap_geometry::{FeatureId, FeatureKind, GapSample, Shape};
 
-/// What found a collision.
+/// Origin of a collision record: the kinds of the two features, or a row of a connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detector {
     /// A vertex near a vertex.
@@ -22,11 +22,11 @@ pub enum Detector {
     VertexEdge,
     /// Two edges, at least one of them an arc.
     EdgeEdge,
-    /// A row of a connector: nothing is detected.
+    /// A row of a connector, which is not detected.
     Connector {
         /// The connector.
         id: ConnectorId,
-        /// Which of its rows.
+        /// Index of the row in the connector.
         row: u32,
     },
 }
@@ -36,7 +36,7 @@ pub enum Detector {
 pub struct Participant {
     /// The body.
     pub body: BodyId,
-    /// The part of its shape that touches; `None` in a connector, which ties points that may lie anywhere.
+    /// The part of the body's shape that touches; `None` in a connector, which ties points that may lie anywhere.
     pub site: Option<Site>,
 }
 
@@ -45,7 +45,7 @@ pub struct Participant {
 pub struct Site {
     /// The feature of the shape.
     pub feature: FeatureId,
-    /// What kind of feature that is.
+    /// Kind of the feature.
     pub kind: FeatureKind,
     /// Index of the path.
     pub path: u32,
@@ -54,7 +54,10 @@ pub struct Site {
 }
 
 impl Participant {
-    /// Describes a feature of a body's shape.
+    /// The side of a body that touches with a feature of its shape.
+    ///
+    /// # Panics
+    /// If the feature is not one of the shape's.
     #[must_use]
     pub fn new(body: BodyId, shape: &Shape, feature: FeatureId) -> Self {
         let source = shape.source(feature);
@@ -62,20 +65,20 @@ impl Participant {
         Self { body, site: Some(site) }
     }
 
-    /// An end of a connector on a body.
+    /// The side of a body to which a connector is tied.
     #[must_use]
     pub fn of_connector(body: BodyId) -> Self {
         Self { body, site: None }
     }
 
-    /// The feature of the body's shape, if it is a shape that touches.
+    /// The feature of the body's shape that touches; `None` in a connector.
     #[must_use]
     pub fn feature(&self) -> Option<FeatureId> {
         self.site.map(|site| site.feature)
     }
 }
 
-/// Who collides, and how that was found.
+/// The two sides of a collision, and its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parties {
     /// The body that the normal points to.
@@ -84,11 +87,11 @@ pub struct Parties {
     pub normal: Participant,
     /// True if the gap may neither close nor open.
     pub bilateral: bool,
-    /// What found it.
+    /// Origin of the record.
     pub detector: Detector,
 }
 
-/// Where the bodies touch.
+/// Place, normal and distance of a collision, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactGeometry {
     /// Point of the primary body that touches [m].
@@ -103,17 +106,17 @@ pub struct ContactGeometry {
     pub normal_rate: DVec2,
     /// Distance [m] along the normal; negative for penetration.
     pub distance: f64,
-    /// Distance [m] by which the impact lies beyond the ends of its edges; 0 within them. A vertex has no ends.
+    /// Distance [m] by which the impact point lies beyond the ends of its edges; 0 within them. A vertex has no ends.
     pub outside: f64,
     /// Signed radius of curvature of the primary body at the impact [m]; `None` where it is straight.
     pub radius_primary: Option<f64>,
     /// Signed radius of curvature of the normal body at the impact [m]; `None` where it is straight.
     pub radius_normal: Option<f64>,
-    /// R1: from the primary centre of mass to the impact point [m].
+    /// Arm R1 from the primary centre of mass to the impact point [m].
     pub impact_arm_primary: DVec2,
-    /// R2: from the normal centre of mass to the impact point [m].
+    /// Arm R2 from the normal centre of mass to the impact point [m].
     pub impact_arm_normal: DVec2,
-    /// U1, U2: from the centres of mass to the arcs' centres [m]; R where there is no arc.
+    /// Arms U1 and U2 from the centres of mass to the arcs' centres [m]; R1 and R2 on sides without an arc.
     pub arms: Arms,
 }
 
@@ -125,73 +128,73 @@ impl ContactGeometry {
     }
 }
 
-/// How the bodies move at the place where they touch.
+/// Velocities of the bodies at the place where they touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactMotion {
     /// Velocity of the primary impact point relative to the normal one [m/s].
     pub impact_velocity: DVec2,
-    /// Its component along the tangent [m/s].
+    /// Component of `impact_velocity` along [`ContactGeometry::tangent`] [m/s].
     pub lateral_velocity: f64,
-    /// Velocity of the primary arc's centre relative to the normal one [m/s].
+    /// Velocity of the primary arc's centre relative to that of the normal arc [m/s].
     pub center_velocity: DVec2,
     /// Rate of the distance [m/s]; negative when closing.
     pub normal_velocity: f64,
-    /// Derivative of the rate by the bodies' velocities, and the acceleration that velocities alone cause.
+    /// Jacobian of the rate of the distance, and the part of its acceleration that velocities alone cause.
     pub kinematics: GapKinematics,
 }
 
-/// What was seen when the collision was first detected, before the back-up.
+/// State of a collision when it was first detected, before the back-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
     /// Time [s].
     pub time: f64,
-    /// Distance [m].
+    /// Distance [m], negative for penetration.
     pub distance: f64,
-    /// Normal velocity [m/s].
+    /// Normal velocity [m/s], negative when closing.
     pub normal_velocity: f64,
 }
 
-/// What was done about the collision.
+/// Response to a collision: restitution, impulse and force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response {
-    /// Lesser of the two bodies' elasticities.
+    /// Coefficient of restitution [-]: the lesser of the two bodies' elasticities, or that of the connector.
     pub elasticity: f64,
-    /// Impulse applied along the normal [N s].
+    /// Impulse [N s] on the primary body along the normal; `None` until a caller sets it.
     pub impulse: Option<f64>,
-    /// Contact force along the normal [N].
+    /// Contact force [N] on the primary body along the normal; `None` until a caller sets it.
     pub force: Option<f64>,
 }
 
-/// A collision record was used against its rules.
+/// Misuse of a collision record.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CollisionError {
-    /// Detection is set once.
+    /// The first detection was noted a second time.
     #[error("the collision of bodies {primary} and {normal} was already detected at {time} s")]
     AlreadyDetected {
         /// Index of the primary body.
         primary: u32,
         /// Index of the normal body.
         normal: u32,
-        /// When it was detected [s].
+        /// Time of the first detection [s].
         time: f64,
     },
 }
 
-/// One place where two bodies touch or are about to. Absent values are `None`.
+/// Record of one place where two bodies touch or are about to. Absent values are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
-    /// Who collides.
+    /// The two sides, and the origin of the record.
     pub parties: Parties,
-    /// Where.
+    /// Place, normal and distance.
     pub geometry: ContactGeometry,
-    /// How fast.
+    /// Velocities at that place.
     pub motion: ContactMotion,
     /// Thresholds of this collision: a tight fit has its own.
     pub tolerances: Tolerances,
-    /// What was done about it.
+    /// Restitution, impulse and force.
     pub response: Response,
-    /// True if it must be handled: it was found penetrating before the back-up, or someone says so.
+    /// True if the collision must be handled: it was found penetrating before the back-up, or a caller set this.
     pub must_handle: bool,
     /// Time [s] of the last update of geometry and motion.
     pub updated: f64,
@@ -209,7 +212,8 @@ impl Collision {
         }
     }
 
-    /// The record of a measured gap at a time [s].
+    /// The record of a measured gap, given with the signed radii [m] of the primary and the normal feature (`None` for
+    /// a line), at a time [s]. `bodies` are the primary and the normal body.
     #[must_use]
     pub fn new(
         parties: Parties,
@@ -223,7 +227,7 @@ impl Collision {
         Self::from_parts(parties, described, tolerances, elasticity, time)
     }
 
-    /// The record of a connector's row for its bodies a and b at a time [s]; its target gap is 0.
+    /// The record of a connector's measured row for its bodies a and b at a time [s]; its target gap is 0.
     #[must_use]
     pub fn of_connector(
         id: ConnectorId,
@@ -270,22 +274,23 @@ impl Collision {
         self.geometry.distance - self.tolerances.target_gap
     }
 
-    /// What was seen at first detection, if that has been noted.
+    /// State at first detection, if it has been noted.
     #[must_use]
     pub fn detection(&self) -> Option<&Detection> {
         self.detection.as_ref()
     }
 
-    /// Time [s] at which the distance reaches the target gap, if that is estimated.
+    /// Time [s] at which the distance reaches the target gap, as the last update estimated it; `None` without a noted
+    /// detection, or if the target is not reached by the estimate.
     #[must_use]
     pub fn estimate(&self) -> Option<f64> {
         self.estimate
     }
 
-    /// Notes the record's present state as that of its first detection.
+    /// Stores the record's present state as that of its first detection.
     ///
     /// # Errors
-    /// If it was noted before: the first detection stays.
+    /// If a detection was noted before, which then stays.
     pub fn note_detection(&mut self) -> Result<(), CollisionError> {
         if let Some(detection) = self.detection {
             let [BodyId(primary), BodyId(normal)] = self.bodies();
@@ -299,15 +304,15 @@ impl Collision {
         Ok(())
     }
 
-    /// Brings geometry and motion to another time [s], earlier after a back-up, and estimates anew when the distance
-    /// reaches the target gap.
+    /// Updates geometry and motion to another time [s] (an earlier one after a back-up), from a gap and radii as in
+    /// [`Collision::new`], and estimates anew the time at which the distance reaches the target gap.
     ///
-    /// `must_handle` stays true once it was: the collision happened, even though the bodies are apart again.
+    /// `must_handle`, once true, stays true: the collision happened, even though the bodies are apart again.
     pub fn update(&mut self, measured: (&GapSample, [Option<f64>; 2]), bodies: [&Moving; 2], time: f64) {
         self.update_parts(describe(measured.0, measured.1, bodies), time);
     }
 
-    /// As [`Collision::update`], for the row of a connector.
+    /// Updates the record of a connector's row to another time [s], as [`Collision::update`] does that of a contact.
     pub fn update_connector(
         &mut self,
         connector: &Connector,
@@ -337,7 +342,7 @@ impl Collision {
         });
     }
 
-    /// The primary and the normal body.
+    /// Ids of the primary and of the normal body.
     #[must_use]
     #[inline]
     pub fn bodies(&self) -> [BodyId; 2] {
@@ -371,7 +376,7 @@ impl Collision {
     }
 }
 
-/// By how much a contact lies beyond the ends of its line, or of its arcs.
+/// Distance [m] by which a contact lies beyond the ends of its line or of its arcs; 0 within them.
 fn outside(sample: &GapSample, radii: [Option<f64>; 2]) -> f64 {
     let excess = [sample.excess_primary, sample.excess_normal];
     let beyond = |side: usize| excess[side] * radii[side].map_or(0.0, f64::abs);

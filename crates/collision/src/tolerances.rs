@@ -1,26 +1,27 @@
-//! The thresholds of touching, all in one place.
+//! Thresholds of touching, all in one place.
 
-/// Thresholds shared by the layers above geometry. SI units; each field says what it decides.
+/// Thresholds of gaps and speeds, shared by the layers above geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
     /// Gap [m] at which an approaching pair fires: half of `distance_tol`.
     ///
-    /// Larger leaves wider gaps, which impacts amplify; must exceed the rounding of the largest coordinate.
+    /// A larger value leaves wider gaps, which impacts amplify; it must exceed the rounding of the largest coordinate.
     pub target_gap: f64,
     /// Half-width [m] of the target zone, in which a collision is close enough to handle.
     pub accuracy: f64,
-    /// Normal speed [m/s] below which a collision is a contact and its elasticity no longer acts.
+    /// Normal speed [m/s], in size, below which a collision is a contact and its elasticity no longer acts.
     pub velocity_tol: f64,
 }
 
 impl Tolerances {
-    /// Part of the target gap that the half-width of the target zone takes by default.
+    /// Default half-width of the target zone, as a fraction of the target gap [-].
     pub const ACCURACY_SHARE: f64 = 0.6;
-    /// A fit is tight when its clearance is less than this many target gaps; its target is then that part of it.
+    /// Clearance below which a fit is tight, as a multiple of the target gap [-]. The target gap of a tight fit is its
+    /// clearance divided by this.
     pub const TIGHT_FIT: f64 = 4.0;
 
-    /// Part of the accuracy by which a contact without force may sink before it fires again: it lets rates
-    /// that are only rounding pass.
+    /// Distance by which a contact without force may sink before it fires again, as a fraction of the accuracy [-]: it
+    /// lets rates pass that are only rounding.
     pub const SINK_SHARE: f64 = 1.0 / 8.0;
 
     /// Distance [m] by which a contact without force may sink before it fires again.
@@ -39,9 +40,10 @@ impl Tolerances {
         self.target_gap.is_finite() && self.accuracy.is_finite() && self.velocity_tol.is_finite()
     }
 
-    /// The thresholds of a tight fit with the given clearance [m]: a convex arc in a barely larger hollow.
+    /// The thresholds of a fit with the given clearance [m], of a convex arc in a concave one: target gap and accuracy
+    /// are reduced in proportion if it is tight.
     ///
-    /// Unchanged where the clearance is at least four target gaps.
+    /// They are unchanged if the clearance is at least [`TIGHT_FIT`](Self::TIGHT_FIT) target gaps.
     #[must_use]
     pub fn for_clearance(&self, clearance: f64) -> Self {
         if clearance >= Self::TIGHT_FIT * self.target_gap {
@@ -52,10 +54,11 @@ impl Tolerances {
     }
 }
 
-/// Rounding of a length computed from coordinates of size 1, in units of the machine epsilon: a dozen operations.
+/// Rounding of a quantity computed from operands of size 1, as a multiple of the machine epsilon [-]: that of a dozen
+/// operations.
 const ROUNDINGS: f64 = 8.0;
 
-/// Rounding-sized bound on a quantity that was computed from operands of the given size.
+/// Bound on the rounding of a quantity that was computed from operands of the given size, in their unit.
 #[inline]
 pub(crate) fn rounding(size: f64) -> f64 {
     ROUNDINGS * f64::EPSILON * size

@@ -3,7 +3,7 @@
 use crate::record::Collision;
 use crate::tolerances::Tolerances;
 
-/// Where a distance lies relative to the target gap, from far to overlapping.
+/// Zone of a distance relative to the target gap, from far to overlapping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Zone {
     /// 0: farther than `distance_tol`.
@@ -14,7 +14,7 @@ pub enum Zone {
     Target,
     /// 3: nearer than the target zone, not overlapping.
     Near,
-    /// 4: overlapping; where the target zone reaches below 0, as that of a connector does, deeper than that.
+    /// 4: overlapping; if the target zone reaches below 0, as that of a connector does, deeper than the target zone.
     Penetrating,
 }
 
@@ -37,15 +37,15 @@ impl Zone {
     }
 }
 
-/// Predicates on a record; all follow from its zone, its normal velocity, and whether it is bilateral.
+/// Predicates on a record, which follow from its zone, its normal velocity, and whether it is bilateral.
 impl Collision {
-    /// The zone of the distance.
+    /// The zone of the record's distance.
     #[must_use]
     pub fn zone(&self) -> Zone {
         Zone::of(self.geometry.distance, &self.tolerances)
     }
 
-    /// A contact: in range and slow, or bilateral.
+    /// True for a contact: in range, not overlapping and slower than `velocity_tol`, or bilateral.
     #[must_use]
     pub fn is_contact(&self) -> bool {
         let in_range = matches!(self.zone(), Zone::BeyondTarget | Zone::Target | Zone::Near);
@@ -53,20 +53,21 @@ impl Collision {
             || (in_range && self.motion.normal_velocity.abs() < self.tolerances.velocity_tol)
     }
 
-    /// Within `distance_tol`, or bilateral.
+    /// True within `distance_tol`, or if bilateral.
     #[must_use]
     pub fn is_touching(&self) -> bool {
         self.parties.bilateral || self.zone() != Zone::OutOfRange
     }
 
-    /// Near enough to its target to be handled now; `allow_tiny` also admits what lies nearer than the target zone.
+    /// True if the record may be handled now: a contact, or in the target zone. `allow_tiny` also admits distances
+    /// nearer than the target zone.
     #[must_use]
     pub fn is_close_enough(&self, allow_tiny: bool) -> bool {
         let zone = self.zone();
         self.is_contact() || zone == Zone::Target || (allow_tiny && zone == Zone::Near)
     }
 
-    /// Overlapping, or nearer than the target zone and closing; never when bilateral.
+    /// True if overlapping, or nearer than the target zone and closing by more than `velocity_tol`; never if bilateral.
     #[must_use]
     pub fn is_colliding(&self) -> bool {
         let closing = self.motion.normal_velocity < -self.tolerances.velocity_tol;
@@ -78,7 +79,7 @@ impl Collision {
             }
     }
 
-    /// Overlapping, and not bilateral.
+    /// True if overlapping and not bilateral.
     #[must_use]
     pub fn is_illegal(&self) -> bool {
         !self.parties.bilateral && self.zone() == Zone::Penetrating

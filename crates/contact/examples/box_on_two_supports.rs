@@ -1,4 +1,4 @@
-//! A box on a floor: forces from contacts, a warm start for the next step, and what a contradiction looks like.
+//! A box on a floor: contact forces, a warm start for the next step, and the report of a contradiction.
 //!
 //! `cargo run -p halfgap-contact --example box_on_two_supports`
 
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         solution.force, solution.acceleration
     );
 
-    // A ceiling that comes down on the box cannot be kept off: the rows say so themselves.
+    // No forces keep off a ceiling that comes down on the box; the combination of rows in the error proves it.
     problem.add_row(&Row::new(block, [0.0, -1.0, 0.0], -50.0))?;
     match solver.solve(&problem, &mut solution) {
         Err(SolveError::Infeasible(proof)) => {

@@ -1,17 +1,20 @@
-//! A block lands flat: its two lower corners touch the floor at once. What it does then depends on the impact law.
+//! A block lands flat: its two lower corners touch the floor at once. Its motion afterwards depends on the impact law.
 //!
 //! `cargo run -p halfgap-contact --example impact`
 
 use halfgap_collision::BodyId;
 use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder};
 
-/// Mass [kg], width and height [m] of the block, and how fast it comes down [m/s].
+/// Mass of the block [kg].
 const MASS: f64 = 2.0;
+/// Width of the block [m].
 const WIDTH: f64 = 1.0;
+/// Height of the block [m].
 const HEIGHT: f64 = 0.5;
+/// Speed [m/s] at which the block comes down.
 const SPEED: f64 = 3.0;
 
-/// The row of a lower corner, `side` of which is -1 on the left and +1 on the right, against the fixed floor.
+/// The row of a lower corner against the fixed floor; `side` is -1 for the left and +1 for the right corner.
 fn corner(side: f64, elasticity: f64) -> CollisionRow {
     let moment = MASS * (WIDTH * WIDTH + HEIGHT * HEIGHT) / 12.0;
     // The gap grows with the block's y, and with its angle by the corner's arm: J = [n, R x n] with n = +y.

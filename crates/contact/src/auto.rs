@@ -1,10 +1,6 @@
-//! The automatic choice of a method.
+//! The automatic choice of a method; see [`Auto`].
 //!
-//! Unsymmetric problems go to Lemke's method. Of the others, independent islands are solved one by one, each by the
-//! dual active set, unless it is large and its contacts are so redundant that many pivots are in sight, or were made:
-//! then by the proximal method, which begins from an interior point in the second case. If the first choice fails its
-//! check, the others are tried, at last Lemke's with twice as many digits. The reasons and the measurements are in the
-//! project's `docs/contact.md`.
+//! The reasons for the choices and the measurements are in the project's `docs/contact.md`.
 
 use crate::check::Checker;
 use crate::dual_active_set::{DualActiveSet, HandOver};
@@ -21,23 +17,31 @@ use crate::solver::{Method, Solver};
 use crate::start::Start;
 use crate::warm::WarmStart;
 
-/// Rows below which looking for islands costs more than it gains: the factor of a few islands is as narrow.
+/// Number of rows from which islands are looked for first. With fewer rows that costs more than it gains, as the factor
+/// of a few islands together is as narrow.
 const SPLIT_ROWS: usize = 48;
 
-/// Rows up to which Lemke's method is worth a last try on a symmetric problem.
+/// Largest number of rows of a symmetric problem on which Lemke's method is tried last.
 const LAST_RESORT_ROWS: usize = 400;
 
-/// Rows up to which large forces are compared with those found with twice as many digits: beyond, that takes milliseconds.
+/// Largest number of rows for which large forces are compared with those found with twice as many digits; with more
+/// rows that takes milliseconds.
 const RELAXED_ROWS: usize = 32;
 
-/// Growth from which they are compared: forces that are large because rows nearly depend on each other, and any.
+/// Growth from which forces are so compared if they are large because rows nearly depend on each other.
 const STRAINED: f64 = 1e6;
+/// Growth from which any forces are so compared.
 const MUCH_STRAINED: f64 = 1e9;
 
-/// Leakage of a proof that is no more than the rounding of its own numbers.
+/// Largest leakage [-] of a proof that may be the rounding of its own numbers.
 const CLEAR: f64 = 16.0 * f64::EPSILON;
 
-/// Chooses a method, and another if that fails.
+/// Solver that chooses a method by size and structure, and another one if that fails.
+///
+/// Unsymmetric problems go to [`Lemke`]. Others are split into independent islands, solved one by one by the
+/// [`DualActiveSet`]. Large islands whose contacts are so redundant that many pivots are in sight, or were made, go to
+/// [`ProximalNewton`], in the second case from an interior point. If an answer fails its check, the other methods are
+/// tried, at last Lemke's with twice as many digits.
 #[derive(Clone, Debug, Default)]
 pub struct Auto {
     settings: Settings,
@@ -47,7 +51,7 @@ pub struct Auto {
     /// Rows that carry force in an island that was solved.
     carries: Vec<bool>,
     methods: Methods,
-    /// The same for each of the first islands.
+    /// Solvers for each of the first islands.
     by_island: Vec<Methods>,
     checker: Checker,
 }
@@ -60,20 +64,20 @@ struct Methods {
     #[cfg(feature = "qp")]
     qp: Qp,
     lemke: Lemke,
-    /// The last problem was handed over to the proximal method.
+    /// True if the last problem was handed over to the proximal method.
     was_handed_over: bool,
-    /// The last answer is one of nearly dependent rows, with forces as large as that takes.
+    /// True if the last answer took nearly dependent rows as independent, with forces as large as that needs.
     is_strained: bool,
     /// A second answer, to be compared with the first.
     other: Solution,
 }
 
 impl Auto {
-    /// A solver with these settings.
+    /// Makes a solver with the given settings.
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] names a number that is not usable.
+    /// [`SettingsError`] names a setting that is not positive and finite.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         let methods = Methods::new(settings)?;
         Ok(Auto { settings, methods, ..Self::default() })
@@ -96,7 +100,8 @@ impl Auto {
         Ok(())
     }
 
-    /// Solves again a problem that was not split, if it can be: its islands may be small enough to be looked at.
+    /// Solves a problem that was not split again by islands, if it has several: they may be small enough for a
+    /// comparison with more digits.
     #[cold]
     fn look_at_islands(
         &mut self,
@@ -122,11 +127,12 @@ impl Auto {
             match self.solve_island(problem, island, warm, solution) {
                 Err(SolveError::Infeasible(proof)) => {
                     let proof = self.islands.proof_of_whole(problem, island, *proof);
-                    // What is a contradiction beside the offsets of an island may be rounding beside those of all rows.
+                    // A contradiction in units of an island's offsets may be rounding in units of those of all rows.
                     let outcome = self.methods.solve(problem, warm, solution);
                     let is_proof = proof.contradiction > self.settings.inconsistency
                         && proof.least_growth() >= self.settings.least_growth;
-                    // A solution refutes it if rounding is not all that it leaks by, or with smaller forces than it allows.
+                    // A solution refutes the proof if the proof leaks more than rounding, or if the forces are smaller
+                    // than it allows.
                     let is_doubtful =
                         proof.leakage > CLEAR || solution.residuals.growth < proof.least_growth();
                     let is_refuted = outcome.is_ok() && is_doubtful;
@@ -143,7 +149,7 @@ impl Auto {
         if solution.residuals.accepted(&self.settings, solution.inconsistency) {
             return Ok(());
         }
-        // Growth is judged against the offsets of all rows: an island's forces may be too small for it.
+        // Growth is measured by the offsets of all rows, and may then be too small for the backward residual to count.
         self.methods.solve(problem, warm, solution)
     }
 
@@ -208,7 +214,8 @@ impl Methods {
         }
         let start = warm.map_or(Start::Nothing, Start::Earlier);
         let may_hand_over = problem.has_bodies() && self.settings.selection != ForceSelection::LeastNorm;
-        // What was handed over a step ago is so again: the redundancy lies in the rows, which are the same.
+        // A problem whose matrix was handed over in the last solve is handed over again: the redundancy lies in the
+        // rows.
         let was_handed_over = std::mem::take(&mut self.was_handed_over);
         let again = may_hand_over && was_handed_over && warm.is_some() && self.proximal.is_loaded(problem);
         let first = if again {
@@ -238,19 +245,20 @@ impl Methods {
         outcome.and_then(|()| self.relax(problem, solution))
     }
 
-    /// Whether forces are so large that they are to be compared with those found with twice as many digits.
+    /// Whether the forces are so large that they must be compared with those found with twice as many digits.
     fn is_to_be_relaxed(&self, solution: &Solution) -> bool {
         let least = if self.is_strained { STRAINED } else { MUCH_STRAINED };
         solution.residuals.growth >= least && self.settings.contradiction == Contradiction::SolveExactly
     }
 
-    /// The same of the last answer, where the problem was too large for it.
+    /// Whether the last answer should have been compared so, but had too many rows.
     fn is_left_in_doubt(&self, problem: &Problem, solution: &Solution) -> bool {
         problem.is_symmetric() && problem.len() > RELAXED_ROWS && self.is_to_be_relaxed(solution)
     }
 
-    /// Where nearly dependent rows were solved by large forces, contacts may have been judged by what rounding leaves of
-    /// these, and by forces that are larger still rows that have no solution at all: looks with twice as many digits.
+    /// Compares large forces with those found with twice as many digits, and takes the better answer or the proof that
+    /// there is none. With large forces, the rounding of these may have decided which contacts are closed; with even
+    /// larger ones, rows that have no solution may seem satisfied.
     fn relax(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
         if problem.len() > RELAXED_ROWS || !self.is_to_be_relaxed(solution) {
             return Ok(());
@@ -265,7 +273,7 @@ impl Methods {
         Ok(())
     }
 
-    /// Moves forces that are shared to independent rows, if they are to be those of a vertex.
+    /// Moves shared forces to independent rows if the settings ask for a vertex.
     fn cross_over(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
         if self.settings.selection != ForceSelection::Vertex {
             return Ok(());
@@ -273,7 +281,7 @@ impl Methods {
         self.dual.cross_over(problem, solution)
     }
 
-    /// Another method, where the first one came to nothing; its error stands if none helps.
+    /// Tries the other methods after the first one failed with `error`, which is returned if none helps.
     fn try_others(
         &mut self,
         problem: &Problem,
@@ -287,7 +295,7 @@ impl Methods {
         if self.proximal.solve(problem, solution).is_ok() {
             return Ok(());
         }
-        // Where there is no solution, its forces have grown along a direction that proves it.
+        // If there is no solution, the forces of the proximal method have grown along a direction that proves it.
         if solution.residuals.growth >= self.settings.least_growth {
             self.refine_direction(problem, &solution.force)?;
         }
@@ -307,7 +315,7 @@ impl Methods {
         Err(error)
     }
 
-    /// An error if a proof that leaves doubt can be refined to one that leaves none.
+    /// Returns the proof as an error if a doubtful one can be refined to a certain one.
     #[cold]
     fn refine(&mut self, problem: &Problem, error: &SolveError) -> Result<(), SolveError> {
         match error {
@@ -359,7 +367,7 @@ mod tests {
         assert!(10 * found.iterations < pivoted.iterations, "{}, {}", found.iterations, pivoted.iterations);
         let errors = found.acceleration.iter().zip(&pivoted.acceleration).map(|(a, b)| (a - b).abs());
         assert!(errors.fold(0.0, f64::max) < 1e-9);
-        // Forces that are to be those of independent rows are moved to such.
+        // With `Vertex`, forces are moved to independent rows.
         let settings = Settings { selection: ForceSelection::Vertex, ..Settings::default() };
         let mut auto = Auto::new(settings).expect("fine settings");
         auto.solve(&problem, &mut found).expect("forces of a pyramid");

@@ -1,8 +1,8 @@
-//! Bimatrix games among linear complementarity problems. How they are solved: `lemke`.
+//! Recognition of bimatrix games among linear complementarity problems. `lemke` solves them.
 //!
-//! R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, section 1.2: of costs A, B > 0 to two
-//! players, M = [0 A; Bᵀ 0] and q = -1; a solution is, up to its size on either side, a pair of strategies in equilibrium. Here
-//! rows may be in any order, and q anything negative, which is a matter of scale.
+//! R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, section 1.2: with the costs A, B > 0 of
+//! two players, M = [0 A; Bᵀ 0] and q = -1, a solution is, up to its size on either side, a pair of strategies in
+//! equilibrium. Here rows may be in any order, and q may be any negative vector, which is a matter of scale.
 
 use crate::matrix::SparseMatrix;
 use crate::problem::Problem;

@@ -1,7 +1,7 @@
-//! Sparse Cholesky factor of I + Ĵᵀ W Ĵ, the Newton matrix in body space with a weight of each row, by faer.
+//! Sparse Cholesky factor of I + Ĵᵀ W Ĵ, the Newton matrix in body space with a weight W of each row, by faer.
 //!
 //! Its pattern is that of all rows, closed or not, so that the symbolic analysis (fill-reducing order, elimination
-//! tree) serves as long as the same bodies touch. Buffers are kept: factoring again allocates nothing.
+//! tree) stays valid while the same bodies touch. Buffers are kept; factoring again allocates nothing.
 
 use std::fmt;
 
@@ -15,10 +15,10 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 
 use crate::system::System;
 
-/// The factor, its symbolic analysis and the pattern it is for.
+/// The factor, its symbolic analysis and its pattern.
 #[derive(Debug, Default)]
 pub(crate) struct BodyFactor {
-    /// The rows' pattern that the analysis is for.
+    /// The pattern of rows for which the analysis was made.
     start: Vec<usize>,
     column: Vec<u32>,
     /// Lower triangle of the matrix, by columns.
@@ -44,7 +44,7 @@ impl fmt::Debug for Analysis {
 }
 
 impl Clone for BodyFactor {
-    /// The analysis, which cannot be copied, is made anew: of the same pattern it is the same.
+    /// Makes the analysis anew, as it cannot be copied; for the same pattern it is the same.
     fn clone(&self) -> Self {
         let mut copy = Self {
             start: self.start.clone(),
@@ -67,7 +67,8 @@ impl Clone for BodyFactor {
 }
 
 impl BodyFactor {
-    /// Prepares for the rows of `system`; the analysis is kept if the pattern is the same. Returns whether it could.
+    /// Prepares for the rows of `system`; the analysis is kept if the pattern is the same. Returns whether there is an
+    /// analysis.
     pub(crate) fn prepare(&mut self, system: &System, columns: usize) -> bool {
         let same = self.analysis.is_some()
             && self.column_start.len() == columns + 1
@@ -137,7 +138,7 @@ impl BodyFactor {
         self.analysis = Some(Analysis { symbolic, factor, memory: MemBuffer::new(numeric.or(solve)) });
     }
 
-    /// Factors I + Ĵᵀ W Ĵ with a weight W of each row. Returns whether that went well.
+    /// Factors I + Ĵᵀ W Ĵ with a weight W of each row. Returns whether that succeeded.
     pub(crate) fn factor(&mut self, system: &System, weight: impl Fn(usize) -> f64) -> bool {
         self.value.fill(0.0);
         for begin in &self.column_start[..self.column_start.len() - 1] {

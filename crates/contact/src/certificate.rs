@@ -1,19 +1,19 @@
-//! Proofs that there is no solution, refined until they leave no doubt.
+//! Proofs that there is no solution, refined until they are certain.
 //!
-//! Where no forces satisfy the rows, those that a method ends with have grown along a combination z of the rows, z ≥ 0 on
-//! contacts, that moves next to nothing, u = Jᵀ z ≈ 0, while bᵀz < 0: of the iterates of a proximal point method G.
-//! Banjac, P. Goulart, B. Stellato, S. Boyd, "Infeasibility detection in the alternating direction method of multipliers
-//! for convex optimization", Journal of Optimization Theory and Applications 183, 2019, 490-519. So have certificates of
-//! other methods, but for rounding that pivots have enlarged. The nearest combination of the same rows that moves nothing
-//! is, in scaled quantities,
+//! Where no forces satisfy the rows, the forces with which a method ends have grown along a combination z of the rows,
+//! z ≥ 0 on contacts, that hardly moves the bodies, u = Jᵀ z ≈ 0, while bᵀz < 0. For the iterates of a proximal point
+//! method this is shown by G. Banjac, P. Goulart, B. Stellato, S. Boyd, "Infeasibility detection in the alternating
+//! direction method of multipliers for convex optimization", Journal of Optimization Theory and Applications 183, 2019,
+//! 490-519. Certificates of other methods are such combinations too, up to rounding that pivots have enlarged. The
+//! nearest combination of the same rows that moves no body is, in scaled quantities,
 //!
 //! ```text
 //! ẑ - Ĵ_S (δ I + Ĵ_Sᵀ Ĵ_S)⁻¹ û,    S the rows with z ≠ 0, δ → 0.
 //! ```
 //!
-//! A few such steps, with z and u in 31 digits from the data as given, leave of u what the rounding of the data makes
-//! it (levers of 1e-17 m, of normals through a centre), and of A z the square of that; rows that but nearly depend on each
-//! other leave far more.
+//! After a few such steps, with z and u in 31 digits from the data as given, u is only the rounding of the data (arms
+//! of 1e-17 m of normals through a centre), and A z the square of that. Rows that depend on each other only nearly
+//! leave far more.
 
 use crate::body_factor::BodyFactor;
 use crate::error::Infeasibility;
@@ -23,21 +23,23 @@ use crate::settings::Settings;
 use crate::system::System;
 use crate::twofold::{Number, Twofold};
 
-/// δ, in units of the unit diagonal of Â: each step leaves δ/(δ + λ) of û in the direction of an eigenvalue λ of Â.
+/// δ, in units of the diagonal of Â, which is 1: each step leaves δ/(δ + λ) of û in the direction of an eigenvalue λ of
+/// Â.
 const TERM: f64 = 1e-11;
 
-/// Cap on the steps, and part of û that a step leaves where there is nothing to be gained any more.
+/// Cap on the steps.
 const STEPS: usize = 20;
+/// Fraction of û: the steps end when one leaves at least this fraction of it.
 const SETTLED: f64 = 0.5;
 
-/// Part of the largest component below which one of a contact is none of the direction along which forces grew.
+/// Fraction of the largest component: smaller ones of contacts are not part of the direction along which forces grew.
 const PART: f64 = 1e-6;
 
-/// Size of û, beside a largest component 1 of ẑ, that comes of the rounding of J. A z is of second order in û, and would be
-/// rounding long before.
+/// Largest size of û, for a largest component 1 of ẑ, that comes from the rounding of J. A z is of second order in û,
+/// and would be rounding long before.
 const MOVED: f64 = 64.0 * f64::EPSILON;
 
-/// A combination of rows on the way to one that moves nothing.
+/// A combination of rows on the way to one that moves no body.
 struct Combination<'a> {
     problem: &'a Problem,
     bodies: &'a BodyRows,
@@ -50,7 +52,8 @@ struct Combination<'a> {
     change: Vec<f64>,
 }
 
-/// The proof made of a direction of the rows of bodies, if it leaves no doubt; by a factor that is prepared for the system.
+/// Makes a certain proof from a direction of the rows of bodies, with a `factor` that is prepared for `system`; `None`
+/// if that fails.
 pub(crate) fn refine(
     problem: &Problem,
     system: &System,
@@ -79,7 +82,7 @@ pub(crate) fn refine(
 }
 
 impl<'a> Combination<'a> {
-    /// From a direction; `None` if that is none.
+    /// Starts from a direction; `None` if that is zero or not finite.
     fn begin(
         problem: &'a Problem,
         bodies: &'a BodyRows,
@@ -105,7 +108,7 @@ impl<'a> Combination<'a> {
         })
     }
 
-    /// Whether a row may take part.
+    /// Whether a row may be part of the combination.
     fn is_in(&self, row: usize) -> bool {
         self.problem.bilateral[row] || self.parts[row] > Twofold::default()
     }
@@ -114,7 +117,7 @@ impl<'a> Combination<'a> {
         self.motion = motion_by(self.bodies, &self.parts);
     }
 
-    /// Takes what the solved motion says off the parts. Returns whether a contact has dropped out by that.
+    /// Subtracts the correction by the solved motion from the parts. Returns whether a contact has dropped out.
     fn correct(&mut self) -> bool {
         self.system.pull(&self.motion, &mut self.change);
         let mut is_changed = false;
@@ -131,7 +134,7 @@ impl<'a> Combination<'a> {
         is_changed
     }
 
-    /// What it proves, if that leaves no doubt; what is returned is rounded.
+    /// The proof by this combination, rounded to `f64`, if it is certain.
     fn proof(&self, settings: &Settings) -> Option<Infeasibility> {
         let offsets = self.problem.offset.iter().map(|b| Twofold::from(*b));
         let worth = offsets.zip(&self.parts).fold(Twofold::default(), |sum, (b, z)| sum + b * *z).nearest();
@@ -149,7 +152,7 @@ impl<'a> Combination<'a> {
         is_certain.then_some(Infeasibility { row, direction, contradiction, leakage })
     }
 
-    /// Largest scaled component of A z, by û.
+    /// Largest scaled component of A z, computed as Ĵ û.
     fn leakage(&self, motion: &[f64]) -> f64 {
         let mut image = vec![0.0; self.parts.len()];
         self.system.pull(motion, &mut image);
@@ -169,7 +172,7 @@ fn motion_by(bodies: &BodyRows, parts: &[Twofold]) -> Vec<f64> {
     sums.iter().zip(&bodies.inverse_mass).map(|(sum, w)| sum.nearest() * w.sqrt()).collect()
 }
 
-/// The largest size of some numbers; infinite where one is not a number.
+/// The largest absolute value; infinite if one is NaN.
 fn largest_of(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most: f64, v| if v.is_nan() { f64::INFINITY } else { most.max(v.abs()) })
 }
@@ -182,7 +185,7 @@ mod tests {
 
     const DISCS: usize = 5;
 
-    /// Discs of unlike masses in a column between a floor and a lid, which would come so much nearer to each other.
+    /// Discs of unlike masses in a column between a floor and a lid that approach each other by a given amount.
     fn column(nearer: f64) -> Result<Problem, ProblemError> {
         let mut rows = Vec::new();
         for disc in 0..DISCS {
@@ -200,14 +203,14 @@ mod tests {
         let proof = solver.refine_proof(&column(1.0)?, &rough).expect("discs that are squeezed");
         assert!(proof.direction.iter().all(|z| (z / proof.direction[0] - 1.0).abs() < 1e-15), "{proof:?}");
         assert!(proof.contradiction > 0.01 && proof.leakage < 1e-15, "{proof:?}");
-        // What comes no nearer has room.
+        // A lid that does not approach leaves the discs room.
         assert_eq!(solver.refine_proof(&column(-1.0)?, &rough), None);
         Ok(())
     }
 
     #[test]
     fn rows_that_nearly_cancel_each_other_prove_nothing() -> Result<(), ProblemError> {
-        // A wedge that slips out of its slot, of next to no angle, by A z of 1e-16.
+        // A wedge that slips out of its slot, of nearly no angle, with A z of 1e-16.
         let rows = [(0, 1, 1.0), (1, 0, 1e-8), (1, 1, -1.0)];
         let problem = Problem::from_rows(&rows, &[1.0, 1.0], &[-1.0, -1.0])?;
         assert_eq!(ProximalNewton::default().refine_proof(&problem, &[1.0, 1.0]), None);

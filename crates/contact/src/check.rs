@@ -1,16 +1,4 @@
-//! How wrong an answer is, from the original data alone.
-//!
-//! With s_i = sqrt(A_ii) (1 where A_ii = 0) and a = A f + b:
-//!
-//! * natural residual: r_nat = max_i φ_i / max|b/s|, with φ = |min(s f, a/s)| on a unilateral and |a/s| on a bilateral
-//!   row; the denominator is 1 where b = 0;
-//! * growth = max_i Σ_j |A_ij f_j| / s_i / max|b/s|: how much larger the terms of an acceleration are than the data;
-//! * backward residual: r_bwd = r_nat / (1 + growth).
-//!
-//! Scaling makes them independent of units and of a row's scaling. An answer exact to rounding has r_nat of about
-//! growth times 1e-16, so problems with great mass ratios are judged by r_bwd; but r_bwd alone would accept anything
-//! with huge forces, so growth is capped. The thresholds are in [`Settings`].
-//! Source for the natural residual: R. Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.10.
+//! Checks of answers, computed from the original data alone. The formulas are at [`Residuals`].
 
 use std::fmt;
 
@@ -19,19 +7,33 @@ use crate::matrix::{BodyRows, Matrix, SparseMatrix};
 use crate::problem::Problem;
 use crate::settings::Settings;
 
-/// Residuals of an answer; see the module for the formulas.
+/// Residuals of an answer, computed from the original data alone.
+///
+/// With s_i = sqrt(A_ii) (1 where A_ii = 0) and a = A f + b:
+///
+/// * natural residual: r_nat = max_i φ_i / max|b/s|, with φ = |min(s f, a/s)| on a unilateral and |a/s| on a bilateral
+///   row; the denominator is 1 where b = 0;
+/// * growth = max_i Σ_j |A_ij f_j| / s_i / max|b/s|: ratio of the terms of an acceleration to the data, with the same
+///   denominator;
+/// * backward residual: r_bwd = r_nat / (1 + growth).
+///
+/// The scaling makes all three independent of units and of the scaling of a row. An answer exact to rounding has r_nat
+/// of about growth times 1e-16, so problems with large mass ratios are judged by r_bwd. As r_bwd alone would accept any
+/// answer with huge forces, growth is capped. The thresholds are in [`Settings`]. Source of the natural residual: R.
+/// Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.10. An answer that is not finite has
+/// infinite residuals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residuals {
-    /// Natural residual r_nat, in units of the scale max|b/s|.
+    /// Natural residual r_nat [-], in units of the scale max|b/s|.
     pub natural: f64,
-    /// Growth of the terms over the data.
+    /// Growth [-]: largest sum of terms of an acceleration, in units of the scale.
     pub growth: f64,
-    /// Backward residual r_nat / (1 + growth).
+    /// Backward residual r_bwd = r_nat / (1 + growth) [-].
     pub backward: f64,
 }
 
 impl Residuals {
-    /// Computes the residuals of the forces `force` for `problem`.
+    /// Computes the residuals of the forces `force` \[N\] (or impulses [N·s]), one per row of `problem`.
     ///
     /// # Panics
     ///
@@ -42,8 +44,11 @@ impl Residuals {
         Checker::default().check(problem, force, &mut acceleration)
     }
 
-    /// Whether an answer with these residuals is right, allowing for a known contradiction `inconsistency` between
-    /// dependent rows.
+    /// Returns whether an answer with these residuals passes the thresholds of `settings`.
+    ///
+    /// `inconsistency` is the known contradiction between dependent rows, in units of the scale
+    /// ([`Solution::inconsistency`](crate::Solution::inconsistency)). It is taken off the natural residual, and must
+    /// not exceed [`Settings::inconsistency`].
     #[must_use]
     pub fn accepted(&self, settings: &Settings, inconsistency: f64) -> bool {
         let natural = self.natural - inconsistency;
@@ -57,7 +62,8 @@ impl Residuals {
 }
 
 impl Problem {
-    /// Accelerations A f + b of the rows [m/s²] under the forces `force`, by J where the problem has one.
+    /// Returns the accelerations A f + b of the rows [m/s²] under the forces `force` \[N\], computed by J where the
+    /// problem has one.
     ///
     /// # Panics
     ///
@@ -77,20 +83,20 @@ impl fmt::Display for Residuals {
     }
 }
 
-/// Computes residuals in buffers of its own.
+/// Computes residuals, with buffers that are kept from check to check.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Checker {
     /// M⁻¹ Jᵀ f per column, and the sum of its absolute terms.
     velocity: Vec<[f64; 2]>,
-    /// Per row, a bound on its growth, and 1/s.
+    /// Per row, an upper bound on Σ_j |A_ij f_j| / s_i, and 1/s_i.
     bound: Vec<[f64; 2]>,
-    /// Rows with force per column: offsets and (row, J M⁻¹ f of that entry).
+    /// Rows that carry force, by column: offsets and (row, J M⁻¹ f of that entry).
     start: Vec<usize>,
     entry: Vec<(usize, f64)>,
-    /// One row of A f by row of f, and which of its places are in use.
+    /// Terms A_ij f_j of one row i, by j, and the j whose terms are set.
     term: Vec<f64>,
     used: Vec<usize>,
-    /// The entries of A, if the rows are of bodies seen before.
+    /// The entries of A, formed once the same pattern of rows has come twice.
     entries: Entries,
     /// Per row, Σ_j |A_ij f_j|.
     sum: Vec<f64>,
@@ -114,7 +120,7 @@ impl Checker {
         }
     }
 
-    /// The same, where the entries of the problem's A are formed if there are any.
+    /// Does as [`check`](Self::check), with the given `entries` of the problem's A if they are formed.
     pub(crate) fn check_with(
         &mut self,
         entries: &Entries,
@@ -205,8 +211,8 @@ impl Checker {
         }
     }
 
-    /// max_i Σ_j |A_ij f_j| / s_i. The sums by column bound those by row, so that only rows whose bound exceeds what is
-    /// found already need be looked at.
+    /// max_i Σ_j |A_ij f_j| / s_i. The bound of a row, made of sums by column, is at least its sum, so that only rows
+    /// whose bound exceeds the largest sum so far are evaluated.
     fn largest_terms(&mut self, bodies: &BodyRows, force: &[f64]) -> f64 {
         let Some(top) = (0..force.len()).max_by(|&i, &j| self.bound[i][0].total_cmp(&self.bound[j][0]))
         else {
@@ -233,7 +239,7 @@ impl Checker {
         self.term.resize(force.len(), 0.0);
         self.used.reserve(force.len());
         for (j, _) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
-            // What does not move couples nothing, and a floor may have as many rows as there are.
+            // An immovable column couples no rows, and that of a floor may hold all rows of the problem.
             let movable = bodies.rows.row(j).0.iter().filter(|k| bodies.inverse_mass[**k] > 0.0);
             movable.for_each(|&k| self.start[k + 2] += 1);
         }
@@ -302,7 +308,7 @@ struct Sums {
     residual: f64,
     terms: f64,
     scale: f64,
-    /// Set once a residual is not a number, which no maximum would notice.
+    /// True once a residual, force or acceleration is not finite: `f64::max` would drop a NaN.
     broken: bool,
 }
 

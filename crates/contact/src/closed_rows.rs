@@ -1,4 +1,4 @@
-//! The closed rows C of an active-set method: which they are, the factor of Â_CC, forces and accelerations.
+//! The closed rows C of an active-set method, with the factor of Â_CC, forces and accelerations.
 //!
 //! All quantities are the scaled ones of [`System`]. Bilateral rows are free: their force may take any sign, and they
 //! never leave C.
@@ -11,12 +11,14 @@ use crate::settings::DOUBTFUL;
 use crate::skyline::Skyline;
 use crate::system::System;
 
+/// Position of an open row.
 const OPEN: u32 = u32::MAX;
 
-/// Part of what the diagonal is raised by that a row's Schur complement may lose to rounding.
+/// Fraction of the raise of the diagonal: a Schur complement up to it counts as dependent, as rounding may have taken
+/// the rest.
 const LOST: f64 = 0.25;
 
-/// Rounding of what is left of a row: so much times 1 + |z|², where z times the closed rows are closest to it.
+/// Rounding of a scaled Schur complement, in units of 1 + |z|², where z times the closed rows is closest to the row.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// State shared by the phases of the dual active-set method.
@@ -30,57 +32,57 @@ pub(crate) struct ClosedRows {
     pub(crate) rows: Vec<usize>,
     /// Position of each row, or `OPEN`.
     position: Vec<u32>,
-    /// Whether the closed rows and the factor are still those of the last solve, of the same matrix.
+    /// Whether the closed rows and the factor are those of the last solve, with the same matrix.
     reusable: bool,
     /// Envelope of the factor when rows were last closed in order.
     pub(crate) narrow_envelope: usize,
     /// Flags and forces while rows are closed anew.
     again: Vec<bool>,
-    /// How many of the first positions are kept when all others are opened: the bilateral rows, if they came first.
+    /// Number of first positions that stay when all others are opened: the bilateral rows, if they were closed first.
     pub(crate) kept: usize,
-    /// Which rows are bilateral.
+    /// One flag per row: true if it is bilateral.
     pub(crate) free: Vec<bool>,
     /// Scaled force of every row.
     pub(crate) force: Vec<f64>,
     /// Scaled acceleration of every row.
     pub(crate) acceleration: Vec<f64>,
-    /// Largest sum of terms of an acceleration at the last evaluation, or a bound on it.
+    /// Largest sum of absolute terms of an acceleration at the last evaluation, or a bound on it.
     pub(crate) terms: f64,
-    /// Whether `terms` is only a bound, Σ|f̂|, for no entry of Â exceeds 1.
+    /// Whether `terms` is only the bound Σ|f̂|, as no entry of Â exceeds 1.
     pub(crate) terms_bound: bool,
-    /// What [`consider`](Self::consider) found: L⁻¹ Â_Cd.
+    /// L⁻¹ Â_Cd of the row d last [considered](Self::consider).
     reach: Vec<f64>,
-    /// Where that may not be zero.
+    /// Positions where `reach` may not be zero.
     reached: Range<usize>,
-    /// Shares of the closed rows in one that nearly depends on them.
+    /// Shares of the closed rows in a row that nearly depends on them.
     shares: Vec<f64>,
     /// Solutions of systems with the factor.
     pub(crate) step: Vec<f64>,
-    /// Least Schur complement of a row that is independent of the closed rows.
+    /// Scaled Schur complement up to which a row depends on the closed rows.
     dependence: f64,
-    /// Whether a row of which no more than rounding is left counts as dependent, too.
+    /// Whether a row whose remainder may be rounding counts as dependent, too.
     doubts: bool,
     /// Added to the diagonal of Â: 0, or the proximal term of the least-norm selection.
     pub(crate) proximal: f64,
-    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed;
-    /// what forces then lack is left to refinement.
+    /// Added to the diagonal of the factor alone, so that rows that depend on each other can all be closed; refinement
+    /// removes the error of the forces.
     pub(crate) spread: f64,
-    /// Whether there was such a raise in the last solve.
+    /// Whether the factor was raised so in the last solve.
     pub(crate) was_spread: bool,
 }
 
-/// How a row relates to the closed rows.
+/// Relation of a row to the closed rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Relation {
-    /// Schur complement Â_dd - Â_dC Â_CC⁻¹ Â_Cd, the squared part of the row that the closed rows leave.
+    /// Schur complement Â_dd - Â_dC Â_CC⁻¹ Â_Cd: the remainder of the row's square, 1, that the closed rows leave.
     pub(crate) complement: f64,
-    /// Whether that is zero up to rounding.
+    /// Whether the complement is zero up to the dependence of the attempt.
     pub(crate) dependent: bool,
     first: usize,
 }
 
 impl ClosedRows {
-    /// Loads a problem; all forces zero. The rows closed before and their factor stay if only b has changed.
+    /// Loads a problem and sets all forces to zero. The closed rows and their factor stay if only b has changed.
     pub(crate) fn load(&mut self, problem: &Problem, dependence: f64, doubts: bool) {
         let same = self.system.load(problem);
         let n = problem.len();
@@ -115,7 +117,7 @@ impl ClosedRows {
         self.position.resize(n, OPEN);
     }
 
-    /// Whether the rows with a flag are just those that are closed already, from the last solve.
+    /// Whether the flagged rows are exactly those that are still closed from the last solve.
     pub(crate) fn still_closed(&mut self, flags: &[bool]) -> bool {
         let reusable = std::mem::take(&mut self.reusable);
         reusable && flags.iter().zip(&self.position).all(|(flag, position)| *flag == (*position != OPEN))
@@ -138,7 +140,7 @@ impl ClosedRows {
     /// them, for the null direction by which [`Shift`](crate::dependent::Shift) reconciles them.
     pub(crate) fn consider(&mut self, row: usize) -> Relation {
         let closed = self.len();
-        // Only what an earlier row left is not zero.
+        // Only the range of the row considered before is not zero.
         self.reach[self.reached.clone()].fill(0.0);
         let first = self.system.gather(row, &self.position, closed, &mut self.reach);
         self.reached = first..closed;
@@ -150,14 +152,13 @@ impl ClosedRows {
         Relation { dependent: relation.dependent || (self.doubts && self.is_doubtful(relation)), ..relation }
     }
 
-    /// True if it is bilateral rows that the row found doubtful nearly depends on: of contacts it takes less
-    /// than it has itself.
+    /// True if the row just found doubtful nearly depends on bilateral rows: all its shares of contacts are below 1.
     fn depends_on_bilateral(&self) -> bool {
         let mut shares = self.shares.iter().zip(&self.rows);
         shares.all(|(share, &row)| self.free[row] || share.abs() < 1.0)
     }
 
-    /// Rounding of the Schur complement of the row just considered: that of Â, enlarged where the closed rows
+    /// Rounding of the Schur complement of the row just considered. It is that of Â, enlarged where the closed rows
     /// nearly depend on each other.
     fn rounding(&mut self, closed: usize) -> f64 {
         let shares = &mut self.shares;
@@ -185,13 +186,14 @@ impl ClosedRows {
         !relation.dependent
     }
 
-    /// Closes the rows with a flag, as far as they are independent, in the order that keeps the factor narrow. Returns
-    /// whether every bilateral one was.
+    /// Closes the flagged rows that are independent, in the order that keeps the factor narrow. Returns whether every
+    /// bilateral one is.
     pub(crate) fn close_flagged(&mut self, flags: &[bool]) -> bool {
         self.close_independent(flags, 0.0)
     }
 
-    /// The same, of unilateral rows only those that leave more than `least` of their squares.
+    /// Does as [`close_flagged`](Self::close_flagged), but closes a unilateral row only if more than the fraction
+    /// `least` of its square is left.
     pub(crate) fn close_independent(&mut self, flags: &[bool], least: f64) -> bool {
         let mut independent = true;
         for place in 0..self.order.rows.len() {
@@ -212,9 +214,9 @@ impl ClosedRows {
         independent
     }
 
-    /// Closes the bilateral rows as far as they are independent, those of which little is left after all
-    /// others: of one that is closed too early those that depend on it leave nothing but its rounding,
-    /// enlarged to what passes for independent. Returns whether every one was.
+    /// Closes the bilateral rows that are independent, those of which little is left after all others. If one of these
+    /// were closed too early, its rounding, enlarged, would make rows that depend on it pass for independent. Returns
+    /// whether every bilateral row is independent.
     pub(crate) fn close_bilateral(&mut self) -> bool {
         let mut independent = true;
         for least in [DOUBTFUL, 0.0] {
@@ -235,15 +237,16 @@ impl ClosedRows {
         independent
     }
 
-    /// True if what is left of the row just considered may be no more than rounding. A raise is far more than that.
+    /// True if the remainder of the row just considered may be rounding. Never with a raised factor, as the raise is
+    /// far more than rounding.
     fn is_doubtful(&mut self, relation: Relation) -> bool {
         self.spread == 0.0
             && relation.complement <= DOUBTFUL
             && relation.complement <= self.rounding(self.len())
     }
 
-    /// Closes the same rows again, in order, with the forces they have. Returns false if rounding made one dependent:
-    /// it is open now, without force.
+    /// Closes the same rows anew, in the narrow order, with their forces. Returns false if rounding made one dependent,
+    /// which is then open and has no force.
     pub(crate) fn refactor(&mut self) -> bool {
         let closed = self.len();
         let mut again = std::mem::take(&mut self.again);
@@ -266,7 +269,7 @@ impl ClosedRows {
         }
     }
 
-    /// Opens all rows but those that are kept, whose factor stays.
+    /// Opens all rows except the `kept` ones, whose factor stays.
     pub(crate) fn open_all(&mut self) {
         for at in self.kept..self.rows.len() {
             let row = self.rows[at];
@@ -278,15 +281,15 @@ impl ClosedRows {
         self.factor.truncate(self.kept);
     }
 
-    /// Leaves in `step[..closed]` the change of the closed forces, with sign reversed, that keeps the closed
-    /// accelerations while the force of the row last considered grows by one: Â_CC⁻¹ Â_Cd.
+    /// Writes Â_CC⁻¹ Â_Cd to `step[..closed]`: minus the change of the closed forces that keeps the closed
+    /// accelerations while the force of the row last considered grows by one.
     pub(crate) fn find_response(&mut self) {
         let closed = self.len();
         self.step[..closed].copy_from_slice(&self.reach[..closed]);
         self.factor.backward(&mut self.step[..closed]);
     }
 
-    /// Sets the closed forces to those with zero acceleration; they may be negative.
+    /// Sets the closed forces to those with zero acceleration of the closed rows; they may be negative.
     pub(crate) fn solve_closed(&mut self) {
         let closed = self.len();
         for (at, &row) in self.rows.iter().enumerate() {
@@ -298,7 +301,7 @@ impl ClosedRows {
         }
     }
 
-    /// One step of iterative refinement of the closed forces; unilateral ones stay admissible.
+    /// Makes one step of iterative refinement of the closed forces; unilateral ones stay admissible.
     pub(crate) fn refine(&mut self) {
         let closed = self.len();
         for (at, &row) in self.rows.iter().enumerate() {
@@ -318,7 +321,7 @@ impl ClosedRows {
         self.add_proximal();
     }
 
-    /// The same in less time, with a bound on their terms.
+    /// Evaluates all accelerations in less time, with only a bound on the sums of their terms.
     pub(crate) fn accelerate_roughly(&mut self) {
         if !self.system.evaluate(&self.force, &mut self.acceleration) {
             return self.accelerate();
@@ -336,7 +339,7 @@ impl ClosedRows {
         }
     }
 
-    /// Opens the rows without a flag. Forces of the others stay.
+    /// Opens the rows without a flag. The forces of the others stay.
     pub(crate) fn open_unflagged(&mut self, flags: &[bool]) {
         self.step.copy_from_slice(&self.force);
         self.open_all();
@@ -365,7 +368,7 @@ mod tests {
         closed.load(&problem, 1e-11, false);
         closed.spread = 1e-9;
         assert!(closed.close_flagged(&[true, true]));
-        // What takes a pass over the factor for each row was not looked at.
+        // The rounding, which takes a pass over the factor for each row, was not computed.
         assert_eq!((closed.len(), closed.shares.len()), (2, 0));
         Ok(())
     }

@@ -1,5 +1,5 @@
-//! Forces that many rows share, moved to rows that do not depend on each other: those of a method that spreads
-//! them, where they are to be those of a vertex, and those at the end of a descent.
+//! Moves forces that many rows share to rows that do not depend on each other: those of a method that spreads them, if
+//! the settings ask for a vertex, and those at the end of a descent.
 
 use crate::dual_active_set::{DualActiveSet, REFINED};
 use crate::error::SolveError;
@@ -9,11 +9,11 @@ use crate::settings::WELL;
 use crate::solution::Solution;
 use crate::start::Start;
 
-/// So many rows leave one by one; for more a new factor is cheaper.
+/// Largest number of rows that leave one by one; for more a new factor is cheaper.
 const FEW: usize = 8;
 
 impl DualActiveSet {
-    /// Answers with the forces of an answer of another method, moved to independent rows.
+    /// Moves the forces of another method's `solution` to independent rows, and makes that the answer.
     pub(crate) fn cross_over(
         &mut self,
         problem: &Problem,
@@ -49,8 +49,8 @@ impl DualActiveSet {
         self.finish(problem, solution, end)
     }
 
-    /// Refines the closed forces, which do not pull, until the closed accelerations are zero but for noise; false if they
-    /// do not become so.
+    /// Refines the closed forces, which do not pull, until the closed accelerations are within the noise; false if that
+    /// fails.
     fn refine_closed(&mut self) -> bool {
         let mut refinements = 0;
         while self.closed.closed_error() > REFINED * self.noise() {
@@ -64,8 +64,8 @@ impl DualActiveSet {
         true
     }
 
-    /// Moves the forces of open rows, which depend on closed ones, to these; a closed row that runs out makes
-    /// room for the one that it is taken from.
+    /// Moves the forces of open rows, which depend on closed ones, to these. A closed row whose force runs out opens,
+    /// and the open row closes in its place.
     pub(crate) fn move_to_basis(&mut self, force: &mut [f64]) {
         loop {
             self.exchange_for(force);
@@ -76,8 +76,8 @@ impl DualActiveSet {
         }
     }
 
-    /// Moves the forces of open rows one after the other, and notes which closed rows they replace, until all is
-    /// to be eliminated anew.
+    /// Moves the forces of open rows one after the other, and notes the closed rows that they replace, until the factor
+    /// must be made anew.
     fn exchange_for(&mut self, force: &mut [f64]) {
         let Self { closed, exchanges, shares, .. } = self;
         exchanges.clear();
@@ -94,7 +94,7 @@ impl DualActiveSet {
                 continue;
             }
             closed.find_response();
-            // A connector may pull: its force is then that of the row turned round, whose shares have the other sign.
+            // A connector may pull: its force is then that of the reversed row, whose shares have the other sign.
             let sign = force[row].signum();
             shares.fill(0.0);
             for (&other, step) in closed.rows.iter().zip(&closed.step) {
@@ -156,8 +156,8 @@ mod tests {
     use crate::solver::Solver;
     use crate::test_problems::pyramid;
 
-    /// Moves the forces that the proximal method shares among the rows of a pyramid of which every so many-th row
-    /// is bilateral.
+    /// Moves the forces that the proximal method shares among the rows of a pyramid, in which every n-th row is
+    /// bilateral.
     fn check(layers: usize, every: usize) {
         let mut problem = pyramid(layers, 0.5);
         let bilateral: Vec<bool> = (0..problem.len()).map(|row| row % every == every - 1).collect();
@@ -168,7 +168,7 @@ mod tests {
         dual.cross_over(&problem, &mut moved).expect("the same forces on other rows");
         let carrying = |solution: &Solution| solution.force.iter().filter(|force| **force != 0.0).count();
         assert!(carrying(&moved) < carrying(&shared), "{} of {}", carrying(&moved), carrying(&shared));
-        // Those that carry force are independent: all of them can be closed at once.
+        // The rows that carry force are independent: all of them can be closed at once.
         let flags: Vec<bool> = moved.force.iter().map(|force| *force != 0.0).collect();
         dual.closed.open_all();
         dual.closed.close_independent(&flags, 0.0);

@@ -1,5 +1,5 @@
-//! LU factors of a full matrix, by faer, on one thread whatever the process has told faer to use: sums keep their
-//! order, and what others do with faer stays as they want it.
+//! LU factors of a full matrix, by faer. They use one thread whatever the process has set for faer, so that sums keep
+//! their order, and do not change that setting.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -17,7 +17,7 @@ pub(crate) struct DenseLu {
 }
 
 impl DenseLu {
-    /// Factorises a square matrix. One that is singular makes solutions that are not finite.
+    /// Factorises a square matrix. With a singular one, solutions are not finite.
     pub(crate) fn new(mut matrix: Mat<f64>) -> Self {
         let n = matrix.nrows();
         let (mut order, mut place) = (vec![0; n], vec![0; n]);

@@ -1,33 +1,32 @@
-//! Rows that depend on others and contradict them: by rounding, or for good.
+//! Rows that depend on others and contradict them, by rounding or in earnest.
 //!
-//! A null direction z of the rows (Â z = 0, z ≥ 0 on unilateral rows) has zᵀâ = zᵀb̂ whatever the forces. On dependent
-//! bilateral rows that must be zero, on unilateral ones it must not be negative. A small contradiction comes from
-//! rounding in b, and is removed by the least change of b that does so, b̂ - (zᵀb̂/|z|²) z: then the accelerations of
-//! the contradicting rows are what is left of them in the sense of least squares. A large one proves that there is no
-//! solution (Farkas' lemma).
+//! Along a null direction z of the rows (Â z = 0, z ≥ 0 on unilateral rows), zᵀâ = zᵀb̂ for any forces. If all of these
+//! rows are bilateral it must be zero, else it must not be negative. A small contradiction comes from rounding in b,
+//! and is removed by the least change of b that does so, b̂ - (zᵀb̂/|z|²) z: the accelerations of the contradicting
+//! rows are then those of a least-squares solution. A large one proves that there is no solution (Farkas' lemma).
 
 use crate::closed_rows::ClosedRows;
 use crate::error::Infeasibility;
 use crate::problem::{Problem, pushing};
 use crate::twofold::Number;
 
-/// What came of a null direction.
+/// The outcome of a contradiction along a null direction.
 pub(crate) enum Reconciled {
-    /// What contradicted was rounding; b̂ is changed by it.
+    /// The contradiction was small; it was taken off b̂.
     Shifted,
-    /// It proves that there is no solution.
+    /// The direction proves that there is no solution.
     Infeasible(Box<Infeasibility>),
-    /// It is too rough to prove anything.
+    /// The direction is too inexact to prove anything.
     Unproven,
 }
 
-/// What was taken off b̂, row by row; empty until there is something.
+/// The amounts taken off b̂ to remove contradictions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shift {
     taken: Vec<f64>,
     /// Null directions of the bilateral rows, orthogonal to each other, along which b̂ is zero now.
     basis: Vec<Vec<f64>>,
-    /// Largest |â| of a bilateral row that nearly depends on others and is left to them.
+    /// Largest |â| of an open bilateral row, which nearly depends on closed ones.
     rest: f64,
     /// Whether bilateral rows contradicted each other.
     pub(crate) connectors: bool,
@@ -41,21 +40,22 @@ impl Shift {
         self.connectors = false;
     }
 
-    /// Largest change of a row's b̂, or what is left of a bilateral one, in units of the scale.
+    /// Largest change of a row's b̂, or acceleration of an open bilateral row, in units of the scale.
     pub(crate) fn inconsistency(&self, scale: f64) -> f64 {
         self.taken.iter().fold(self.rest, |m: f64, t| m.max(t.abs())) / scale
     }
 
-    /// Counts what the closed rows leave of bilateral ones, which they may contradict although these depend
-    /// on them but nearly.
+    /// Counts the accelerations of open bilateral rows as contradictions: they may contradict the closed rows although
+    /// they depend on them only nearly.
     pub(crate) fn count_rest(&mut self, closed: &ClosedRows) {
         let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
         let taken = |row: usize| self.taken.get(row).copied().unwrap_or(0.0);
         self.rest = open.fold(0.0, |m: f64, row| m.max((closed.acceleration[row] + taken(row)).abs()));
     }
 
-    /// Settles the contradiction that `row`, last considered and found dependent, is violated while no closed force
-    /// blocks the null direction; it proves something beyond `limit` if any solution had at least `least_growth`.
+    /// Settles the contradiction of `row`, last considered, which depends on the closed rows and closes although no
+    /// closed force blocks the null direction. A contradiction up to `limit` (in scaled accelerations) is taken off b̂;
+    /// a larger one is a proof if any solution would have at least `least_growth`.
     pub(crate) fn reconcile(
         &mut self,
         closed: &mut ClosedRows,
@@ -64,12 +64,12 @@ impl Shift {
         least_growth: f64,
     ) -> Reconciled {
         let mut direction = null_direction(closed, row);
-        // What the bilateral rows were made to agree on stays so.
+        // The agreement of the bilateral rows must not be undone.
         make_orthogonal(&mut direction, &self.basis);
         if self.remove(closed, &direction, limit) {
             return Reconciled::Shifted;
         }
-        // What rounding has left below zero counts for where the row is, but is no part of a proof.
+        // Components that rounding has left below zero matter for the shift, but are no part of a proof.
         let contacts = direction.iter_mut().zip(&closed.free).filter(|(_, free)| !**free);
         contacts.for_each(|(z, _)| *z = pushing(*z));
         let violated = dot(&direction, &closed.system.b) < 0.0;
@@ -81,7 +81,8 @@ impl Shift {
         }
     }
 
-    /// Makes dependent bilateral rows agree with the closed ones, all at once in the sense of least squares.
+    /// Makes dependent bilateral rows agree with the closed ones, all at once by least squares; or returns the proof
+    /// that they contradict each other by more than `limit` (in scaled accelerations).
     pub(crate) fn reconcile_connectors(
         &mut self,
         closed: &mut ClosedRows,
@@ -111,8 +112,8 @@ impl Shift {
         None
     }
 
-    /// Removes the contradiction along a direction by the least change of b̂ that does so; false, and nothing is done, if
-    /// that changes a row by more than `limit`.
+    /// Removes the contradiction along a direction by the least change of b̂. Returns false, without a change, if that
+    /// would change a row by more than `limit`.
     fn remove(&mut self, closed: &mut ClosedRows, direction: &[f64], limit: f64) -> bool {
         let (factor, size) = least_change(direction, &closed.system.b);
         if size > limit {
@@ -127,15 +128,16 @@ impl Shift {
     }
 }
 
-/// What of a direction the least change of b̂ that removes the contradiction along it takes off, and the largest change of a
-/// row by that.
+/// The least change of b̂ that removes the contradiction along a direction: the multiple of the direction that it takes
+/// off, and the largest change of a row.
 fn least_change(direction: &[f64], b: &[f64]) -> (f64, f64) {
     let factor = dot(direction, b) / dot(direction, direction);
     let largest = direction.iter().fold(0.0, |m: f64, z| m.max(z.abs()));
     (factor, factor.abs() * largest)
 }
 
-/// Takes the parts out of a direction that it has in orthogonal others; twice is enough (Kahan and Parlett).
+/// Makes a direction orthogonal to others, which are orthogonal to each other; two passes are enough (Kahan and
+/// Parlett).
 pub(crate) fn make_orthogonal<T: Number>(direction: &mut [T], basis: &[Vec<T>]) {
     for other in basis.iter().chain(basis) {
         let overlap = dot(direction, other) / dot(other, other);
@@ -143,8 +145,8 @@ pub(crate) fn make_orthogonal<T: Number>(direction: &mut [T], basis: &[Vec<T>]) 
     }
 }
 
-/// The direction in which `row`, last considered, and the closed rows cancel each other: positive on contacts, up to
-/// rounding, and of either sign on connectors.
+/// The direction in which `row`, last considered, and the closed rows cancel each other. It is positive on contacts, up
+/// to rounding, and of either sign on connectors.
 fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
     let mut direction = vec![0.0; closed.force.len()];
     for (at, &other) in closed.rows.iter().enumerate() {
@@ -154,7 +156,7 @@ fn null_direction(closed: &ClosedRows, row: usize) -> Vec<f64> {
     direction
 }
 
-/// The proof by a null direction, which counts with either sign where all of its rows are bilateral.
+/// The proof by a null direction, which serves with either sign if all of its rows are bilateral.
 fn certificate(closed: &mut ClosedRows, direction: &[f64], row: usize) -> Infeasibility {
     let (_, size) = least_change(direction, &closed.system.b);
     let scale = closed.system.scale;

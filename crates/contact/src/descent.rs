@@ -1,32 +1,33 @@
-//! From forces that do not pull to those of the answer, many rows at a time.
+//! A descent from forces that do not pull to those of the answer, many rows at a time.
 //!
-//! In a heap the closed rows carry each other: one row wrong among them turns the sign of a hundred forces,
-//! so that an exchange of all wrong rows leads astray, and pivots mend them one by one. The forces minimise
-//! f.(Af + 2b)/2 over f >= 0. From any such forces, those of the rows that carry one, or would close without,
-//! go towards the least value with these rows closed; whichever would pull on the way opens, and the rest
-//! goes on. Every such pass lowers the value, so that none comes back. It is the method of C. Lawson, R.
-//! Hanson, "Solving Least Squares Problems", 1974, chapter 23, in which rows close many at once. A row that
-//! depends on others keeps its force during a pass; at the end these forces are moved to independent rows,
-//! each along its null direction. Pivots mend what is left. Where rows open one by one on the way, as those
-//! of a pyramid that nearly depend on each other, another method is faster, and it stops there if it may.
+//! In a heap the closed rows carry each other: one wrong row among them turns the sign of a hundred forces, so that an
+//! exchange of all wrong rows leads astray, and pivots mend them one by one. The forces of the answer minimise f.(Af +
+//! 2b)/2 over f >= 0. A pass closes the rows that carry a force or would close without one, and moves the forces
+//! towards the least value with these rows closed; a row that would pull on the way opens, and the others go on. Every
+//! pass lowers the value, so that no set of closed rows comes back. This is the method of C. Lawson, R. Hanson,
+//! "Solving Least Squares Problems", 1974, chapter 23, with many rows closed at once. A row that depends on others
+//! keeps its force during a pass; at the end these forces are moved to independent rows, each along its null direction.
+//! Pivots correct the rows that are still wrong. Where rows open one by one on the way, as those of a pyramid that
+//! nearly depend on each other, another method is faster, and the descent stops there if it may.
 
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::DualActiveSet;
 use crate::problem::pushing;
 use crate::settings::WELL;
 
-/// One in so many closed rows that pull, and so many at least, are more than blocks can mend.
+/// Reciprocal of the fraction of closed rows that must pull for a descent: more than exchanges of blocks can mend.
 const MANY: usize = 16;
+/// Least number of closed rows that must pull for a descent.
 const LEAST: usize = 8;
 
-/// With fewer rows pivots are as fast.
+/// Least number of rows for a descent; with fewer, pivots are as fast.
 const FEWEST_ROWS: usize = 64;
 
 /// Cap on the passes.
 const PASSES: usize = 24;
 
 impl DualActiveSet {
-    /// Starts anew from the closed forces that do not pull, if many of them do.
+    /// Descends from the closed forces that do not pull, if many others do.
     pub(crate) fn untangle(&mut self) {
         let closed = &self.closed;
         let pulls = |&&row: &&usize| closed.force[row] < 0.0 && !closed.free[row];
@@ -38,15 +39,15 @@ impl DualActiveSet {
         }
     }
 
-    /// Whether there are many rows, all of them unilateral, and none is closed for other reasons than those of here.
+    /// Whether there are many rows, all of them unilateral, and no term or spread is added to the matrix.
     pub(crate) fn may_descend(&self) -> bool {
         let closed = &self.closed;
         let is_plain = closed.spread == 0.0 && closed.proximal == 0.0 && closed.kept == 0;
         is_plain && closed.force.len() >= FEWEST_ROWS && !closed.free.contains(&true)
     }
 
-    /// Goes down from the forces in `admissible`; closed rows, forces and accelerations fit each other
-    /// afterwards. A closed force may pull, if only by rounding.
+    /// Descends from the forces in `admissible`. Closed rows, forces and accelerations fit each other afterwards; a
+    /// closed force may pull, if only by rounding.
     pub(crate) fn descend(&mut self) {
         let mut force = std::mem::take(&mut self.admissible);
         self.start.fill(false);
@@ -69,7 +70,8 @@ impl DualActiveSet {
         self.move_to_basis(&mut force);
         self.closed.force.copy_from_slice(&force);
         self.closed.accelerate();
-        // What depends too nearly on others for a pass, or was left when the passes ended, was closed as it was.
+        // Rows that depend too nearly on others for a pass, or were left when the passes ended, were closed with the
+        // forces they had.
         if self.closed.closed_error() > self.noise() {
             self.go_to_face(&mut force);
             self.closed.force.copy_from_slice(&force);
@@ -82,7 +84,7 @@ impl DualActiveSet {
         self.admissible = force;
     }
 
-    /// Marks the rows that have a force, or would close without one; whether they are others than before.
+    /// Marks the rows that have a force or would close without one. Returns whether the marks have changed.
     fn mark_pushing(&mut self, force: &[f64]) -> bool {
         let limit = -self.noise();
         let closed = &self.closed;
@@ -95,8 +97,8 @@ impl DualActiveSet {
         any
     }
 
-    /// Closes the marked rows, as far as they are independent; all of them anew, in the order that keeps the
-    /// factor narrow, if they are more than those that are closed, or it is wide.
+    /// Closes the marked rows as far as they are independent. All rows are closed anew, in the order that keeps the
+    /// factor narrow, if the new rows outnumber the closed ones or the factor is wide.
     fn close_pushing(&mut self) {
         let closed = &self.closed;
         let fresh = (0..self.start.len()).filter(|&row| self.start[row] && !closed.is_closed(row)).count();
@@ -115,8 +117,8 @@ impl DualActiveSet {
         }
     }
 
-    /// Takes the closed forces to where the closed accelerations are zero; rows whose force runs out on the
-    /// way open. Only the closed accelerations are followed.
+    /// Moves the closed forces to where the closed accelerations are zero, and opens rows whose force runs out on the
+    /// way. Only the closed accelerations are kept up to date.
     fn go_to_face(&mut self, force: &mut [f64]) {
         while !self.is_out_of_patience() {
             let closed = &mut self.closed;
@@ -130,7 +132,7 @@ impl DualActiveSet {
                 closed.acceleration[row] *= 1.0 - length;
             }
             let Some(first) = first else { break };
-            // Of those that had none and would pull none can stay.
+            // A row without force that would pull cannot stay either.
             for at in (0..count).rev() {
                 if at == first || (force[self.closed.rows[at]] == 0.0 && self.closed.step[at] < 0.0) {
                     self.closed.open_at(at);
@@ -142,8 +144,8 @@ impl DualActiveSet {
 }
 
 impl ClosedRows {
-    /// Adds the step, times a length, to forces of the closed rows, no farther than until the first runs out:
-    /// how far, and the position of that row.
+    /// Adds the step, times a length of at most `limit`, to the forces of the closed rows, until the first runs out.
+    /// Returns the length and the position of that row.
     fn go_along_step(&self, force: &mut [f64], limit: f64) -> (f64, Option<usize>) {
         let (mut length, mut first) = (limit, None);
         for (at, &row) in self.rows.iter().enumerate() {
@@ -169,8 +171,8 @@ mod tests {
     use crate::solver::Solver;
     use crate::warm::WarmStart;
 
-    /// Discs of 1 kg in rows of so many, each on two of the row below, in directions that vary by some tenths
-    /// of a radian; those at the ends of a row lean on walls.
+    /// Discs of 1 kg in rows of a given number, each on two of the row below, in directions that vary by some tenths of
+    /// a radian; those at the ends of a row lean on walls.
     fn heap(across: usize, rows: usize) -> Problem {
         let mut problem = Problem::new();
         let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 8.0 };

@@ -1,24 +1,26 @@
-//! The dictionary that Lemke's method pivots: basic variables in terms of the others.
+//! The dictionary (tableau) of Lemke's method: basic variables in terms of the nonbasic ones.
 //!
 //! Variables are w_i (index i), z_i (index n + i) and the artificial z_0 (index 2n), starting from w = q + M z + d z_0.
-//! Ties are broken as if q were q + (ε, ε², ..., εⁿ), which cannot tie: R. Cottle, J.-S. Pang, R. Stone, "The Linear
-//! Complementarity Problem", 1992, section 4.9. Row i of B⁻¹, which that needs, is in the columns of the nonbasic w.
-//! Entries are `f64`, or have twice as many digits.
+//! Ties are broken as if q were q + (ε, ε², ..., εⁿ), with which there are no ties: R. Cottle, J.-S. Pang, R. Stone,
+//! "The Linear Complementarity Problem", 1992, section 4.9. The row i of B⁻¹ that this needs is in the columns of the
+//! nonbasic w. Entries are `f64`, or have twice as many digits.
 
 use crate::twofold::Number;
 
-/// Roundings below which, in parts of the largest entry of a column, an entry is no pivot.
+/// Number of roundings of the largest entry of a column: smaller entries are no pivots.
 const PIVOT: f64 = 4.5e6;
 
-/// Largest entry of a column below which all of it is rounding, in units of the scaled matrix.
+/// Least value taken for the largest entry of a column, in units of the scaled matrix: in a column with smaller entries
+/// all may be rounding.
 const COLUMN: f64 = 1e-3;
 
-/// Ratios within so many roundings of each other (or of 1) tie.
+/// Number of roundings, of the least ratio plus 1, within which ratios tie.
 const TIE: f64 = 4.5e4;
 
-/// What is left of an entry is nothing, where it is no more than so many roundings of what made it.
+/// Number of roundings of the terms of an entry: an entry up to this is zero.
 const LEFT: f64 = 64.0;
 
+/// Column of a w that is basic.
 const NONE: u32 = u32::MAX;
 
 /// Basic variables as affine functions of the nonbasic ones.
@@ -32,7 +34,7 @@ pub(crate) struct Dictionary<T> {
     nonbasic: Vec<usize>,
     /// Column in which each w is nonbasic, or `NONE`.
     column_of_w: Vec<u32>,
-    /// Rows that may take any sign: they never block.
+    /// One flag per row: true for a bilateral row, which may take any sign and never blocks.
     free: Vec<bool>,
     pivot_row: Vec<T>,
     candidates: Vec<usize>,
@@ -80,7 +82,7 @@ impl<T: Number> Dictionary<T> {
         self.entries[row * (self.n + 2) + column]
     }
 
-    /// The constant of a row: the value of its variable.
+    /// The constant of a row, which is the value of its basic variable.
     fn constant(&self, row: usize) -> T {
         self.at(row, self.n + 1)
     }
@@ -101,8 +103,8 @@ impl<T: Number> Dictionary<T> {
     }
 
     /// Makes the z of bilateral rows basic, largest pivots first, and bars their w from entering. Rows that depend on
-    /// others stay as they are. What then is left of an entry by rounding only is taken for nothing: a contact of which
-    /// connectors hold all, by which a ray would seem to go.
+    /// others stay as they are. Entries that are then only rounding are set to zero; they belong to contacts that
+    /// connectors hold entirely, and could seem to be a ray.
     pub(crate) fn eliminate_bilateral(&mut self) {
         if !self.free.contains(&true) {
             return;
@@ -133,8 +135,8 @@ impl<T: Number> Dictionary<T> {
         }
     }
 
-    /// The directions in which bilateral rows that depend on others cancel these, if they depend on no more: combinations of
-    /// the w that are constant.
+    /// The directions in which dependent bilateral rows and others cancel each other: combinations of the w that are
+    /// constant, if the rows depend on bilateral rows alone.
     pub(crate) fn null_directions(&self) -> Vec<Vec<T>> {
         let dependent = (0..self.n).filter(|&row| self.free[row] && self.basic[row] < self.n);
         let direction = |row: usize| {
@@ -148,7 +150,7 @@ impl<T: Number> Dictionary<T> {
         dependent.map(direction).collect()
     }
 
-    /// Adds to the sizes of the terms that entries are made of those which a pivot adds.
+    /// Adds the terms of a pivot to the sums of absolute terms of the entries.
     fn add_sizes(&self, sizes: &mut [f64], row: usize, column: usize) {
         let width = self.n + 2;
         let pivot = self.at(row, column).abs().nearest();
@@ -165,8 +167,8 @@ impl<T: Number> Dictionary<T> {
         sizes[row * width..(row + 1) * width].copy_from_slice(&pivot_row);
     }
 
-    /// The row that is the last to become feasible when the variable of a column grows, of those that grow with it.
-    /// `None` if none of these is infeasible.
+    /// Of the rows that grow with the variable of a column, the one that becomes feasible last. `None` if none of them
+    /// is infeasible.
     pub(crate) fn last_covered(&mut self, column: usize) -> Option<usize> {
         self.candidates.clear();
         for row in (0..self.n).filter(|&row| !self.free[row]) {
@@ -180,7 +182,7 @@ impl<T: Number> Dictionary<T> {
         self.break_ties(column, None)
     }
 
-    /// The row that blocks the entering column first. `None`: nothing does.
+    /// The row that blocks the variable of a column first; `None` if none does.
     pub(crate) fn blocking(&mut self, column: usize) -> Option<usize> {
         let sizes = (0..self.n).map(|row| self.at(row, column).abs());
         let largest = sizes.fold(T::from(COLUMN), larger);
@@ -192,7 +194,8 @@ impl<T: Number> Dictionary<T> {
         self.break_ties(column, Some(self.artificial()))
     }
 
-    /// Narrows the candidates to the one with the lexicographically least ratio.
+    /// Narrows the candidates to the one with the lexicographically least ratio, or the `preferred` variable if it
+    /// ties.
     fn break_ties(&mut self, column: usize, preferred: Option<usize>) -> Option<usize> {
         let mut level = None;
         loop {
@@ -229,7 +232,7 @@ impl<T: Number> Dictionary<T> {
         self.candidates.iter().copied().reduce(|p, q| if size(q) >= size(p) { q } else { p })
     }
 
-    /// Entry of B⁻¹ in a row and the column of w: the coefficient of its power of ε.
+    /// Entry of B⁻¹ in a row and the column of w, which is the coefficient of its power of ε.
     fn perturbation(&self, row: usize, w: usize) -> T {
         match self.column_of_w[w] {
             NONE => T::from(f64::from(u8::from(self.basic[row] == w))),

@@ -1,15 +1,15 @@
 //! Dual active-set method for small and medium problems.
 //!
-//! Closed rows C have zero acceleration, open rows zero force; forces stay admissible throughout and the worst open
-//! row is closed next, dropping on the way any row whose force would pull. That is D. Goldfarb, A. Idnani, "A
-//! numerically stable dual method for solving strictly convex quadratic programs", Mathematical Programming 27, 1983,
-//! 1-33, written in the forces; with contacts it is the pivoting of D. Baraff, SIGGRAPH '94, 23-34, with dependent
-//! contacts handled exactly: a row that depends on the closed ones cannot be closed, so forces move along the null
-//! direction until one of them vanishes and its row makes room; when none does, the direction certifies that there is
-//! no solution.
+//! Closed rows C have zero acceleration, open rows zero force. Forces stay admissible throughout; the open row that
+//! closes fastest is closed next, and rows whose force would pull are opened on the way. This is the method of D.
+//! Goldfarb, A. Idnani, "A numerically stable dual method for solving strictly convex quadratic programs", Mathematical
+//! Programming 27, 1983, 1-33, written in the forces. With contacts it is the pivoting of D. Baraff, SIGGRAPH '94,
+//! 23-34, with dependent contacts handled exactly: a row that depends on the closed ones cannot be closed, so forces
+//! move along the null direction until one of them vanishes and its row makes room. If none does, the direction
+//! certifies that there is no solution.
 //!
-//! Differences from the papers: bilateral rows are closed at the start and never leave; the start is many rows closed
-//! at once (see `start`); the factor is made anew in a good order when pivots have widened it; the final forces are
+//! Differences from the papers: bilateral rows are closed at the start and never leave; many rows are closed at once at
+//! the start (see `start`); the factor is made anew in a narrow order when pivots have widened it; the final forces are
 //! refined.
 
 use crate::check::Checker;
@@ -24,105 +24,112 @@ use crate::solver::{Method, Solver};
 use crate::start::Start;
 use crate::warm::WarmStart;
 
-/// Part of a unit change below which a force does not count as changed by a null direction: rounding.
+/// Largest change of a force, per unit step along the response to a row, that is rounding and does not block.
 const BLOCKING: f64 = 1e-14;
 
-/// The same at most, however nearly the closed rows depend on each other.
+/// Upper bound of that rounding, however nearly the closed rows depend on each other.
 const LARGEST_ROUNDING: f64 = 1e-9;
 
-/// Part of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
+/// Fraction of the noise to which the closed accelerations are refined, so that they do not use up the allowance.
 pub(crate) const REFINED: f64 = 0.125;
 
-/// Part that a dependent row must have in a closed one, in units of its own, to take its place.
+/// Least share of a closed connector in a dependent one at which the dependent one takes its place.
 const LARGER: f64 = 2.0;
 
-/// A row that closes by no more than so many times the noise, and depends on closed ones, takes the place of
-/// one of them for little. So many times it may, and oftener where no other attempt is as exact: of rows that all but
-/// depend on each other now this, now that one closes by more than noise, for ever.
+/// Multiple of the noise: a dependent row that closes by no more than this takes the place of a closed one for a slight
+/// gain.
 const SLIGHT: f64 = 100.0;
+/// Cap on exchanges for a slight gain. Of rows that nearly depend on each other, now this, now that one closes by more
+/// than noise, for ever.
 const MOST_SLIGHT: usize = 10;
+/// Cap on exchanges for a slight gain in the strict attempt, as no other attempt is as exact.
 const MOST_SLIGHT_AT_LAST: usize = 100;
 
-/// Part of the acceleration of a row which, left after its contradiction was removed, shows that this is beyond rounding.
+/// Fraction of the closing acceleration of a row: if more is left after its contradiction was removed, the row is
+/// stuck.
 const STUCK: f64 = 0.5;
 
-/// Passes over all rows that a pivot takes beside those of the factor.
+/// Work of a pivot beside that of the factor, in passes over all rows.
 const ROW_PASSES: usize = 5;
 
-/// Work, in passes over all rows, for which the interior-point method would be about half done.
+/// Work, in passes over all rows, in which the interior-point method would be about half done.
 const PATIENCE: usize = 400;
 
-/// The dual active-set method with its buffers.
+/// Dual active-set method with an updated factor, for small and medium symmetric problems.
+///
+/// Closed rows have zero acceleration, open rows zero force, and all forces are admissible throughout: D. Goldfarb, A.
+/// Idnani, Mathematical Programming 27, 1983, 1-33; with contacts the pivoting of D. Baraff, SIGGRAPH '94, 23-34, with
+/// dependent contacts handled exactly.
 #[derive(Clone, Debug, Default)]
 pub struct DualActiveSet {
     pub(crate) settings: Settings,
     pub(crate) closed: ClosedRows,
-    /// Rows that start closed, and whether they are those of an earlier answer.
+    /// One flag per row: true if it starts closed; `is_warm` if they are those of an earlier answer.
     pub(crate) start: Vec<bool>,
     pub(crate) is_warm: bool,
-    /// The same while others are tried.
+    /// Copy of `start` while other rows are tried.
     pub(crate) set_aside: Vec<bool>,
-    /// Forces that do not pull, from which the answer is looked for, and whether they are those of an earlier one.
+    /// Scaled forces that do not pull, from which a descent starts; `knows_forces` if the caller gave them.
     pub(crate) admissible: Vec<f64>,
     pub(crate) knows_forces: bool,
-    /// While forces are moved to rows that are independent: which took the places of others, and the shares of
-    /// all rows in one that depends on them.
+    /// Buffers while forces are moved to independent rows: the exchanges of rows, and the shares of all rows in a
+    /// dependent one.
     pub(crate) exchanges: Exchanges,
     pub(crate) shares: Vec<f64>,
     pub(crate) shift: Shift,
-    /// Whether connectors that contradict each other without contacts are left to these, and whether any were.
+    /// Whether connectors that contradict each other without contacts are left to the contacts, and whether any were.
     pub(crate) leaves_connectors: bool,
     pub(crate) has_left_connectors: bool,
-    /// Whether the last answer is one of nearly dependent rows, with forces as large as that takes.
+    /// Whether the last answer took nearly dependent rows as independent, with forces as large as that needs.
     pub(crate) is_strained: bool,
     /// Whether contacts contradicted each other in the last attempt, connectors not counted.
     pub(crate) contacts_contradict: bool,
     checker: Checker,
     pub(crate) pivots: usize,
-    /// Times that a dependent row took the place of a closed one for little.
+    /// Number of times that a dependent row took the place of a closed one for a slight gain.
     slight_swaps: usize,
-    /// Whether to stop where another method is likely to be faster, and why it did.
+    /// Whether to stop where another method is likely to be faster, and the reason if it did.
     pub(crate) may_hand_over: bool,
     pub(crate) handed_over: Option<HandOver>,
-    /// Work of pivots, and of rows opened on the way to where they start, in passes over all rows.
+    /// Work of pivots and of rows opened before them, in passes over all rows.
     work: usize,
-    /// Work after which to stop likewise.
+    /// Work after which to stop, in passes over all rows.
     pub(crate) patience: Option<usize>,
 }
 
-/// Why another method is likely to be faster.
+/// The reason for which another method is likely to be faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HandOver {
-    /// So many rows depend on others that the closed ones are an arbitrary choice.
+    /// Many rows depend on others, so that the closed ones are an arbitrary choice.
     Redundant,
     /// Many pivots were made, or are in sight.
     Pivots,
 }
 
-/// How dependent rows are treated.
+/// Treatment of dependent rows in one attempt.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
-    /// Least Schur complement of an independent row.
+    /// Scaled Schur complement up to which a row is dependent.
     pub(crate) dependence: f64,
-    /// Whether a row of which no more than rounding is left counts as dependent, too: where no other attempt
-    /// follows, and forces are to be modest.
+    /// Whether a row of which no more than rounding is left counts as dependent, too: for modest forces, if no other
+    /// attempt follows.
     pub(crate) doubts: bool,
-    /// Contradiction between unilateral rows, in units of the scale, that is smoothed over.
+    /// Largest contradiction between unilateral rows, in units of the scale, that is settled by least squares.
     pub(crate) contradiction: f64,
-    /// How often a dependent row may take the place of a closed one for little.
+    /// Cap on the number of times that a dependent row takes the place of a closed one for a slight gain.
     pub(crate) slight_swaps: usize,
-    /// Whether what is left of bilateral rows that nearly depend on others counts as a contradiction, too.
+    /// Whether accelerations of bilateral rows that nearly depend on others count as contradictions, too.
     pub(crate) is_last: bool,
 }
 
-/// The ways to treat rows that are dependent or nearly so.
+/// The attempts, which differ in the treatment of dependent and nearly dependent rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempts {
-    /// As the settings say contradictions are to be treated.
+    /// Treats contradictions as the settings ask first.
     pub(crate) first: Attempt,
-    /// Nearly dependent rows as independent ones, with forces as large as that takes.
+    /// Takes nearly dependent rows as independent, with forces as large as that needs.
     strict: Attempt,
-    /// In the least-squares sense, whatever is left of bilateral rows.
+    /// Solves by least squares, including accelerations that bilateral rows are left with.
     last: Attempt,
 }
 
@@ -132,21 +139,21 @@ impl Attempts {
     }
 }
 
-/// How the pivoting ended.
+/// The end of the pivoting.
 pub(crate) enum End {
     Done,
     Stopped,
-    /// At rows that seem to contradict each other, by too little to prove it: the forces mean nothing.
+    /// Rows seem to contradict each other, by too little to prove it; the forces mean nothing.
     Unproven,
     Infeasible(Box<Infeasibility>),
 }
 
 impl DualActiveSet {
-    /// A solver with these settings.
+    /// Makes a solver with the given settings.
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] names a number that is not usable.
+    /// [`SettingsError`] names a setting that is not positive and finite.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(DualActiveSet { settings, ..Self::default() })
@@ -163,8 +170,8 @@ impl DualActiveSet {
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
         }
         let attempts = self.attempts();
-        // Connectors that contradict each other are left to contacts. Where that comes to nothing, it is as if nothing had
-        // been tried.
+        // At first connectors that contradict each other are left to contacts. If that fails, it does not count as an
+        // attempt.
         self.leaves_connectors = true;
         let first = self.attempt(problem, warm, solution, attempts.first);
         self.leaves_connectors = false;
@@ -175,7 +182,7 @@ impl DualActiveSet {
             let outcome = first.take().unwrap_or_else(|| self.attempt(problem, warm, solution, attempt));
             let error = match outcome {
                 Ok(()) if self.owes_to_contacts(solution) => {
-                    // What is within rounding of the rows as given comes before least squares.
+                    // An answer within rounding of the rows as given is preferred to one by least squares.
                     return self
                         .raise(problem, warm, solution)
                         .or_else(|_| self.attempt(problem, warm, solution, attempt));
@@ -188,7 +195,7 @@ impl DualActiveSet {
                 Err(error) => error,
             };
             let proven = self.settings.is_proven(&error, problem);
-            // A certificate outweighs an attempt that came to nothing.
+            // A certificate outweighs a failed attempt.
             if proven || failure.is_none() || matches!(error, SolveError::Infeasible(_)) {
                 failure = Some(error);
             }
@@ -199,7 +206,7 @@ impl DualActiveSet {
         Err(failure.expect("there is at least one attempt, and each gives an answer or an error"))
     }
 
-    /// As [`run`](Self::run) with contradictions solved by least squares, but without an attempt at large forces.
+    /// Makes a single attempt with modest forces; contradictions are settled by least squares.
     pub(crate) fn run_modestly(
         &mut self,
         problem: &Problem,
@@ -212,7 +219,7 @@ impl DualActiveSet {
         self.attempt(problem, start, solution, attempt)
     }
 
-    /// As [`run`](Self::run), but at once as given, with forces as large as it takes.
+    /// Makes only the strict attempt: the rows as given, with forces as large as necessary.
     pub(crate) fn run_strictly(
         &mut self,
         problem: &Problem,
@@ -222,7 +229,8 @@ impl DualActiveSet {
         self.attempt(problem, start, solution, self.attempts().strict)
     }
 
-    /// As [`run`](Self::run), but stops where many pivots are in sight on a large problem, or were made, and says so.
+    /// Does as [`run`](Self::run), but on a large problem stops if many pivots are in sight or were made, and returns
+    /// the reason.
     pub(crate) fn run_or_hand_over(
         &mut self,
         problem: &Problem,
@@ -241,17 +249,17 @@ impl DualActiveSet {
         }
     }
 
-    /// Adds the work of so many pivots.
+    /// Adds the work of a number of pivots.
     pub(crate) fn count_work(&mut self, pivots: usize) {
         self.work += pivots * self.work_of_pivot();
     }
 
-    /// The work of a pivot: some passes over all rows, and one over the factor.
+    /// Work of a pivot, in passes over all rows, including one over the factor.
     pub(crate) fn work_of_pivot(&self) -> usize {
         ROW_PASSES + self.closed.factor.envelope() / self.closed.force.len().max(1)
     }
 
-    /// Notes that another method is likely to be faster, once so much work was done.
+    /// Notes that another method is likely to be faster, once more work than the patience was done.
     pub(crate) fn is_out_of_patience(&mut self) -> bool {
         let is_out = self.patience.is_some_and(|patience| self.work > patience);
         if is_out {
@@ -260,7 +268,7 @@ impl DualActiveSet {
         is_out
     }
 
-    /// The ways to treat rows that are dependent or nearly so.
+    /// The attempts by the settings.
     pub(crate) fn attempts(&self) -> Attempts {
         let Settings { dependence, least_dependence, inconsistency, natural_residual, .. } = self.settings;
         let as_given = natural_residual / 2.0;
@@ -332,7 +340,7 @@ impl DualActiveSet {
         self.choose_start(problem, warm);
     }
 
-    /// Closes the worst row until none is left, then refines.
+    /// Closes the open row that closes fastest until none closes, then refines.
     pub(crate) fn pivot(&mut self, problem: &Problem, attempt: Attempt) -> End {
         let mut refinements = 0;
         loop {
@@ -347,7 +355,7 @@ impl DualActiveSet {
                     other => return other,
                 }
             } else if self.closed.terms_bound {
-                // Nothing is wrong beyond a bound on the rounding: look again with the rounding itself.
+                // No row is wrong beyond the bound on rounding: check again with the rounding itself.
                 self.closed.accelerate();
             } else if refinements < self.settings.refinements && self.closed.closed_error() > REFINED * noise
             {
@@ -362,11 +370,11 @@ impl DualActiveSet {
         }
     }
 
-    /// Closes the bilateral row that moves most although it depends on closed ones, in place of the one in
-    /// which it has the largest part, if that exceeds `LARGER`. The closed rows are then further from
-    /// dependent on each other, by that factor at least, and magnify the rounding of their forces less (M.
-    /// Gu, S. Eisenstat, "Efficient algorithms for computing a strong rank-revealing QR factorization", SIAM
-    /// Journal on Scientific Computing 17, 1996, 848-869). Returns whether it did.
+    /// Closes the dependent bilateral row with the largest acceleration in place of the closed one with the largest
+    /// share in it, if that exceeds `LARGER`. The closed rows are then farther from dependent on each other, by that
+    /// factor at least, and magnify the rounding of their forces less (M. Gu, S. Eisenstat, "Efficient algorithms for
+    /// computing a strong rank-revealing QR factorization", SIAM Journal on Scientific Computing 17, 1996, 848-869).
+    /// Returns whether it did.
     fn exchange_connector(&mut self, noise: f64) -> bool {
         let closed = &mut self.closed;
         let open = (0..closed.free.len()).filter(|&row| closed.free[row] && !closed.is_closed(row));
@@ -415,8 +423,7 @@ impl DualActiveSet {
             let full = if relation.dependent {
                 f64::INFINITY
             } else {
-                // Where rounding has made an acceleration that came to zero positive, the force goes back,
-                // but not to where it would pull.
+                // If rounding has made the acceleration positive, the force goes back, but not below zero.
                 (-self.closed.acceleration[row] / relation.complement).max(-self.closed.force[row])
             };
             let rounding = if relation.dependent { self.rounding_of_response() } else { BLOCKING };
@@ -438,15 +445,15 @@ impl DualActiveSet {
         }
     }
 
-    /// Counts that a dependent row takes the place of a closed one, if that is for little; true if it was so too often.
+    /// Counts an exchange of a dependent row for a closed one if its gain is slight; true if there were too many.
     fn swaps_in_circles(&mut self, row: usize, attempt: Attempt) -> bool {
         let is_slight = self.closed.acceleration[row] > -SLIGHT * self.noise();
         self.slight_swaps += usize::from(is_slight);
         self.slight_swaps > attempt.slight_swaps
     }
 
-    /// Part of a null direction, just found, that is rounding: more where the closed rows nearly depend on
-    /// each other, by the reciprocal of the least part that one of them leaves of its square.
+    /// Rounding of the components of the null direction just found. It is enlarged where the closed rows nearly depend
+    /// on each other, by the reciprocal of the least remainder of a closed row's square.
     fn rounding_of_response(&self) -> f64 {
         let closed = &self.closed;
         let largest = closed.step[..closed.len()].iter().fold(1.0, |m: f64, z| m.max(z.abs()));
@@ -480,7 +487,8 @@ impl DualActiveSet {
         closed.force[row] += length;
     }
 
-    /// The rows contradict each other along the null direction just found: by rounding, or for good.
+    /// Settles a contradiction along the null direction just found if it is rounding, or returns the proof that there
+    /// is no solution.
     fn resolve_contradiction(&mut self, row: usize, attempt: Attempt) -> End {
         let limit = attempt.contradiction * self.closed.system.scale;
         match self.shift.reconcile(&mut self.closed, row, limit, self.settings.least_growth) {
@@ -493,7 +501,7 @@ impl DualActiveSet {
                 self.closed.solve_closed();
                 self.closed.accelerate();
                 self.make_forces_admissible();
-                // What leaves the row where it was, and all others, would be done for ever.
+                // A shift that leaves this row and all others as they were would be repeated for ever.
                 let is_as_before = !had_force && self.closed.len() == held;
                 let is_stuck = is_as_before && self.closed.acceleration[row] < STUCK * before;
                 if is_stuck { End::Stopped } else { End::Done }
@@ -501,7 +509,7 @@ impl DualActiveSet {
         }
     }
 
-    /// Acceleration below which nothing can be told from rounding, or matters.
+    /// Scaled acceleration that may be rounding, or is too small to matter.
     pub(crate) fn noise(&self) -> f64 {
         let scale = self.closed.system.scale;
         self.settings.rounding * (scale + self.closed.terms) + self.settings.open_tolerance * scale
@@ -522,7 +530,7 @@ impl DualActiveSet {
         let closed = &self.closed;
         for (row, out) in solution.force.iter_mut().enumerate() {
             let force = closed.force[row] / closed.system.row_scale[row];
-            // What rounding has left below zero is none.
+            // A unilateral force that rounding has left below zero is zero.
             *out = if closed.free[row] { force } else { pushing(force) };
         }
         solution.active.extend_from_slice(&closed.rows);
@@ -569,9 +577,9 @@ mod tests {
 
     #[test]
     fn rows_that_all_but_depend_on_each_other_do_not_swap_for_ever() {
-        /// How much farther out the second row acts [m]: the square is what it has to itself.
+        /// Distance [m] by which the second row acts farther out; its square is the remainder of the row.
         const FARTHER: f64 = 2.5e-6;
-        /// Forces [N] of the two.
+        /// Forces [N] of the two rows.
         const FORCES: [f64; 2] = [4.0, 6.0];
         let mut problem = Problem::new();
         let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 1.0 };

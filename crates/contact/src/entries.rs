@@ -1,19 +1,19 @@
 //! The entries of A = J M⁻¹ Jᵀ for rows of bodies, each formed once from products whose places are known.
 //!
-//! Contacts keep their bodies from step to step while coefficients change, so the places are found once and
-//! kept as long as the same columns appear in the same rows.
+//! Contacts keep their bodies from step to step while coefficients change, so the places are found once and kept while
+//! the same columns appear in the same rows.
 
 use std::ops::Range;
 
 use crate::matrix::BodyRows;
 
-/// Products per row above which they are not listed: rows of many contacts of one body, whose A is full.
+/// Number of products per row above which they are not listed: rows of many contacts of one body, whose A is full.
 const MOST_PER_ROW: usize = 64;
 
 /// The entries A_ij of rows that share a movable column.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Entries {
-    /// What the places are for: offsets and columns of the rows, and which columns move.
+    /// The pattern that the places are for: offsets and columns of the rows, and one flag per movable column.
     start: Vec<usize>,
     column: Vec<usize>,
     movable: Vec<bool>,
@@ -23,7 +23,7 @@ pub(crate) struct Entries {
     end: Vec<u32>,
     /// Places of the coefficients of both rows.
     factors: Vec<[u32; 2]>,
-    /// The entries by rows, each twice: where a row begins, the other rows, and the two places of each entry.
+    /// The entries by rows, each twice: where a row begins, the other row of each, and the two places of each entry.
     row_start: Vec<u32>,
     other: Vec<u32>,
     place: Vec<[u32; 2]>,
@@ -36,15 +36,15 @@ pub(crate) struct Entries {
     value: Vec<f64>,
     /// A_ii, s_i = sqrt(A_ii) (1 where A_ii = 0) and 1/s_i.
     diagonal: Vec<[f64; 3]>,
-    /// The coefficients and inverse masses that these were formed from.
+    /// The coefficients and inverse masses from which the entries were formed.
     formed_from: [Vec<f64>; 2],
     /// J M⁻¹ by place.
     response: Vec<f64>,
 }
 
 impl Entries {
-    /// Forms the entries of these rows if rows of the same columns were seen before, for places that serve
-    /// but once are not worth finding. Returns whether there are entries.
+    /// Forms the entries if the pattern is that of the last call, as places that serve only once are not worth finding.
+    /// Returns whether there are entries.
     pub(crate) fn load(&mut self, bodies: &BodyRows) -> bool {
         let listed = self.prepare(bodies);
         let BodyRows { rows, inverse_mass } = bodies;
@@ -58,17 +58,17 @@ impl Entries {
         listed
     }
 
-    /// Forgets the entries, not where they are.
+    /// Drops the entries and keeps their places.
     pub(crate) fn forget(&mut self) {
         self.value.clear();
     }
 
-    /// Whether places were looked for.
+    /// Whether the places of this pattern were looked for.
     pub(crate) fn are_listed(&self) -> bool {
         self.listed
     }
 
-    /// Whether there are entries.
+    /// Whether the entries are formed.
     pub(crate) fn are_formed(&self) -> bool {
         !self.value.is_empty()
     }
@@ -78,12 +78,12 @@ impl Entries {
         &self.diagonal
     }
 
-    /// The other entries: rows i < j, and A_ij [1/kg].
+    /// The entries off the diagonal: rows i < j, and A_ij [1/kg].
     pub(crate) fn off_diagonal(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         self.rows.iter().zip(&self.value).map(|(&[i, j], &value)| (i as usize, j as usize, value))
     }
 
-    /// The places of the entries of a row among all by rows, and the other rows.
+    /// The range of a row's entries among all entries by rows, and the other row of each.
     pub(crate) fn of_row(&self, row: usize) -> (Range<usize>, &[u32]) {
         let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
         (range.clone(), &self.other[range])

@@ -1,9 +1,9 @@
-//! What can be wrong with a problem, and how solving one can fail.
+//! Errors of settings, problems and solves.
 
 use crate::check::Residuals;
 use crate::solver::Method;
 
-/// A number of [`Settings`](crate::Settings) is not usable.
+/// A number of [`Settings`](crate::Settings) is not positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("setting `{field}` must be positive and finite, got {value}")]
 pub struct SettingsError {
@@ -13,7 +13,7 @@ pub struct SettingsError {
     pub value: f64,
 }
 
-/// Why the data is not a contact problem.
+/// An error in the data of a contact problem.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProblemError {
@@ -22,7 +22,7 @@ pub enum ProblemError {
     NotFinite {
         /// The row that holds the number.
         row: usize,
-        /// Which number of the row.
+        /// The quantity that the number is.
         what: &'static str,
         /// The number.
         value: f64,
@@ -42,7 +42,7 @@ pub enum ProblemError {
         row: usize,
         /// The column it names.
         column: usize,
-        /// How many columns there are.
+        /// Number of columns of the problem.
         columns: usize,
     },
     /// Bodies or rows were to be added to a problem made from a matrix.
@@ -51,7 +51,7 @@ pub enum ProblemError {
     /// A list has the wrong length.
     #[error("{what} has {found} entries, expected {expected}")]
     BadLength {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -63,10 +63,10 @@ pub enum ProblemError {
     NoSuchRow {
         /// The row it names.
         row: usize,
-        /// How many rows there are.
+        /// Number of rows of the problem.
         rows: usize,
     },
-    /// A matrix given as symmetric is not.
+    /// A matrix that was given as symmetric is not.
     #[error(
         "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference:e}"
     )]
@@ -75,10 +75,10 @@ pub enum ProblemError {
         row: usize,
         /// The column.
         column: usize,
-        /// Difference between the entry and the one across the diagonal, in units of A.
+        /// The entry less the one across the diagonal, in units of A.
         difference: f64,
     },
-    /// An entry of a symmetric matrix is larger than its diagonal allows, so that it is no contact matrix.
+    /// An entry of a symmetric matrix is larger than its diagonal allows, so that A is not positive semidefinite.
     #[error(
         "row {row}: A is not positive semidefinite, its entry {value:e} in column {column} is larger than its diagonal allows"
     )]
@@ -90,7 +90,7 @@ pub enum ProblemError {
         /// The entry, whose square exceeds the product of the two diagonal entries.
         value: f64,
     },
-    /// The square of a row, its diagonal entry of A, is beyond what numbers hold.
+    /// The square of a row, its diagonal entry of A, overflows or underflows.
     #[error(
         "row {row}: its diagonal entry of A is {value:e}, which is too large or too small to compute with"
     )]
@@ -100,7 +100,7 @@ pub enum ProblemError {
         /// The diagonal entry.
         value: f64,
     },
-    /// A diagonal entry of a symmetric matrix is negative, so that it is no contact matrix.
+    /// A diagonal entry of a symmetric matrix is negative, so that A is not positive semidefinite.
     #[error("row {row}: the diagonal entry of a symmetric A must not be negative, got {value}")]
     NegativeDiagonal {
         /// The row.
@@ -110,31 +110,42 @@ pub enum ProblemError {
     },
 }
 
-/// Why there is no answer.
+/// The reason for which a solve has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// No forces whatever satisfy the rows; the certificate proves it.
+    /// No forces satisfy the rows, by the enclosed proof.
     #[error("{0}")]
     Infeasible(Box<Infeasibility>),
-    /// The method stopped without an answer that passes the check. The problem can be written to a file and replayed.
+    /// The method stopped without an answer that passes the check.
     #[error("{method} found no acceptable answer in {iterations} iterations: {residuals}")]
     Unsolved {
         /// The method that gave up.
         method: Method,
         /// Residuals of its last forces.
         residuals: Residuals,
-        /// Pivots or iterations made.
+        /// Number of pivots or iterations made.
         iterations: usize,
     },
-    /// The method does not serve this kind of problem.
+    /// The method does not apply to this kind of problem.
     #[error("{method} does not apply: {reason}")]
     NotApplicable {
         /// The method.
         method: Method,
-        /// What it would need.
+        /// What the method needs and the problem lacks.
         reason: &'static str,
     },
+}
+
+impl SolveError {
+    /// Index of the row at which a contradiction showed; `None` for other errors.
+    #[must_use]
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            Self::Infeasible(infeasibility) => Some(infeasibility.row),
+            Self::Unsolved { .. } | Self::NotApplicable { .. } => None,
+        }
+    }
 }
 
 /// Proof that a problem has no solution.
@@ -145,24 +156,24 @@ pub enum SolveError {
 /// semidefinite, A z = 0 then.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "no forces satisfy the contacts: row {row} cannot be kept from closing (contradiction {contradiction:e} of the scale)"
+    "no forces satisfy the rows: they contradict each other at row {row}, by {contradiction:e} of the scale"
 )]
 pub struct Infeasibility {
-    /// The row at which it showed.
+    /// Index of the row at which the contradiction showed.
     pub row: usize,
     /// The combination z of the rows, one number per row.
     pub direction: Vec<f64>,
     /// Least change of a row's b, in units of the scale, that would remove the contradiction: |bᵀz| max|s z| / |s z|².
     pub contradiction: f64,
     /// Largest scaled component of Aᵀz that admissible forces could use (of either sign on bilateral rows, positive on
-    /// others; where A is symmetric it may be any), in units of the largest scaled component of z: zero up to the
-    /// rounding of z.
+    /// unilateral ones; where A is symmetric, the largest of any sign may stand for it), in units of the largest scaled
+    /// component of z. Zero up to the rounding of z.
     pub leakage: f64,
 }
 
 impl Infeasibility {
-    /// The growth that any solution would at least have, as far as the certificate can tell: forces of that size would
-    /// have to use the rounding in Aᵀz.
+    /// Least growth that any solution would have, as far as the certificate can tell: smaller forces cannot make up for
+    /// the contradiction through the leakage in Aᵀz. See [`Residuals::growth`].
     #[must_use]
     pub fn least_growth(&self) -> f64 {
         self.contradiction / self.leakage.max(f64::EPSILON)

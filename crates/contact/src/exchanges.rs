@@ -1,18 +1,20 @@
-//! Rows that take the places of others among rows that are independent, while forces are moved from those that
-//! depend on them until so many have none that the others are independent.
+//! Exchanges of rows among independent rows, while forces are moved from dependent rows to these until the rows with a
+//! force are independent.
 //!
-//! That is the way from any forces that do not pull to those of a vertex, as from an interior point to a basic
-//! one in linear programming (N. Megiddo, "On finding primal- and dual-optimal bases", ORSA Journal on
-//! Computing 3, 1991, 63-65). A dependent row is known as the sum of shares of the rows of a factor; that some
-//! of these have left is put in as products (G. Dantzig, W. Orchard-Hays, "The product form for the inverse in
-//! the simplex method", Mathematics of Computation 8, 1954, 64-67), so that one factor serves for many rows.
-//! Whose factor it is, and what the forces do, is not known here.
+//! This leads from any forces that do not pull to those of a vertex, as from an interior point to a basic one in linear
+//! programming (N. Megiddo, "On finding primal- and dual-optimal bases", ORSA Journal on Computing 3, 1991, 63-65). A
+//! dependent row is given as the sum of shares of the rows of a factor; rows that have left are substituted in product
+//! form (G. Dantzig, W. Orchard-Hays, "The product form for the inverse in the simplex method", Mathematics of
+//! Computation 8, 1954, 64-67), so that one factor serves for many rows. The caller has the factor and moves the
+//! forces.
 
-/// Part of the size of a row below which another's share in it is rounding.
+/// Fraction of the size of a dependent row: smaller parts of other rows in it are rounding. Forces that run out within
+/// this fraction of the dependent force tie.
 const LEAST_SHARE: f64 = 1e-9;
-/// Part of the size of a row below which the share of the one whose place it takes makes much of rounding.
+/// Fraction of the size of an entering row: if the part of the row that leaves is smaller, the exchange enlarges
+/// rounding much.
 const SMALL_SHARE: f64 = 1e-3;
-/// So many rows may take places of others before all is to be eliminated anew, for rounding adds up.
+/// Number of exchanges before the factor must be made anew, as rounding adds up.
 const MOST: usize = 400;
 
 /// A row that took the place of another.
@@ -20,34 +22,34 @@ const MOST: usize = 400;
 struct Exchange {
     entered: usize,
     left: usize,
-    /// The share that the one that left had in it.
+    /// The share of the row that left in the one that entered.
     share: f64,
-    /// Where the shares of the others begin in the list of all of them.
+    /// Where the shares of the other rows begin in `shares` of [`Exchanges`].
     start: usize,
 }
 
-/// The exchanges since the last elimination.
+/// The exchanges since the factor was made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Exchanges {
     list: Vec<Exchange>,
     shares: Vec<(usize, f64)>,
-    /// The last exchange was one that makes much of rounding.
+    /// True if an exchange enlarged rounding much.
     is_rough: bool,
 }
 
-/// What a dependent row, or one that it is the sum of, has to do with the choice of the one that loses its force.
+/// A dependent row, or one of the rows that it is the sum of, as a candidate for losing its force.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Party {
     pub(crate) row: usize,
     pub(crate) force: f64,
-    /// Share in the dependent row; of that itself -1.
+    /// Share in the dependent row; -1 for that row itself.
     pub(crate) share: f64,
     /// Square of the row.
     pub(crate) square: f64,
 }
 
 impl Party {
-    /// The square of what it has of the dependent row.
+    /// The square of its part in the dependent row.
     fn part(&self) -> f64 {
         self.share * self.share * self.square
     }
@@ -64,7 +66,7 @@ impl Exchanges {
         self.list.is_empty()
     }
 
-    /// Whether all is to be eliminated anew before another dependent row is looked at.
+    /// Whether the factor must be made anew before the next dependent row.
     pub(crate) fn is_full(&self) -> bool {
         self.is_rough || self.list.len() >= MOST
     }
@@ -74,7 +76,7 @@ impl Exchanges {
         self.list.iter().map(|exchange| (exchange.entered, exchange.left))
     }
 
-    /// Puts in for rows that left what they are the sum of now.
+    /// Replaces shares of rows that left by shares of the rows that they are now the sum of.
     pub(crate) fn substitute(&self, shares: &mut [f64]) {
         for (index, exchange) in self.list.iter().enumerate() {
             let part = std::mem::take(&mut shares[exchange.left]) / exchange.share;
@@ -89,7 +91,7 @@ impl Exchanges {
         }
     }
 
-    /// Notes that a dependent row takes the place of one of those whose shares it is the sum of.
+    /// Notes that a dependent row, the sum of `shares`, takes the place of one of its rows.
     pub(crate) fn push(&mut self, entered: Party, left: Party, shares: &[f64]) {
         let start = self.shares.len();
         self.list.push(Exchange { entered: entered.row, left: left.row, share: left.share, start });
@@ -99,10 +101,11 @@ impl Exchanges {
     }
 }
 
-/// Which row is to have no force, and how much the dependent row, whose force is not negative, gives until then to the others,
-/// of which it is the sum; less than nothing if it takes from them. Rows that may pull are left out. Of the two that are
-/// the first to have no force, one either way, it is the one with the larger part in the dependent row: what is left is farther from dependent
-/// then, and a block on four corners ends on two that are far apart.
+/// Selects the row that is to lose its force. Also returns the force that the dependent row gives to the others, of
+/// which it is the sum, until then; it is negative if the dependent row takes from them. The force of the dependent row
+/// must not be negative, and rows that may pull must be left out. Of the two rows that lose their force first, one in
+/// either direction, the one with the larger part in the dependent row is selected: the rows left are then farther from
+/// dependent, and a block on four corners ends on two that are far apart.
 pub(crate) fn first_to_vanish(dependent: Party, others: impl Iterator<Item = Party> + Clone) -> (Party, f64) {
     let least_part = LEAST_SHARE * LEAST_SHARE * dependent.square;
     let until = |party: &Party| party.force / party.share.abs();

@@ -1,17 +1,16 @@
-//! Forces of a fixed set of rows held as equations: A f = -b with A = J M⁻¹ Jᵀ, solved again and again as J
-//! and b change.
+//! Forces of a fixed set of rows held as equations: A f = -b with A = J M⁻¹ Jᵀ, solved repeatedly as J and b change.
 //!
-//! That is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. So
-//! what depends on the structure alone is found once: an order of the rows that keeps the factor narrow (see
-//! `order`), and which pairs of rows share a body. A = L D Lᵀ is stored by rows from about their first nonzero
-//! on (see `factor`), which for a chain of joints is a few entries a row: A. George, J. Liu, "Computer Solution
-//! of Large Sparse Positive Definite Systems", 1981, chapter 4.
+//! This is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. All that
+//! depends on the structure alone is therefore found once: an order of the rows that keeps the factor narrow (see
+//! `order`), and the pairs of rows that share a body. A = L D Lᵀ is stored by rows from about their first nonzero on
+//! (see `factor`), which for a chain of joints is a few entries a row: A. George, J. Liu, "Computer Solution of Large
+//! Sparse Positive Definite Systems", 1981, chapter 4.
 //!
-//! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot
-//! and no force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of
-//! the terms A_ij f_j. Where earlier rows leave little of one, as of a heavy body on a light one, that is
-//! much beside what moves the heavy one, and a step of refinement follows: a comes from the motions of the
-//! bodies, whose rounding all rows share.
+//! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot and no
+//! force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of the terms A_ij f_j.
+//! Where earlier rows leave little of a row, as with a heavy body on a light one, that rounding is large beside the
+//! acceleration of the heavy body, and a step of refinement follows. It computes a from the motions of the bodies,
+//! whose rounding all rows share.
 
 mod dependence;
 mod factor;
@@ -26,13 +25,18 @@ use factor::Factor;
 use refining::Refining;
 use structure::Shared;
 
-/// Part of a row's square below which what earlier rows leave of it is not told from rounding of their forces.
+/// Fraction of a row's square A_ii: a remainder below it, left by earlier rows, cannot be told from the rounding of
+/// their forces.
 const RESOLVED: f64 = 1e-13;
 
-/// In place of a body: none, or one that cannot move.
+/// In place of a body: no body, or an immovable one.
 const NONE: u32 = u32::MAX;
 
-/// Rows held as equations, with the structure of their factor kept from solve to solve.
+/// Held rows (contacts and connectors) as equations A f = -b, with the structure of their factor kept from solve to
+/// solve.
+///
+/// The order of calls is [`set_structure`](Self::set_structure), [`factorize`](Self::factorize) whenever coefficients
+/// change, and any number of [`solve`](Self::solve) and [`respond`](Self::respond).
 ///
 /// # Examples
 ///
@@ -54,41 +58,42 @@ const NONE: u32 = u32::MAX;
 /// ```
 #[derive(Clone, Debug)]
 pub struct HeldRows {
+    /// Fraction of a row's square up to which its remainder makes it dependent.
     dependence: f64,
     order: RowOrder,
-    /// Where each row's bodies begin in `column`, for the order.
+    /// Where the bodies of each row begin in `column`, for the order.
     start: Vec<usize>,
     column: Vec<u32>,
     body_count: usize,
     // From here on by place in that order.
     /// The movable bodies of each row; a body on both sides is named once.
     bodies: Vec<[u32; 2]>,
-    /// Roots of the inverse masses of each row's coefficients, side by side.
+    /// Roots of the inverse masses of the coefficients of each row, for either side.
     root: Vec<[[f64; 3]; 2]>,
-    /// Earlier rows that share a body, and where those of each side of each row begin.
+    /// Earlier rows that share a body with each side of each row, and where those of a side begin.
     shared: Vec<Shared>,
     shared_start: Vec<usize>,
-    /// L and 1/D, where a row that depends on earlier ones has no pivot.
+    /// L and 1/D; a row that depends on earlier ones has no pivot.
     factor: Factor,
-    /// True for rows that depend on each other.
+    /// True for a row that depends on others, or on which another depends.
     shares: Vec<bool>,
-    /// What the square of each row is raised by, in parts of itself.
+    /// Fraction of itself by which the square of each row is raised; 0 for a row that is not soft.
     raise: Vec<f64>,
     is_soft: bool,
-    /// Part of each row's square that earlier rows leave, without what it is raised by.
+    /// Fraction of each row's square that earlier rows leave, without the raise.
     kept: Vec<f64>,
-    /// Earlier rows leave little of an independent one.
+    /// True if earlier rows leave little of an independent row.
     is_delicate: bool,
     refining: Refining,
     exchanges: Exchanges,
-    /// Ĵ = J M^(-1/2), side by side.
+    /// Ĵ = J M^(-1/2), for either side of each row.
     jacobian: Vec<[[f64; 3]; 2]>,
     work: Vec<f64>,
     /// A motion of the bodies, in units of M^(1/2).
     motion: Vec<[f64; 3]>,
-    /// Sum of the squares of what rows do to each body.
+    /// Sum over rows of the squared motions that they give each body.
     gross: Vec<f64>,
-    /// Last place with a given body and side, and the one before each.
+    /// Last side of a row on each body, and for each side the one before it on the same body.
     head: Vec<u32>,
     previous: Vec<u32>,
 }
@@ -100,7 +105,7 @@ impl Default for HeldRows {
 }
 
 impl HeldRows {
-    /// No rows yet; of the settings `dependence` is used.
+    /// Makes a solver without rows. Of `settings` only [`dependence`](Settings::dependence) is used.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
@@ -142,8 +147,8 @@ impl HeldRows {
         self.root.is_empty()
     }
 
-    /// New coefficients (primary x, y \[1\], rotation \[m\], normal the same) of every row. Returns how many
-    /// rows depend on others, which take no force.
+    /// Sets the coefficients of every row (x, y \[1\] and rotation \[m\] of the primary, then of the normal body) and
+    /// factors A. Returns the number of rows that depend on others and take no force.
     ///
     /// # Panics
     ///
@@ -175,7 +180,7 @@ impl HeldRows {
         dependent
     }
 
-    /// Sets Ĵ, and the entries of A below its diagonal.
+    /// Sets Ĵ, and the entries of Ĵ Ĵᵀ = A below the diagonal.
     fn set_entries(&mut self, jacobians: &[[f64; 6]]) {
         self.factor.clear();
         let entries = self.factor.entries_mut();
@@ -199,7 +204,7 @@ impl HeldRows {
         }
     }
 
-    /// The square of a row of Ĵ.
+    /// The square A_ii of a row of Ĵ.
     fn square(&self, place: usize) -> f64 {
         let [p, q] = &self.jacobian[place];
         (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) + (q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
@@ -215,8 +220,9 @@ impl HeldRows {
         }
     }
 
-    /// Finds the forces with A f = -b: those that hold all rows at a = A f + b = 0. Rows that depend on
-    /// others have none; their a is 0 as far as their b agrees.
+    /// Finds the forces f \[N\] with A f = -b, which hold all rows at a = A f + b = 0; `offset` is b [m/s²], negative
+    /// when closing. Rows that depend on others get no force, and their a is 0 if their b agrees with that of the
+    /// others. With closing velocities [m/s] for b, f are impulses [N·s].
     ///
     /// # Panics
     ///
@@ -237,12 +243,12 @@ impl HeldRows {
         self.refining = refining;
     }
 
-    /// As [`solve`](Self::solve), but what soft rows lack is not made good: a millionth of what they hold,
-    /// and more of that in which they all but depend on each other. For who comes back with what is left.
+    /// Does as [`solve`](Self::solve) without its refinement: about 1e-6 of the load of softened rows is missing, and
+    /// more in the directions in which they nearly depend on each other. For callers that iterate.
     ///
     /// # Panics
     ///
-    /// As [`solve`](Self::solve).
+    /// If there is not one offset and one force per row.
     pub fn solve_roughly(&mut self, offset: &[f64], force: &mut [f64]) {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
@@ -259,7 +265,8 @@ impl HeldRows {
         });
     }
 
-    /// Adds to the accelerations (x, y, rotation) of every body what the forces change: M⁻¹ Jᵀ f.
+    /// Adds M⁻¹ Jᵀ f, the change by the forces `force` \[N\], to the accelerations of every body (x, y [m/s²], rotation
+    /// [rad/s²]).
     ///
     /// # Panics
     ///
@@ -271,7 +278,7 @@ impl HeldRows {
         for ((bodies, &index), (row, root)) in rows {
             let push = force[index as usize];
             for ((&body, row), root) in bodies.iter().zip(row).zip(root) {
-                // `NONE` is the number of no body.
+                // `NONE` is beyond the last body.
                 let Some(out) = change.get_mut(body as usize) else { continue };
                 for k in 0..3 {
                     out[k] += root[k] * row[k] * push;
@@ -289,7 +296,7 @@ mod tests {
 
     const INERTIA: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
-    /// A = J M⁻¹ Jᵀ and M⁻¹ Jᵀ f the plain way.
+    /// M⁻¹ Jᵀ f and A f, computed the plain way.
     fn accelerations(
         inertia: &[InverseInertia],
         rows: &[[Option<u32>; 2]],
@@ -327,7 +334,7 @@ mod tests {
         let (expected, rates) = accelerations(inertia, rows, jacobians, &force);
         let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
         for row in 0..rows.len() {
-            // Dependent rows are taken as such with up to a root of the threshold left of them.
+            // Rows count as dependent with up to the root of the threshold left of them.
             let rounding = if held.is_dependent(row) { 1e-4 } else { 1e-11 };
             let left = rates[row] + offset[row];
             assert!(
@@ -382,7 +389,7 @@ mod tests {
         assert!(force.iter().all(|force| force.abs() < 20.0), "{force:?}");
     }
 
-    /// The offsets that rows have when the bodies accelerate so.
+    /// The offsets of the rows for given accelerations of the bodies.
     fn offsets(rows: &[[Option<u32>; 2]], jacobians: &[[f64; 6]], motion: &[[f64; 3]]) -> Vec<f64> {
         let sum = |(sides, row): (&[Option<u32>; 2], &[f64; 6])| {
             (0..6).filter_map(|k| Some(row[k] * motion[sides[k / 3]? as usize][k % 3])).sum()

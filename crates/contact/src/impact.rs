@@ -1,21 +1,21 @@
 //! Impacts: closing rows in, impulses along their normals out.
 //!
-//! With the Delassus matrix A = J M^-1 J^T (n, n) [1/kg] the rates b [m/s] of the rows become A j + b by
-//! impulses j >= 0 [N s]. An impact law says which impulses: each row that closes faster than its
-//! `velocity_tol`, when it is solved or when the impact began, is to open again at its elasticity times that
-//! speed, a slower one is to stop. Bilateral rows (connectors) have impulses of either sign and end at rest.
+//! With the Delassus matrix A = J M^-1 J^T (n, n) [1/kg], impulses j >= 0 [N s] change the rates b [m/s] of the rows to
+//! A j + b. An impact law selects the impulses. A row that closes faster than its `velocity_tol`, when it is solved or
+//! when the impact began, is to open again at its elasticity times that speed; a slower row is to stop. Bilateral rows
+//! (connectors) have impulses of either sign and end at rest.
 //!
-//! Energy never grows. Impulses j that take the rates from b to b' change it by sum j (b + b')/2: a row that
-//! closes at b < 0 and ends at b' = -e b adds j (1 - e) b/2 <= 0, a row held at rest nothing. So a problem
-//! may hold rows that close or rest, but not rows that open; only without elasticity, b' = 0 throughout, may
-//! it hold any (then it is the projection onto the admissible motions, in the measure of energy).
+//! Energy never grows. Impulses j that take the rates from b to b' change it by sum j (b + b')/2: a row that closes at
+//! b < 0 and ends at b' = -e b adds j (1 - e) b/2 <= 0, a row held at rest nothing. So a problem may hold rows that
+//! close or rest, but not rows that open. Only without elasticity, with b' = 0 for all rows, may it hold any row: it is
+//! then the projection onto the admissible motions in the energy norm.
 //!
-//! | module | what |
+//! | module | contents |
 //! |---|---|
-//! | `law` | which rows are solved when; errors |
+//! | `law` | the laws, the order of rows, errors |
 //! | `together`, `serial` | all rows in one problem, or one after another |
-//! | `patience` | when ricochets end |
-//! | `pair_problem`, `few_rows`, `many_rows` | one or two rows in closed form, some more directly; else by the active-set method |
+//! | `patience` | the end of ricochets |
+//! | `pair_problem`, `few_rows`, `many_rows` | up to two rows in closed form, up to eight directly, more by the active-set method |
 //! | `couplings` | the Delassus matrix |
 //! | `shuffle` | random orders |
 
@@ -35,10 +35,10 @@ use crate::row::CollisionRow;
 use couplings::Couplings;
 use many_rows::ManyRows;
 
-/// Part of the largest change of a rate so far that is rounding.
+/// Rounding of rates, as a fraction of the largest change of a rate by one impulse so far.
 const NOISE: f64 = 64.0 * f64::EPSILON;
 
-/// An impact: rows with their rates and the impulses applied so far.
+/// An impact: its rows with their rates and impulses. [`ImpactLaw::resolve`] finds the impulses.
 #[derive(Clone, Debug, Default)]
 pub struct Impact {
     rows: Vec<CollisionRow>,
@@ -48,18 +48,20 @@ pub struct Impact {
     /// Impulse of each row [N s] so far.
     impulses: Vec<f64>,
     couplings: Couplings,
-    /// Rate [m/s] that is rounding of the impulses so far, or what rows that contradict each other by rounding leave.
+    /// Rate [m/s] that may be rounding of the impulses so far, or be left by rows that contradict each other by
+    /// rounding.
     noise: f64,
     /// The largest change [m/s] of a rate by one impulse so far.
     largest_change: f64,
-    /// The fastest rate [m/s] that was to be changed.
+    /// The greatest violation [m/s] at the start.
     fastest: f64,
+    /// Greatest violation [m/s] that may be left.
     bound: f64,
-    /// What is left has resisted small impulses.
+    /// True in the last attempt, in which impulses may be as large as necessary.
     at_last: bool,
-    /// What takes many pivots is given up, at last as well as before.
+    /// True in a trial: problems that take many pivots are given up, in the last attempt too.
     is_trial: bool,
-    /// How many complementarity problems were solved.
+    /// Number of complementarity problems solved.
     solves: u64,
     scratch: Scratch,
 }
@@ -67,28 +69,29 @@ pub struct Impact {
 /// Buffers of the laws, kept from one impact to the next.
 #[derive(Clone, Debug, Default)]
 struct Scratch {
-    /// The rows that are solved together, and a flag for each.
+    /// The rows that are solved together, and one flag per row of the impact.
     set: Vec<usize>,
     listed: Vec<bool>,
     /// Rates [m/s] that rows are to reach.
     targets: Vec<f64>,
-    /// Rates [m/s] and impulses [N s] to go back to.
+    /// Rates [m/s] and impulses [N s] before a round, to which a failed round goes back.
     rates: Vec<f64>,
     impulses: Vec<f64>,
-    /// What rows were unloaded by [N s], until they are solved.
+    /// Impulse [N s] that each row was unloaded by, until a problem without elasticity starts from it; empty if none
+    /// was.
     carried: Vec<f64>,
-    /// Made when first needed, for most impacts have one row or two.
+    /// Made when first needed, as most impacts have one row or two.
     many: Option<Box<ManyRows>>,
 }
 
 impl Impact {
-    /// An impact without rows, whose buffers can be used again and again.
+    /// Makes an impact without rows. Its buffers are kept from impact to impact.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Starts over with other rows, in their order.
+    /// Starts a new impact with the given rows, without impulses.
     pub fn set_rows(&mut self, rows: impl IntoIterator<Item = CollisionRow>) {
         self.rows.clear();
         self.rows.extend(rows);
@@ -107,9 +110,9 @@ impl Impact {
         self.scratch.carried.clear();
     }
 
-    /// Takes from each row an impulse [N s] that it carries anyway, as the force of a contact does over some
-    /// time. What is resolved afterwards brings back as much of it as is needed: in all, a row that is not
-    /// bilateral may then have an impulse down to minus that.
+    /// Subtracts from each row an impulse [N s] that it carries anyway, such as the force of a contact times a
+    /// duration, and changes the rates accordingly. Resolving the impact afterwards restores as much of it as is
+    /// needed. The impulse of a unilateral row may then end as low as minus the subtracted one.
     ///
     /// # Panics
     /// If there is not one impulse per row.
@@ -122,40 +125,41 @@ impl Impact {
         }
     }
 
-    /// The rows.
+    /// The rows, in the order of [`set_rows`](Self::set_rows).
     #[must_use]
     pub fn rows(&self) -> &[CollisionRow] {
         &self.rows
     }
 
-    /// Rate of each row after the impulses [m/s].
+    /// Rate of each row after the impulses [m/s], negative when closing.
     #[must_use]
     pub fn rates(&self) -> &[f64] {
         &self.rates
     }
 
-    /// Impulse of each row [N s], at least 0 for a row that is not bilateral, but for what it was
-    /// [unloaded](Self::unload) by. Redundant rows leave a choice; the rates do not depend on it.
+    /// Impulse of each row [N s]: of either sign for a bilateral row, else at least 0, less the impulse that the row
+    /// was [unloaded](Self::unload) by. Redundant rows leave a choice of impulses, on which the rates do not depend.
     #[must_use]
     pub fn impulses(&self) -> &[f64] {
         &self.impulses
     }
 
-    /// Greatest closing speed, or rate of a bilateral row [m/s], that the impact may have left: 1e-12 of its
-    /// fastest rate, or the rounding of its impulses; where rows are so nearly dependent that rounding makes
-    /// them contradict each other, what that leaves, at most 1e-5 of that rate.
+    /// Greatest closing speed of a unilateral, or size of the rate of a bilateral row [m/s] that the impact may have
+    /// left. This is 1e-12 of the fastest rate at the start, or the rounding of the impulses. Where rows are so nearly
+    /// dependent that rounding makes them contradict each other, it is what that contradiction leaves, at most 1e-5 of
+    /// the fastest rate.
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.bound
     }
 
-    /// How many complementarity problems were solved.
+    /// Number of complementarity problems solved since [`set_rows`](Self::set_rows).
     #[must_use]
     pub fn solves(&self) -> u64 {
         self.solves
     }
 
-    /// How many rows carry an impulse.
+    /// Number of rows whose impulse is not 0.
     #[must_use]
     pub fn active_rows(&self) -> usize {
         self.impulses.iter().filter(|&&impulse| impulse != 0.0).count()
@@ -174,14 +178,15 @@ impl Impact {
         self.noise = self.noise.max(NOISE * largest);
     }
 
-    /// By how much a row's rate is wrong [m/s]: its closing speed, or a bilateral row's rate without sign.
+    /// Violation of a row [m/s]: the closing speed of a unilateral row (negative when it opens), the size of the rate
+    /// of a bilateral one.
     fn violation(&self, row: usize) -> f64 {
-        // Most impacts have no connectors; then a scan of all rows reads their rates alone.
+        // Most impacts have no connectors; a scan of all rows then reads only their rates.
         let is_bilateral = self.has_connectors && self.rows[row].bilateral;
         if is_bilateral { self.rates[row].abs() } else { -self.rates[row] }
     }
 
-    /// Whether that is more than `small`, and more than rounding.
+    /// Whether the violation of a row exceeds `small` [m/s] and the rounding of rates.
     fn is_violated(&self, row: usize, small: f64) -> bool {
         self.violation(row) > self.rest(small)
     }
@@ -195,7 +200,7 @@ impl Impact {
         small.max(self.noise)
     }
 
-    /// Whether an impulse along a row changes anything.
+    /// Whether an impulse along a row moves a body.
     fn can_move(&self, row: usize) -> bool {
         self.couplings.diagonal(row) > 0.0
     }

@@ -1,4 +1,4 @@
-//! A primal-dual interior-point method in body space: what the proximal method starts from where it does not end soon.
+//! A primal-dual interior-point method in body space, from which the proximal method starts where it does not end soon.
 //!
 //! With the scaled quantities of [`System`] and the motion u of the bodies,
 //!
@@ -6,39 +6,40 @@
 //! u = Ĵᵀ f,   a = Ĵ u + b̂ + δ f,   f_i a_i = μ   (f_i > 0, a_i > 0),   a = -δ (f - f before)  on bilateral rows
 //! ```
 //!
-//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = 1/(a/f + δ): positive definite however
-//! redundant the contacts are, and as sparse as the bodies' neighbourhoods. The term δ, if it is not zero, keeps the
-//! forces of jammed bodies modest, which may press each other by any amount. A step predicts how far μ can
-//! fall and corrects for what is quadratic. Which rows are closed where many contacts nearly depend on each
-//! other takes an active set a pivot each; here it takes some twenty steps whatever their number. Source: S.
-//! Mehrotra, "On the implementation of a primal-dual interior point method", SIAM Journal on Optimization 2,
-//! 1992; for quadratic programs, J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., algorithm 16.4.
+//! is followed to μ = 0 by Newton steps, each with the matrix I + Ĵᵀ W Ĵ, W = 1/(a/f + δ). It is positive definite
+//! however redundant the contacts are, and as sparse as the bodies' neighbourhoods. A nonzero term δ keeps the forces
+//! of jammed bodies modest, which may press each other by any amount. A step predicts how far μ can fall and corrects
+//! for the quadratic terms. Where many contacts nearly depend on each other, an active set takes a pivot for each to
+//! find the closed rows; here it takes some twenty steps whatever their number. Source: S. Mehrotra, "On the
+//! implementation of a primal-dual interior point method", SIAM Journal on Optimization 2, 1992; for quadratic
+//! programs, J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., algorithm 16.4.
 //!
-//! This room finds forces near the answer, and nothing exact: the proximal method ends it.
+//! The result is only near the answer; the proximal method makes it exact.
 
 use crate::body_factor::BodyFactor;
 use crate::system::System;
 
-/// Mean product of force and acceleration, in units of the square of the scale, that ends the iteration.
+/// Largest mean product of scaled force and acceleration, in units of the square of the scale, that ends the iteration.
 const GAP: f64 = 1e-18;
-/// Residual of the accelerations, in units of the scale, that ends it.
+/// Largest residual of the accelerations, in units of the scale, that ends the iteration.
 const FEASIBLE: f64 = 1e-9;
-/// The same two up to which what was found is of use.
+/// Largest mean product and residual, in the units of `GAP` and `FEASIBLE`, at which the result is of use.
 const NEAR: f64 = 1e-8;
-/// What known forces are wrong by at least, in units of the scale.
+/// Least error that known forces are taken to have, in units of the scale.
 const LEAST_WRONG: f64 = 1e-6;
-/// Cap on steps.
+/// Cap on the number of steps.
 const STEPS: usize = 50;
-/// Part of the way to the boundary that a step goes at most.
+/// Largest fraction of the way to the boundary that a step goes, far from the end.
 const WITHIN: f64 = 0.995;
-/// Steps shorter than this part are of no use any more.
+/// Fraction of a full step: the iteration ends at shorter steps.
 const SHORTEST: f64 = 1e-3;
-/// Power of the part of the gap that a prediction leaves, down to which the corrected step goes.
+/// Power of the fraction of the gap that the predicted step leaves: the corrected step aims at that fraction of the
+/// gap.
 const CENTRING: i32 = 3;
-/// Proximal term on bilateral rows, in units of the unit diagonal of Â.
+/// Proximal term on bilateral rows, in units of the diagonal of Â, which is 1.
 const BILATERAL_TERM: f64 = 1e-9;
 
-/// The method with its buffers; of each row f and a, their changes, and what the equations are short of.
+/// The interior-point method with its buffers: f and a of each row, their changes, and the residuals of the equations.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InteriorPoint {
     pub(crate) force: Vec<f64>,
@@ -51,15 +52,15 @@ pub(crate) struct InteriorPoint {
     acceleration_change: Vec<f64>,
     motion: Vec<f64>,
     motion_change: Vec<f64>,
-    /// The term δ, in units of the unit diagonal of Â.
+    /// The term δ, in units of the diagonal of Â, which is 1.
     pub(crate) term: f64,
-    /// Steps of the last run.
+    /// Number of steps of the last run.
     pub(crate) steps: usize,
 }
 
 impl InteriorPoint {
-    /// Follows the path as far as it can, from the middle or from near `known` forces, scaled ones. Returns
-    /// whether it came near the end.
+    /// Follows the path as far as possible, from the middle or from near the scaled forces `known`. Returns whether it
+    /// came near the end.
     pub(crate) fn run(
         &mut self,
         system: &System,
@@ -87,7 +88,7 @@ impl InteriorPoint {
             if !factor.factor(system, |row| weight[row]) {
                 return is_near;
             }
-            // As if all products could fall to zero, then to what that tells.
+            // The predictor aims at zero products, the corrector at the target that its result gives.
             self.product.fill(0.0);
             self.find_step(system, factor, bilateral);
             let after = self.gap_after(self.longest(bilateral), bilateral);
@@ -96,7 +97,7 @@ impl InteriorPoint {
                 *product = target - self.force_change[row] * self.acceleration_change[row];
             }
             self.find_step(system, factor, bilateral);
-            // Near the end, where steps are right, nearly all of what is left goes in one.
+            // Near the end, where steps are accurate, one step removes nearly all of the gap.
             let within = WITHIN.max(1.0 - mean.sqrt());
             let length = (within * self.longest(bilateral)).min(1.0);
             if length < SHORTEST {
@@ -130,7 +131,8 @@ impl InteriorPoint {
         system.push(&self.force, &mut self.motion);
     }
 
-    /// Starts near known forces: with the accelerations that they leave, and no less of either than these are wrong by.
+    /// Starts near known forces, with the accelerations that they leave; both are at least the error of these
+    /// accelerations.
     fn begin_at(&mut self, system: &System, bilateral: &[bool], known: &[f64]) {
         self.force.copy_from_slice(known);
         system.push(&self.force, &mut self.motion);
@@ -150,7 +152,7 @@ impl InteriorPoint {
         system.push(&self.force, &mut self.motion);
     }
 
-    /// Finds weights, and by how much accelerations are not those of the motion.
+    /// Finds the weights, and the residuals of the accelerations against those of the motion.
     fn measure(&mut self, system: &System, bilateral: &[bool]) {
         system.pull(&self.motion, &mut self.residual);
         for (row, residual) in self.residual.iter_mut().enumerate() {
@@ -164,9 +166,9 @@ impl InteriorPoint {
         }
     }
 
-    /// Finds the changes that make the equations hold, with the products that are aimed at.
+    /// Finds the changes that make the linearised equations hold with the products aimed at.
     fn find_step(&mut self, system: &System, factor: &mut BodyFactor, bilateral: &[bool]) {
-        // What the forces would become if the motion did not change.
+        // The forces if the motion did not change.
         for (row, &is_bilateral) in bilateral.iter().enumerate() {
             let force = self.force[row];
             let kept = if is_bilateral {
@@ -189,7 +191,7 @@ impl InteriorPoint {
         }
     }
 
-    /// How far along the step no force and no acceleration falls below zero, in steps.
+    /// Longest multiple of the step at which no force and no acceleration of a unilateral row is below zero.
     fn longest(&self, bilateral: &[bool]) -> f64 {
         let to_zero = |value: f64, change: f64| if change < 0.0 { -value / change } else { f64::INFINITY };
         let of_row = |row: usize| {
@@ -199,7 +201,7 @@ impl InteriorPoint {
         (0..bilateral.len()).filter(|&row| !bilateral[row]).map(of_row).fold(f64::INFINITY, f64::min)
     }
 
-    /// Sum of the products of the unilateral rows after so many steps, one at most.
+    /// Sum of the products of the unilateral rows after a multiple of the step, capped at 1.
     fn gap_after(&self, steps: f64, bilateral: &[bool]) -> f64 {
         let steps = steps.min(1.0);
         let of_row = |row: usize| {
@@ -244,7 +246,7 @@ mod tests {
             let forces = method.force.iter().zip(&method.acceleration);
             let kept = forces.clone().filter(|(force, acceleration)| force > acceleration).count();
             assert!(kept < method.force.len());
-            // What carries force does not open, and what opens carries none.
+            // Rows that carry force do not open, and rows that open carry none.
             assert!(forces.into_iter().all(|(force, acceleration)| force.min(*acceleration) < 1e-6));
         }
     }

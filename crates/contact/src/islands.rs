@@ -1,43 +1,44 @@
 //! Independent groups of rows, solved one by one.
 //!
-//! Rows are coupled when they touch the same movable body; a floor couples nothing. Found with union-find: R. Tarjan,
-//! "Efficiency of a good but not linear set union algorithm", Journal of the ACM 22, 1975.
+//! Rows are coupled if they touch the same movable body; an immovable floor couples no rows. Found with union-find: R.
+//! Tarjan, "Efficiency of a good but not linear set union algorithm", Journal of the ACM 22, 1975.
 
 use crate::error::Infeasibility;
 use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 
+/// No row, or not in the island.
 const NONE: u32 = u32::MAX;
 
-/// Islands that are kept as problems of their own, and solved by methods of their own; later ones share the last.
+/// Number of islands that are kept as problems and have solvers of their own; all later islands share the last ones.
 pub(crate) const KEPT: usize = 64;
 
-/// The islands of a problem, and some of them as problems of their own.
+/// The islands of a problem, and the first of them as problems of their own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
     parent: Vec<u32>,
-    /// Last row met per column.
+    /// Last row met, per column.
     met: Vec<u32>,
     /// Rows by island, and where each island begins.
     rows: Vec<u32>,
     start: Vec<u32>,
     island: Vec<u32>,
-    /// The rows of bodies that the islands are those of: offsets, columns, coefficients, and inverse masses.
+    /// The rows of bodies for which the islands were found: offsets, columns, coefficients, and inverse masses.
     known_start: Vec<usize>,
     known_column: Vec<usize>,
     known_value: Vec<f64>,
     known_mass: Vec<f64>,
-    /// The first islands as problems, and which of them have the coefficients of the whole.
+    /// The first islands as problems, and one flag each: true if its coefficients are those of the whole.
     parts: Vec<Problem>,
     is_current: Vec<bool>,
-    /// Place in the island of each row or column of the whole.
+    /// Index in the island of each row or column of the whole.
     local: Vec<u32>,
     /// The columns of an island that becomes a problem.
     columns: Vec<usize>,
 }
 
 impl Islands {
-    /// Finds the islands; returns how many there are.
+    /// Finds the islands and returns their number.
     pub(crate) fn find(&mut self, problem: &Problem) -> usize {
         let n = problem.len();
         if self.is_known(problem) {
@@ -69,7 +70,7 @@ impl Islands {
         self.sort(n)
     }
 
-    /// Whether the same rows touch the same movable bodies as last time; remembers them.
+    /// Whether the same rows touch the same movable bodies as last time. Stores those of `problem`.
     fn is_known(&mut self, problem: &Problem) -> bool {
         let Matrix::Bodies(bodies) = &problem.matrix else {
             self.known_start.clear();
@@ -143,7 +144,7 @@ impl Islands {
         &self.rows[self.start[island] as usize..self.start[island + 1] as usize]
     }
 
-    /// The proof that an island has no solution as one of the whole, whose scale may be larger.
+    /// Turns the proof that an island has no solution into one for the whole problem, whose scale may be larger.
     pub(crate) fn proof_of_whole(
         &self,
         problem: &Problem,
@@ -171,7 +172,7 @@ impl Islands {
         part.offset.extend(rows.iter().map(|&row| problem.offset[row as usize]));
         part.bilateral.clear();
         part.bilateral.extend(rows.iter().map(|&row| problem.bilateral[row as usize]));
-        // The last room is shared.
+        // Several islands share the last slot, so it is never current.
         let was_current = std::mem::replace(&mut self.is_current[slot], island + 1 < KEPT);
         if was_current {
             return part;
@@ -196,7 +197,7 @@ impl Islands {
             to.clear();
             to.extend(self.columns.iter().map(|&k| from[k]));
         } else {
-            // Of a matrix, rows are columns, too.
+            // A matrix has the same rows and columns.
             self.columns.extend(rows.iter().map(|&row| row as usize));
         }
         self.columns.iter().enumerate().for_each(|(at, &k)| self.local[k] = at as u32);
@@ -213,7 +214,7 @@ impl Islands {
             }
             target.start.push(target.column.len());
         }
-        // Only what was touched, for there may be as many islands as bodies.
+        // Only the columns touched are reset, as there may be as many islands as bodies.
         self.columns.iter().for_each(|&k| self.local[k] = NONE);
         part
     }

@@ -30,69 +30,69 @@ const FIELDS: [&str; 13] = [
     "expected",
 ];
 
-/// Why a file is not a contact problem.
+/// An error in a file of a contact problem.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// Not JSON, or a field has the wrong type; the message names line and column.
+    /// The text is not JSON, or a field has the wrong type; the message names line and column.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
-    /// The same of a file with numbers that JSON does not have: some programs write them.
+    /// The text is not JSON and contains NaN or Infinity, which JSON does not have but some programs write.
     #[error("{0} (the file has NaN or Infinity, which JSON does not know)")]
     NotANumber(serde_json::Error),
-    /// The format field says something else.
+    /// The field `format` is not that of a contact problem.
     #[error("field `format` is \"{0}\", expected \"{PROBLEM_FORMAT}\"")]
     Format(String),
-    /// A field is missing.
+    /// A required field is missing.
     #[error("field `{0}` is missing")]
     Missing(&'static str),
-    /// Two fields that exclude each other.
+    /// The file has both `A` and `J`, which exclude each other.
     #[error("the fields `A` and `J` exclude each other: which of them is the problem?")]
     Both,
-    /// The numbers are wrong.
+    /// The numbers are not a contact problem.
     #[error("{0}")]
     Problem(#[from] ProblemError),
 }
 
-/// A contact problem in a file, with what a test expects of it.
+/// The contents of a problem file, format `halfgap-contact-1`: a contact problem and what a test expects of its answer.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ContactFile {
-    /// `halfgap-contact-1`.
+    /// Name of the format, `halfgap-contact-1`.
     pub format: String,
-    /// A name for people.
+    /// Title of the problem.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
-    /// What kind of problem it is.
+    /// Name of the family of problems that it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub family: Option<String>,
-    /// Whether A is symmetric and positive semidefinite.
+    /// Whether A is symmetric and positive semidefinite; true if absent.
     #[serde(default = "yes")]
     pub symmetric: bool,
-    /// The entries of A [1/kg].
+    /// The entries of A [1/kg]; excludes `j`.
     #[serde(default, rename = "A", skip_serializing_if = "Option::is_none")]
     pub a: Option<MatrixField>,
-    /// The rows of bodies.
+    /// The rows J of bodies [1, 1, m per body]; excludes `a` and needs `inverse_mass`.
     #[serde(default, rename = "J", skip_serializing_if = "Option::is_none")]
     pub j: Option<RowsField>,
     /// Inverse mass per column of J [1/kg, 1/(kg m²)].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inverse_mass: Option<Vec<f64>>,
-    /// The right-hand side [m/s²].
+    /// The offset b of each row [m/s²].
     pub b: Vec<f64>,
-    /// The right-hand side one step later.
+    /// The offset b of each row one step later [m/s²].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub b_next: Option<Vec<f64>>,
-    /// Which rows are equations; none if absent.
+    /// One flag per row, true if it is bilateral; none is if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bilateral: Option<Vec<bool>>,
     /// Whether a solution exists, as far as a test knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feasible: Option<bool>,
-    /// A known solution; others may exist.
+    /// Force per row \[N\] of a known solution; others may exist.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_force: Option<Vec<f64>>,
-    /// What another program found.
+    /// The answer of another program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected: Option<Expected>,
 }
@@ -101,25 +101,25 @@ pub struct ContactFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum MatrixField {
-    /// All rows in full.
+    /// All rows, with all entries.
     Dense(Vec<Vec<f64>>),
-    /// Entries that are not zero.
+    /// The nonzero entries only.
     Sparse {
         /// Number of rows and columns.
         n: usize,
-        /// Row, column, value; values at one place add up.
+        /// Row, column, value [1/kg]; values at the same place add up.
         triplets: Vec<(usize, usize, f64)>,
     },
 }
 
-/// Rows J of bodies.
+/// The rows J of bodies, sparse.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RowsField {
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// Row, column, coefficient; coefficients at one place add up.
+    /// Row, column, coefficient (x and y \[1\], rotation \[m\]); coefficients at the same place add up.
     pub triplets: Vec<(usize, usize, f64)>,
 }
 
@@ -129,10 +129,10 @@ pub struct Expected {
     /// Acceleration per row [m/s²].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Vec<f64>>,
-    /// How closely they must agree, in the same units.
+    /// Largest difference [m/s²] of an acceleration from the expected one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// Force per row \[N\]; others may do where contacts are redundant.
+    /// Force per row \[N\]; not unique where contacts are redundant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<Vec<f64>>,
 }
@@ -142,13 +142,14 @@ fn yes() -> bool {
 }
 
 impl ContactFile {
-    /// Reads a file's text.
+    /// Parses the text of a problem file.
     ///
     /// # Errors
     ///
-    /// [`FileError`]; only the shape of the file is looked at here.
+    /// [`FileError::Json`], [`FileError::NotANumber`] or [`FileError::Format`]. The numbers are checked by
+    /// [`problem`](Self::problem).
     pub fn parse(text: &str) -> Result<Self, FileError> {
-        // Some editors put a mark before a text.
+        // Some editors put a byte order mark before the text.
         let file: ContactFile =
             serde_json::from_str(text.strip_prefix('\u{feff}').unwrap_or(text)).map_err(|error| {
                 let has_none =
@@ -158,8 +159,8 @@ impl ContactFile {
         if file.format == PROBLEM_FORMAT { Ok(file) } else { Err(FileError::Format(file.format)) }
     }
 
-    /// Fields of a file's text that a problem does not have: left out of account, or misspelt. None of what is no
-    /// object.
+    /// Lists the fields of a file's text that the format does not have; [`parse`](Self::parse) ignores them. Empty if
+    /// the text is not a JSON object.
     #[must_use]
     pub fn unknown_fields(text: &str) -> Vec<String> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -169,7 +170,7 @@ impl ContactFile {
         fields.into_keys().filter(|field| !FIELDS.contains(&field.as_str())).collect()
     }
 
-    /// The file that describes `problem`, to be replayed later.
+    /// Makes the file of `problem`, to be replayed later. Keys of rows are not part of it.
     #[must_use]
     pub fn of(problem: &Problem) -> Self {
         let mut file = ContactFile {
@@ -194,7 +195,7 @@ impl ContactFile {
         file
     }
 
-    /// The file's text.
+    /// Writes the file as JSON.
     ///
     /// # Errors
     ///
@@ -203,7 +204,7 @@ impl ContactFile {
         Ok(serde_json::to_string(self)?)
     }
 
-    /// The problem described.
+    /// Makes the problem that the file describes.
     ///
     /// # Errors
     ///
@@ -259,38 +260,38 @@ fn triplets(matrix: &SparseMatrix) -> Vec<(usize, usize, f64)> {
     (0..matrix.rows()).flat_map(row).collect()
 }
 
-/// An answer in a file.
+/// The contents of an answer file, format `halfgap-solution-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SolutionFile {
-    /// `halfgap-solution-1`.
+    /// Name of the format, `halfgap-solution-1`.
     pub format: String,
-    /// `solved`, `infeasible` or `failed`.
+    /// Outcome: `solved`, `infeasible` or `failed`.
     pub status: String,
-    /// Name of the method.
+    /// Name of the method, as [`Method::name`](crate::Method::name).
     pub method: String,
     /// Force per row \[N\].
     pub force: Vec<f64>,
     /// Acceleration per row [m/s²].
     pub acceleration: Vec<f64>,
-    /// Natural residual.
+    /// Natural residual [-]; see [`Residuals`](crate::Residuals).
     pub r_nat: f64,
-    /// Backward residual.
+    /// Backward residual [-].
     pub r_bwd: f64,
-    /// Growth.
+    /// Growth [-]: largest sum of terms of an acceleration, in units of the scale.
     pub growth: f64,
-    /// Pivots or iterations.
+    /// Number of pivots or iterations.
     pub iterations: usize,
     /// Contradiction between dependent rows, in units of the scale.
     pub inconsistency: f64,
-    /// Time of a solve from nothing \[µs\].
+    /// Time of a solve without an earlier answer \[µs\].
     pub microseconds: f64,
-    /// Time of a warm solve \[µs\], if one was made.
+    /// Time of a warm solve \[µs\]; `None` if none was made.
     pub microseconds_warm: Option<f64>,
 }
 
 impl SolutionFile {
-    /// The file of a solution; times are to be filled in.
+    /// Makes the file of a solution, with `status` "solved". The caller fills in the times.
     #[must_use]
     pub fn of(solution: &Solution) -> Self {
         SolutionFile {

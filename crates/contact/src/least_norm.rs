@@ -1,9 +1,9 @@
-//! The least-norm choice among the forces that redundant contacts leave open.
+//! The least-norm selection among the forces that redundant contacts leave open.
 //!
 //! The proximal point method from zero forces: R. T. Rockafellar, "Monotone operators and the proximal point
-//! algorithm", SIAM Journal on Control and Optimization 14, 1976. Its iterates have no part in the null space
-//! of the closed rows, so it ends at the forces of least norm among those with these rows closed, to the
-//! term's size.
+//! algorithm", SIAM Journal on Control and Optimization 14, 1976. Its iterates have no component in the null space of
+//! the closed rows, so it ends at the forces of least norm among those with these rows closed, up to an error of the
+//! size of the proximal term.
 
 use crate::dual_active_set::{Attempt, DualActiveSet, End};
 use crate::problem::Problem;

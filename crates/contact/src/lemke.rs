@@ -1,13 +1,13 @@
 //! Lemke's method for general linear complementarity problems, such as contacts with friction.
 //!
-//! Follows C. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965,
-//! with lexicographic ties (see [`Dictionary`]) and a perturbed b, after scaling to a unit diagonal; the
-//! final basis is solved again from the original data, which undoes the perturbation and the digits that a
-//! dictionary loses with every pivot, and corrected where it is wrong by that. Ends either at a solution or
-//! on a ray; a ray that is a Farkas certificate proves that the inequalities alone have no solution, any
-//! other proves nothing. Of bimatrix games the artificial variable would end on a ray at once: they take the path of
-//! C. Lemke and J. Howson, "Equilibrium points of bimatrix games", SIAM Journal 12, 1964. What that comes to nothing with
-//! is tried again with twice as many digits, if it is not large.
+//! Follows C. Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965, with
+//! lexicographic ties (see [`Dictionary`]) and a perturbed b, after scaling to a unit diagonal. The final basis is
+//! solved again from the original data, which removes the perturbation and the loss of digits by pivots, and is
+//! corrected where it then proves wrong. The path ends at a solution or on a ray. A ray that is a Farkas certificate
+//! proves that the inequalities alone have no solution; any other ray proves nothing. With the artificial variable,
+//! bimatrix games would end on a ray at once; they take the path of C. Lemke and J. Howson, "Equilibrium points of
+//! bimatrix games", SIAM Journal 12, 1964. A problem that is not solved so is tried again with twice as many digits, if
+//! it is not large.
 
 use faer::Mat;
 
@@ -24,51 +24,57 @@ use crate::solution::Solution;
 use crate::solver::{Method, Solver};
 use crate::twofold::{Number, Twofold};
 
-/// Growth that any solution would have, by a ray that is believed: of masses as far apart as 1e8 rounding
-/// leaves rays that are none.
+/// Least growth [-] of any solution by which a ray counts as a proof: with masses as far apart as 1e8, rounding leaves
+/// rays that are none.
 const SURE: f64 = 1e9;
 
-/// Sizes of the perturbation of b, in units of the scale, for one attempt each. On large redundant problems the exact
-/// rule for ties drowns in rounding; a small perturbation separates them, and its basis mostly serves b itself.
+/// Sizes of the perturbation of b, in units of the scale, one per attempt. On large redundant problems rounding defeats
+/// the exact rule for ties; a small perturbation separates them, and its final basis mostly serves b itself.
 const PERTURBATIONS: [f64; 4] = [1e-8, 0.0, 1e-6, 1e-4];
 
-/// Rows up to which it is tried with twice as many digits.
+/// Largest number of rows of a problem that is tried with twice as many digits.
 const TWOFOLD_ROWS: usize = 128;
 
-/// Cap on pivots that is not too low for any small problem: the worst take two to the power of their rows.
+/// Least cap on pivots, so that it is not too low for small problems: the worst take two to the power of their number
+/// of rows.
 const LEAST_CAP: usize = 2000;
 
-/// Cap on the sweeps in which rows without a diagonal are scaled to each other, and largest entries that are even enough.
+/// Cap on the sweeps in which rows without a diagonal are scaled.
 const SWEEPS: usize = 20;
+/// Range of the largest scaled entry of such rows in which the scaling is even enough.
 const EVEN: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
-/// Contradiction between bilateral rows, in units of the scale, that is rounding.
+/// Largest contradiction between bilateral rows that is rounding, in units of the scale.
 const AGREED: f64 = 1e-13;
 
-/// How many rows of a final basis are changed, one by one, where the original data say that rounding chose
-/// the wrong one.
+/// Cap on the number of rows of a final basis that are changed, one by one, where the original data show that rounding
+/// chose the wrong one.
 const CORRECTIONS: usize = 8;
 
-/// Lemke's method with its buffers.
+/// Lemke's pivoting method for general linear complementarity problems, such as contacts with friction.
+///
+/// A solution is not always found: the path may end on a ray, which proves infeasibility only if it is a Farkas
+/// certificate. The tableau is dense; a pivot costs n². Sources: C. Lemke, Management Science 11, 1965; for bimatrix
+/// games C. Lemke, J. Howson, SIAM Journal 12, 1964.
 #[derive(Clone, Debug, Default)]
 pub struct Lemke {
     settings: Settings,
     dictionary: Dictionary<f64>,
     exact: Dictionary<Twofold>,
-    /// A as entries; scale of each variable.
+    /// The entries of A, and the scale of each variable.
     matrix: SparseMatrix,
     scale: Vec<f64>,
-    /// The problem is that of a bimatrix game.
+    /// True if the problem is that of a bimatrix game.
     is_game: bool,
     checker: Checker,
     pivots: usize,
-    /// What was taken off the scaled b for bilateral rows that contradict each other by little; empty for nothing.
+    /// Amounts taken off the scaled b because bilateral rows contradict each other slightly; empty if none were.
     shift: Vec<f64>,
-    /// The last certificate was found with twice as many digits.
+    /// True if the last certificate was found with twice as many digits.
     pub(crate) is_certain: bool,
 }
 
-/// How the pivoting ended.
+/// The end of the pivoting.
 enum End {
     /// At a complementary basis.
     Solved,
@@ -81,11 +87,11 @@ enum End {
 }
 
 impl Lemke {
-    /// A solver with these settings.
+    /// Makes a solver with the given settings.
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] names a number that is not usable.
+    /// [`SettingsError`] names a setting that is not positive and finite.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(Lemke { settings, ..Self::default() })
@@ -101,9 +107,9 @@ impl Lemke {
         self.find_scale();
     }
 
-    /// 1/sqrt(A_ii); rows without a diagonal, such as the cone row of a friction contact, are scaled until the largest
-    /// entry in each and in its column is about 1 (D. Ruiz, "A scaling algorithm to equilibrate both rows and columns
-    /// norms in matrices", report RAL-TR-2001-034, 2001).
+    /// Sets the scale of each row: 1/sqrt(A_ii); rows without a diagonal, such as the cone row of a friction contact,
+    /// are scaled until the largest entry in each and in its column is about 1 (D. Ruiz, "A scaling algorithm to
+    /// equilibrate both rows and columns norms in matrices", report RAL-TR-2001-034, 2001).
     fn find_scale(&mut self) {
         let n = self.matrix.rows();
         let diagonals: Vec<f64> = (0..n).map(|i| self.matrix.entry(i, i)).collect();
@@ -135,7 +141,7 @@ impl Lemke {
         }
     }
 
-    /// Follows the path of a problem, with the digits of a dictionary, to its end.
+    /// Follows the path of a problem to its end, in the arithmetic of the given dictionary.
     fn follow<T: Number>(
         &mut self,
         problem: &Problem,
@@ -163,8 +169,8 @@ impl Lemke {
         self.pivot_on(problem, dictionary, leaving, &[artificial])
     }
 
-    /// The path of Lemke and Howson: the first row's strategy alone, the best answer to it, the best answer to that, and
-    /// from there on until the first row's own condition holds, too.
+    /// Follows the path of Lemke and Howson: from the strategy of the first row alone, the best answer to it and the
+    /// best answer to that, until the condition of the first row holds as well.
     fn follow_game<T: Number>(&mut self, problem: &Problem, dictionary: &mut Dictionary<T>) -> End {
         let (own, mut leaving) = (0, 0);
         for _ in 0..2 {
@@ -177,7 +183,7 @@ impl Lemke {
         self.pivot_on(problem, dictionary, leaving, &ends)
     }
 
-    /// Lets the complement of what left enter, until one of some variables has left.
+    /// Pivots: the complement of the variable that left enters, until one of the variables `ends` has left.
     fn pivot_on<T: Number>(
         &mut self,
         problem: &Problem,
@@ -208,7 +214,7 @@ impl Lemke {
         self.visit(problem, |i, j, value| dictionary.add(i, j, value));
     }
 
-    /// The scaled b, in units of the largest, without what contradicts each other.
+    /// The scaled b in units of the largest one, less the contradictions of bilateral rows.
     fn scaled_offset<T: Number>(&self, problem: &Problem) -> Vec<T> {
         let size = T::from(self.largest_offset(problem));
         let scaled = problem.offset.iter().zip(&self.scale).map(|(&b, &s)| T::from(b) * T::from(s) / size);
@@ -216,8 +222,8 @@ impl Lemke {
         scaled.zip(shift).map(|(b, shift)| b - T::from(shift)).collect()
     }
 
-    /// Makes bilateral rows agree that depend on each other, in the sense of least squares; or proves that they contradict
-    /// each other by more than may be settled. What rounding leaves of them needs neither.
+    /// Makes dependent bilateral rows agree by least squares, or returns the proof that they contradict each other by
+    /// more than may be settled. Contradictions that are rounding are left.
     fn reconcile<T: Number>(
         &mut self,
         problem: &Problem,
@@ -233,7 +239,8 @@ impl Lemke {
             let contradiction = factor.abs().nearest() * largest;
             if contradiction > self.settings.inconsistency {
                 direction.iter_mut().for_each(|z| *z = -*z * factor);
-                // A row that others take part in, or that all but depends on its like, proves nothing.
+                // A contradiction that involves other rows, or rows that depend on each other only nearly, proves
+                // nothing.
                 return self.prove(problem, &direction, SURE);
             }
             if contradiction > AGREED {
@@ -247,7 +254,7 @@ impl Lemke {
         None
     }
 
-    /// What was taken off b at most, in units of the scale.
+    /// Largest amount taken off b, in units of the scale.
     fn inconsistency(&self) -> f64 {
         self.shift.iter().fold(0.0, |most: f64, part| most.max(part.abs()))
     }
@@ -258,7 +265,7 @@ impl Lemke {
         Some(scaled.fold(0.0, f64::max)).filter(|largest| *largest > 0.0).unwrap_or(1.0)
     }
 
-    /// Calls `act` with rows and columns and what adds up to the scaled entries there.
+    /// Calls `act` with row, column and value of terms that add up to the scaled entries of A.
     fn visit<T: Number>(&self, problem: &Problem, mut act: impl FnMut(usize, usize, T)) {
         let scale = |i: usize, j: usize| T::from(self.scale[i]) * T::from(self.scale[j]);
         if let Matrix::Bodies(bodies) = &problem.matrix {
@@ -273,7 +280,8 @@ impl Lemke {
         }
     }
 
-    /// Solves a problem with twice as many digits at once; true if there is an answer, the proof if it is sure that there is none.
+    /// Solves a problem with twice as many digits at once. Returns whether there is an accepted answer, or the proof if
+    /// it is certain that there is none.
     pub(crate) fn solve_twofold(
         &mut self,
         problem: &Problem,
@@ -286,7 +294,8 @@ impl Lemke {
         outcome
     }
 
-    /// With twice as many digits, from the data as given: what a solution lacks then is the rounding of its forces.
+    /// Solves the loaded problem with twice as many digits, from the data as given: the error of a solution is then the
+    /// rounding of its forces.
     fn solve_exactly(&mut self, problem: &Problem, solution: &mut Solution) -> Result<bool, Infeasibility> {
         solution.reset(problem.len(), Method::Lemke);
         let mut dictionary = std::mem::take(&mut self.exact);
@@ -315,9 +324,8 @@ impl Lemke {
         outcome
     }
 
-    /// Solves again with the final basis in the original data, and corrects it where that shows that a row
-    /// should have been in it or not: of what is nearly zero rounding has decided. True if the answer is
-    /// accepted.
+    /// Solves the final basis again in the original data, and corrects it where that shows that a row should be in it
+    /// or not, as rounding decides for nearly zero variables. Returns whether the answer is accepted.
     fn polish(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
         let n = problem.len();
         let basic = self.dictionary.basic_rows().filter(|(v, _)| (n..2 * n).contains(v)).map(|(v, _)| v - n);
@@ -348,7 +356,8 @@ impl Lemke {
         solution.residuals.accepted(&self.settings, solution.inconsistency)
     }
 
-    /// The row without force that closes fastest, and how fast, as part of the largest offset.
+    /// The row outside the basis that closes fastest, and its scaled closing acceleration as a fraction of the largest
+    /// scaled offset.
     fn fastest_closing(&self, problem: &Problem, solution: &Solution) -> Option<(usize, f64)> {
         let scaled = |i: usize, value: f64| value * self.scale[i];
         let largest = (0..problem.len()).map(|i| scaled(i, problem.offset[i]).abs()).fold(0.0, f64::max);
@@ -358,8 +367,8 @@ impl Lemke {
         closing.filter(|row| row.1 > 0.0).max_by(|p, q| p.1.total_cmp(&q.1))
     }
 
-    /// Solves A_CC f_C = -b_C of the basis in the original data, with refinement. The row that pulls most,
-    /// and how much, as part of the largest force.
+    /// Solves A_CC f_C = -b_C of the basis in the original data, with refinement. Returns the row that pulls most, and
+    /// its force as a fraction of the largest force.
     fn solve_basis(&self, problem: &Problem, solution: &mut Solution) -> Option<(usize, f64)> {
         let active = &solution.active;
         let mut place = vec![usize::MAX; problem.len()];
@@ -396,7 +405,7 @@ impl Lemke {
     }
 
     /// The ray as a certificate, if it is one: z ≥ 0, Aᵀz ≤ 0 (= 0 on bilateral rows), bᵀz < 0, and any solution would
-    /// have at least that growth.
+    /// have at least `least_growth`.
     fn certificate<T: Number>(
         &self,
         problem: &Problem,
@@ -415,7 +424,7 @@ impl Lemke {
         if let Some(entering) = dictionary.entering(column).checked_sub(n).filter(|&i| i < n) {
             direction[entering] = T::from(1.0);
         }
-        // What rounding has made negative is nothing; if it was more, the image tells.
+        // Negative components are taken for rounding; if they were more, the leakage shows it.
         for (z, _) in direction.iter_mut().zip(&problem.bilateral).filter(|(_, is_bilateral)| !**is_bilateral)
         {
             *z = if *z > zero { *z } else { zero };
@@ -423,7 +432,7 @@ impl Lemke {
         self.prove(problem, &direction, least_growth)
     }
 
-    /// The certificate that a direction is, if any solution would have at least that growth.
+    /// The certificate of a direction, if any solution would have at least `least_growth`.
     fn prove<T: Number>(
         &self,
         problem: &Problem,
@@ -445,15 +454,15 @@ impl Lemke {
         let size = |&i: &usize| direction[i].abs().nearest();
         let row = (0..direction.len()).max_by(|i, j| size(i).total_cmp(&size(j)))?;
         let direction: Vec<f64> = direction.iter().zip(&self.scale).map(|(z, s)| z.nearest() * s).collect();
-        // What is returned has fewer digits, and leaks more.
+        // The returned direction has fewer digits, and leaks more.
         let rounded: Vec<T> =
             direction.iter().zip(&self.scale).map(|(&z, &s)| T::from(z) / T::from(s)).collect();
         let leakage = self.leakage(problem, &rounded)?;
         Some(Infeasibility { row, direction, contradiction, leakage })
     }
 
-    /// The largest component of Aᵀz that a force could use, in units of the largest of z; `None` where numbers have left
-    /// their range.
+    /// The largest component of Aᵀz that a force could use, in units of the largest of z; `None` if a number is not
+    /// finite.
     fn leakage<T: Number>(&self, problem: &Problem, direction: &[T]) -> Option<f64> {
         let mut image = vec![T::default(); problem.len()];
         self.visit(problem, |i, j, value: T| image[j] = image[j] + value * direction[i]);
@@ -498,7 +507,7 @@ impl Solver for Lemke {
         }
         let failure = solution.residuals;
         if problem.len() <= TWOFOLD_ROWS {
-            // What rounding may have proven is looked at with care.
+            // A proof may be rounding, so it is checked with more digits as well.
             let outcome = self.solve_exactly(problem, solution);
             solution.iterations = self.pivots;
             match outcome {
@@ -516,7 +525,7 @@ impl Solver for Lemke {
     }
 }
 
-/// A different positive amount below `size` for every entry, the fractional parts of multiples of the golden ratio.
+/// A different positive amount below `size` for every entry: fractional parts of multiples of the golden ratio.
 fn perturbations(size: f64) -> impl Iterator<Item = f64> {
     let golden = f64::midpoint(5.0_f64.sqrt(), 1.0);
     (1..).map(move |i: u32| size * (f64::from(i) * golden).fract())

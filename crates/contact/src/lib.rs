@@ -1,8 +1,9 @@
 //! Contact forces and impulses: complementarity problems, solved and checked.
 //!
-//! Rows in, forces out: with A = J M⁻¹ Jᵀ, find a = A f + b with f ≥ 0, a ≥ 0, fᵀa = 0 on unilateral rows (contacts)
-//! and a = 0 on bilateral ones (connectors). [`Problem`] holds the rows, [`Solution`] the forces with the evidence that
-//! they are right, [`Auto`] chooses a method; each method is also a [`Solver`] of its own, and so can yours be.
+//! Rows in, forces out: with the Delassus matrix A = J M⁻¹ Jᵀ, find forces f and accelerations a = A f + b with f ≥ 0,
+//! a ≥ 0, fᵀa = 0 on unilateral rows (contacts) and a = 0 on bilateral ones (connectors). [`Problem`] holds the rows,
+//! [`Solution`] the forces and their residuals, and [`Auto`] chooses a method. Each method is a [`Solver`] too, a trait
+//! that callers can implement for methods of their own.
 //!
 //! ```
 //! use halfgap_contact::{Auto, InverseInertia, Problem, Row, Settings, Solution, Solver};
@@ -22,29 +23,29 @@
 //! # }
 //! ```
 //!
-//! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the
-//! original data before it is returned; every iteration has a cap; the same input gives a new solver the same
-//! bits, and one that has solved other problems before the same answer but for rounding; a warm solve of a
-//! size met before allocates nothing.
+//! *Invariant*: this crate knows no shapes, no time stepping and no scenes. Every answer is checked in the original
+//! data before it is returned. Every iteration has a cap. A new solver gives the same bits for the same input; one that
+//! has solved other problems before gives the same answer up to rounding. A warm solve of a size met before allocates
+//! nothing.
 //!
-//! | module | what |
+//! | module | contents |
 //! |---|---|
-//! | `problem`, `matrix` | rows of bodies, or the entries of A; checked when built |
+//! | `problem`, `matrix` | a problem by the rows of bodies, or by the entries of A; checked when built |
 //! | `solution`, `check` | the answer and its residuals |
-//! | `settings`, `error`, `solver` | the numbers that methods decide by, what can go wrong, what a method is |
-//! | `system`, `entries` | the problem scaled to a unit diagonal, which the symmetric methods work on |
+//! | `settings`, `error`, `solver` | thresholds and caps of the methods, errors, the trait of a method |
+//! | `system`, `entries` | the problem scaled to a unit diagonal, on which the symmetric methods work |
 //! | `dual_active_set`, `start`, `descent`, `spread`, `crossover`, `exchanges`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
-//! | `proximal_newton`, `interior_point`, `body_factor`, `line_search` | [`ProximalNewton`] |
+//! | `proximal_newton`, `interior_point`, `body_factor`, `line_search`, `certificate` | [`ProximalNewton`] |
 //! | `lemke`, `bimatrix`, `dictionary`, `dense_lu`, `twofold` | [`Lemke`], for unsymmetric problems |
-//! | `qp` | `Qp`, feature `qp` (default; on wasm it wants wasm-bindgen): clarabel with a polish |
+//! | `qp` | `Qp`, feature `qp` (default; on wasm it needs wasm-bindgen): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
-//! | `held_rows` | [`HeldRows`]: a fixed set of rows as equations, solved again and again |
+//! | `held_rows` | [`HeldRows`]: a fixed set of rows as equations, solved repeatedly |
 //! | `row`, `impact` | [`Impact`]: impulses of an impact by an [`ImpactLaw`] |
 //! | `warm` | [`WarmStart`]: carrying an answer over to the next step |
 //! | `json` | feature `json`: problems and answers as files |
 
 #![forbid(unsafe_code)]
-// Units are escaped in this crate, so that what is left in brackets is a link.
+// Units such as \[N\] are escaped in the docs of this crate, so that all other names in brackets are links.
 #![warn(rustdoc::broken_intra_doc_links)]
 
 mod auto;

@@ -1,9 +1,9 @@
 //! Exact line search on a convex, piecewise quadratic function.
 //!
-//! Its derivative along a line is piecewise linear and never falls, so the minimum is where it crosses zero: sort the
-//! places where its slope changes and walk along them.
+//! Its derivative along a line is piecewise linear and never falls, and the minimum is where the derivative crosses
+//! zero. The places where its slope changes are sorted and passed in order.
 
-/// Changes of the derivative s + h t along a line.
+/// A nondecreasing piecewise linear function of t: value + slope t, with kinks.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PiecewiseLinear {
     value: f64,
@@ -11,7 +11,7 @@ pub(crate) struct PiecewiseLinear {
     kinks: Vec<Kink>,
 }
 
-/// From `at` on, the derivative has `value` + `slope` t added.
+/// An addition of `value` + `slope` t to the function from t = `at` on.
 #[derive(Clone, Copy, Debug)]
 struct Kink {
     at: f64,
@@ -20,7 +20,7 @@ struct Kink {
 }
 
 impl PiecewiseLinear {
-    /// The function `value` + `slope` t.
+    /// Sets the function to `value` + `slope` t.
     pub(crate) fn reset(&mut self, value: f64, slope: f64) {
         self.value = value;
         self.slope = slope;
@@ -38,13 +38,13 @@ impl PiecewiseLinear {
         self.kinks.push(Kink { at, value, slope });
     }
 
-    /// Where the function, negative at 0 and nowhere falling, becomes zero. `None` if it does not.
+    /// Finds the t > 0 at which the function becomes zero. `None` if it is not negative at 0 or never becomes zero.
     pub(crate) fn find_zero(&mut self) -> Option<f64> {
         let (mut value, mut slope) = (self.value, self.slope);
         if value >= 0.0 {
             return None;
         }
-        // The rest of the kinks is needed only if the first piece does not end at the zero.
+        // The kinks are needed only if the first piece ends before the zero.
         let first = -value / slope;
         if slope > 0.0 && self.kinks.iter().all(|kink| kink.at >= first) {
             return Some(first);

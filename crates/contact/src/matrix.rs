@@ -1,12 +1,12 @@
 //! Sparse matrices by rows, and the rows J of bodies with their inverse masses.
 //!
-//! Two ways to say what A is: its entries, or J and the masses, A = J M⁻¹ Jᵀ. A row of contact touches two bodies, so J
-//! has at most six entries a row however many contacts a body has, while A may be full (a box on 100 floor points).
+//! A is given by its entries, or by J and the masses as A = J M⁻¹ Jᵀ. The row of a contact touches two bodies, so J has
+//! at most six entries a row however many contacts a body has, while A may be full (a box on 100 floor points).
 
 use crate::error::ProblemError;
 
-/// Largest difference across the diagonal, in units of sqrt(A_ii A_jj), of a matrix taken as symmetric: far above
-/// rounding of the products it was made from, far below any friction coefficient.
+/// Largest difference across the diagonal of a symmetric matrix, in units of sqrt(A_ii A_jj): far above the rounding of
+/// the products that make it, far below any friction coefficient.
 const SYMMETRY: f64 = 1e-9;
 
 /// A sparse matrix stored by rows, entries of a row in ascending order of column, none twice.
@@ -23,7 +23,7 @@ impl Clone for SparseMatrix {
         SparseMatrix { start: start.clone(), column: column.clone(), value: value.clone() }
     }
 
-    /// Reuses the room there is, which the derived one would not.
+    /// Reuses the memory of the buffers, which a derived `clone_from` would not.
     fn clone_from(&mut self, source: &Self) {
         self.start.clone_from(&source.start);
         self.column.clone_from(&source.column);
@@ -61,7 +61,7 @@ impl SparseMatrix {
         columns.binary_search(&column).map_or(0.0, |k| values[k])
     }
 
-    /// From entries (row, column, value); entries at one place add up.
+    /// Makes a matrix from entries (row, column, value); entries at the same place add up.
     pub(crate) fn from_triplets(
         rows: usize,
         columns: usize,
@@ -104,7 +104,8 @@ impl SparseMatrix {
         Ok(matrix)
     }
 
-    /// Whether this square matrix can be a contact matrix: symmetric up to rounding, no negative diagonal entry.
+    /// Checks that a square matrix is symmetric up to rounding, has no negative diagonal entry, and no entry larger
+    /// than its diagonal allows.
     pub(crate) fn check_symmetric(&self) -> Result<(), ProblemError> {
         let diagonal: Vec<f64> = (0..self.rows()).map(|row| self.entry(row, row)).collect();
         if let Some(row) = diagonal.iter().position(|&d| d < 0.0) {
@@ -131,7 +132,7 @@ impl SparseMatrix {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct BodyRows {
     pub(crate) rows: SparseMatrix,
-    /// Inverse mass of each column [1/kg], inverse moment of inertia of a rotation [1/(kg m²)]; zero: immovable.
+    /// Inverse mass [1/kg], or inverse moment of inertia [1/(kg m²)], of each column; 0 for an immovable one.
     pub(crate) inverse_mass: Vec<f64>,
 }
 
@@ -166,7 +167,7 @@ impl BodyRows {
         }
     }
 
-    /// By column the rows that have a coefficient there, and that.
+    /// The rows with a coefficient in each column, and the coefficient.
     fn touching(&self) -> Vec<Vec<(usize, f64)>> {
         let mut touching: Vec<Vec<(usize, f64)>> = vec![Vec::new(); self.inverse_mass.len()];
         for row in 0..self.rows.rows() {
@@ -204,7 +205,7 @@ impl BodyRows {
     }
 }
 
-/// What A is.
+/// The matrix A of a problem, in the form in which it was given.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Matrix {
     /// A = J M⁻¹ Jᵀ, symmetric and positive semidefinite by construction.

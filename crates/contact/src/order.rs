@@ -1,13 +1,14 @@
-//! In which order to close rows, so that the factor stays narrow.
+//! An order of rows that keeps the envelope of the factor narrow.
 //!
-//! The envelope of a factor is that of its matrix, so rows that touch the same bodies should be near each other. Rows
-//! often come so (stacks, walls); where they do not, the reverse of a breadth-first walk through the contact graph is
-//! better: E. Cuthill, J. McKee, "Reducing the bandwidth of sparse symmetric matrices", ACM 1969; A. George, 1971.
+//! The envelope of a factor is that of its matrix, so rows that touch the same bodies should be near each other. The
+//! rows' own order often is such (stacks, walls); where it is not, the reverse of a breadth-first walk through the
+//! contact graph is better: E. Cuthill, J. McKee, "Reducing the bandwidth of sparse symmetric matrices", ACM 1969; A.
+//! George, 1971.
 
-/// Rows below which order does not matter.
+/// Number of rows below which the order does not matter.
 const FEW_ROWS: usize = 24;
 
-/// Mean width of the envelope that is not worth improving.
+/// Largest mean number of entries per row of the envelope that is not worth improving.
 const NARROW: usize = 12;
 
 /// A row order, kept while the pattern stays the same.
@@ -19,14 +20,14 @@ pub(crate) struct RowOrder {
     /// Rows per column: offsets and rows.
     touching_start: Vec<u32>,
     touching: Vec<u32>,
-    /// First place of a column's rows in an order.
+    /// First place of the rows of each column in an order.
     first: Vec<u32>,
     seen: Vec<bool>,
     column_seen: Vec<bool>,
 }
 
 impl RowOrder {
-    /// Finds an order for rows with these entries: the rows' own where that is good enough.
+    /// Finds an order for rows with this pattern; their own order is kept if it is narrow enough.
     pub(crate) fn prepare(&mut self, start: &[usize], column: &[u32], columns: usize) {
         if self.take_pattern(start, column) && self.rows.len() >= FEW_ROWS {
             let given = self.envelope(columns);
@@ -36,7 +37,8 @@ impl RowOrder {
         }
     }
 
-    /// Finds the better of the rows' own order and the other, at any size, for a factor that is made many times.
+    /// Finds the narrower of the rows' own order and that of the walk, at any size, for a factor that is made many
+    /// times.
     pub(crate) fn prepare_narrow(&mut self, start: &[usize], column: &[u32], columns: usize) {
         if self.take_pattern(start, column) {
             let given = self.envelope(columns);
@@ -44,7 +46,7 @@ impl RowOrder {
         }
     }
 
-    /// Takes over a pattern with the rows in their own order; false if it is that of last time, with an order found.
+    /// Takes over a pattern, with the rows in their own order. False if it is the last one, whose order is known.
     fn take_pattern(&mut self, start: &[usize], column: &[u32]) -> bool {
         if self.start == start && self.column == column {
             return false;
@@ -58,7 +60,7 @@ impl RowOrder {
         true
     }
 
-    /// Walks through the rows, and keeps that order if its envelope is less than that of their own.
+    /// Walks through the rows, and keeps the order of the walk if its envelope is less than that of their own order.
     fn improve(&mut self, columns: usize, given: usize) {
         let n = self.rows.len();
         self.list_touching(columns);
@@ -106,7 +108,7 @@ impl RowOrder {
         }
     }
 
-    /// Walks through each connected group of rows, from a row at its far end, breadth first, and reverses the result.
+    /// Walks breadth first through each connected group of rows, from a row at its far end, and reverses the result.
     fn walk(&mut self, columns: usize) {
         let n = self.start.len() - 1;
         self.rows.clear();
@@ -118,7 +120,7 @@ impl RowOrder {
             if self.seen[seed as usize] {
                 continue;
             }
-            // The last row met from anywhere is far from the middle: begin there.
+            // The last row of a walk from any row is far from the middle: begin there.
             let begin = self.rows.len();
             self.spread(seed, begin);
             let far = self.rows[self.rows.len() - 1];

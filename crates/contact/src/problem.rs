@@ -3,22 +3,24 @@
 //! With n rows, find f and a with
 //!
 //! ```text
-//! a = A f + b        A (n, n) [1/kg], b (n) [m/s²], f (n) \[N\]
+//! a = A f + b        A (n, n) [1/kg], b (n) [m/s²], f (n) [N]
 //! f ≥ 0, a ≥ 0, fᵀa = 0      on unilateral rows
 //! a = 0, f free              on bilateral rows
 //! ```
 //!
-//! A = J M⁻¹ Jᵀ when the rows J (n, columns) of the bodies are given, which is the natural form; or its entries. With
-//! b made from accelerations f are forces; with b made from closing velocities and elasticities a are velocities [m/s]
-//! and f impulses [N·s]. Source: D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies",
-//! SIGGRAPH '94, 23-34, section 3.
+//! A is given by the rows J (n, columns) of the bodies and their inverse masses, A = J M⁻¹ Jᵀ, which is the natural
+//! form, or by its entries. With b made from accelerations, f are forces; with b made from closing velocities and
+//! elasticities, a are velocities [m/s] and f impulses [N·s]. Source: D. Baraff, "Fast contact force computation for
+//! nonpenetrating rigid bodies", SIGGRAPH '94, 23-34, section 3.
 
 use crate::error::ProblemError;
 use crate::matrix::{BodyRows, Matrix, SparseMatrix, check_finite};
 
-/// A contact problem, complete and checked: every number is finite, every index exists.
+/// A contact problem: the rows J and inverse masses of bodies, or the entries of A, and the offsets b of a = A f + b.
 ///
-/// To be reused from step to step: [`clear`](Self::clear) keeps the room of all buffers.
+/// It is checked when built: every number is finite, every index exists.
+///
+/// Problems can be reused from step to step: [`clear`](Self::clear) keeps the memory of the buffers.
 ///
 /// # Examples
 ///
@@ -44,7 +46,8 @@ pub struct Problem {
     pub(crate) keys: Vec<ContactKey>,
 }
 
-/// The force of a unilateral row, which pushes or is none. Zero has no sign then, which `f64::max` leaves to the compiler.
+/// Clamps the force of a unilateral row to zero or more. The zero is always +0.0; with `f64::max` its sign would be up
+/// to the compiler.
 #[inline(always)]
 pub(crate) fn pushing(force: f64) -> f64 {
     if force > 0.0 { force } else { 0.0 }
@@ -54,56 +57,59 @@ pub(crate) fn pushing(force: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProblemBody(pub u32);
 
-/// Identity of a contact, kept from one problem to the next, by which a warm start finds it again.
+/// Identity of a contact across problems, by which a warm start finds the row again.
 ///
-/// Any number the caller likes but that of [`NONE`](Self::NONE); two rows of one problem should not share it.
+/// Any number except that of [`NONE`](Self::NONE); two rows of one problem should not share a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContactKey(pub u64);
 
 impl ContactKey {
-    /// Stands for no identity. Where not all rows have one, a warm start finds all of them by their place.
+    /// The key of a row without identity. If any row of a problem lacks a key, warm starts find all its rows by index.
     pub const NONE: Self = Self(u64::MAX);
 }
 
-/// Inverse masses of a body; zero for a body that nothing moves.
+/// Inverse mass and inverse moment of inertia of a body; both are 0 for an immovable body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseInertia {
-    /// 1/m [1/kg].
+    /// Inverse mass 1/m [1/kg].
     pub inverse_mass: f64,
-    /// 1/I about the centre of mass [1/(kg m²)].
+    /// Inverse moment of inertia 1/I about the centre of mass [1/(kg m²)].
     pub inverse_moment: f64,
 }
 
-/// One row: how the motion of one or two bodies changes a gap.
+/// One row of J: the rate of a gap per velocity of its one or two bodies, with the offset b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// The primary body and the row's coefficients for its x, y \[1\] and rotation \[m\].
+    /// The primary body and its coefficients for x, y \[1\] and rotation \[m\].
     pub primary: (ProblemBody, [f64; 3]),
-    /// The normal body and its coefficients, if the other side is a body of the problem.
+    /// The normal body and its coefficients for x, y \[1\] and rotation \[m\]; `None` if that side is immovable.
     pub normal: Option<(ProblemBody, [f64; 3])>,
-    /// b_i: the gap's acceleration without contact forces [m/s²], or what an impulse has to undo [m/s].
+    /// b_i, negative when the gap closes: acceleration of the gap without contact forces [m/s²], or in impact problems
+    /// its rate less the rate to be reached [m/s].
     pub offset: f64,
-    /// Whether the row is an equation (a = 0, f free), as of a connector.
+    /// True for the row of a connector (a = 0, f of either sign), false for a contact.
     pub bilateral: bool,
     /// Identity for warm starts.
     pub key: Option<ContactKey>,
 }
 
 impl Row {
-    /// A unilateral row against something immovable.
+    /// Makes a unilateral row between `body` and something immovable: coefficients for x, y \[1\] and rotation \[m\],
+    /// offset b [m/s²] (or [m/s] in impact problems).
     #[must_use]
     pub fn new(body: ProblemBody, coefficients: [f64; 3], offset: f64) -> Self {
         Row { primary: (body, coefficients), normal: None, offset, bilateral: false, key: None }
     }
 
-    /// The same row with a second body.
+    /// Adds the normal body, with its coefficients for x, y \[1\] and rotation \[m\].
     #[must_use]
     pub fn against(self, body: ProblemBody, coefficients: [f64; 3]) -> Self {
         Row { normal: Some((body, coefficients)), ..self }
     }
 
-    /// A unilateral row of two sides, of which some are no bodies of the problem, with the coefficients for x, y and rotation of
-    /// either; `None` if neither is.
+    /// Makes a unilateral row between a primary and a normal side, `None` for an immovable one. `coefficients` are
+    /// those for x, y \[1\] and rotation \[m\] of the primary, then of the normal side. Returns `None` if both are
+    /// immovable.
     #[must_use]
     pub fn between(sides: [Option<ProblemBody>; 2], coefficients: &[f64; 6], offset: f64) -> Option<Self> {
         let [c0, c1, c2, c3, c4, c5] = *coefficients;
@@ -116,13 +122,13 @@ impl Row {
         }
     }
 
-    /// The same row as an equation.
+    /// Makes the row bilateral: a = 0 with a force of either sign.
     #[must_use]
     pub fn bilateral(self) -> Self {
         Row { bilateral: true, ..self }
     }
 
-    /// The same row with an identity.
+    /// Gives the row an identity for warm starts.
     #[must_use]
     pub fn with_key(self, key: ContactKey) -> Self {
         Row { key: Some(key), ..self }
@@ -130,7 +136,8 @@ impl Row {
 }
 
 impl Problem {
-    /// A problem without bodies and rows, to be filled by [`add_body`](Self::add_body) and [`add_row`](Self::add_row).
+    /// Makes a problem without bodies and rows, to be filled by [`add_body`](Self::add_body) and
+    /// [`add_row`](Self::add_row).
     #[must_use]
     pub fn new() -> Self {
         Problem {
@@ -141,7 +148,8 @@ impl Problem {
         }
     }
 
-    /// From rows J as entries (row, column, coefficient), which add up at one place, and the inverse mass per column.
+    /// Makes a problem from the entries (row, column, coefficient) of J, the inverse mass of each column [1/kg, 1/(kg
+    /// m²)] and the offset b of each row [m/s²]. Entries at the same place add up.
     ///
     /// # Errors
     ///
@@ -160,18 +168,20 @@ impl Problem {
         Self::checked(Matrix::Bodies(bodies), offset)
     }
 
-    /// From the entries (row, column, value) of a symmetric, positive semidefinite A; entries at one place add up.
+    /// Makes a problem from the entries (row, column, value) [1/kg] of a symmetric, positive semidefinite A and the
+    /// offset b of each row [m/s²]. Entries at the same place add up.
     ///
     /// # Errors
     ///
-    /// [`ProblemError`] names the row that is wrong; an unsymmetric matrix is one for [`Problem::from_general`].
+    /// [`ProblemError`] names the row that is wrong. For an unsymmetric matrix use [`Problem::from_general`].
     pub fn from_symmetric(triplets: &[(usize, usize, f64)], offset: &[f64]) -> Result<Self, ProblemError> {
         let matrix = SparseMatrix::from_triplets(offset.len(), offset.len(), triplets)?;
         matrix.check_symmetric()?;
         Self::checked(Matrix::Symmetric(matrix), offset)
     }
 
-    /// From the entries of any square A: a general linear complementarity problem, for Lemke's method.
+    /// Makes a general linear complementarity problem, for Lemke's method, from the entries (row, column, value) of any
+    /// square A and the offset b of each row. Entries at the same place add up.
     ///
     /// # Errors
     ///
@@ -181,7 +191,8 @@ impl Problem {
         Self::checked(Matrix::General(matrix), offset)
     }
 
-    /// From the dense rows of a symmetric, positive semidefinite A.
+    /// Makes a problem from the dense rows [1/kg] of a symmetric, positive semidefinite A and the offset b of each row
+    /// [m/s²].
     ///
     /// # Errors
     ///
@@ -190,7 +201,7 @@ impl Problem {
         Self::from_symmetric(&dense_triplets(rows, offset.len())?, offset)
     }
 
-    /// From the dense rows of any square A.
+    /// Makes a general linear complementarity problem from the dense rows of any square A and the offset b of each row.
     ///
     /// # Errors
     ///
@@ -210,7 +221,8 @@ impl Problem {
         Ok(problem)
     }
 
-    /// Removes all rows and bodies, keeps the room.
+    /// Removes all rows and bodies and keeps the memory of the buffers. A problem given by the entries of A becomes one
+    /// that takes bodies.
     pub fn clear(&mut self) {
         if let Matrix::Bodies(bodies) = &mut self.matrix {
             bodies.rows.start.truncate(1);
@@ -225,7 +237,7 @@ impl Problem {
         self.keys.clear();
     }
 
-    /// Adds a body of three columns: x, y, rotation.
+    /// Adds a body with its three columns x, y and rotation.
     ///
     /// # Errors
     ///
@@ -245,7 +257,8 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// [`ProblemError`] names the row; the problem is unchanged then.
+    /// [`ProblemError`] names the row, or is [`ProblemError::NoBodies`] if the problem was made from a matrix A. The
+    /// problem is unchanged then.
     pub fn add_row(&mut self, row: &Row) -> Result<usize, ProblemError> {
         let index = self.offset.len();
         let Matrix::Bodies(bodies) = &mut self.matrix else {
@@ -274,7 +287,7 @@ impl Problem {
         Ok(index)
     }
 
-    /// Replaces b, for a later step with the same rows.
+    /// Replaces the offsets b [m/s²], for a later step with the same rows.
     ///
     /// # Errors
     ///
@@ -288,23 +301,22 @@ impl Problem {
         Ok(())
     }
 
-    /// Says which rows are equations.
+    /// Sets which rows are bilateral (true) and which are unilateral (false).
     ///
     /// # Errors
     ///
-    /// [`ProblemError::BadLength`].
+    /// [`ProblemError::BadLength`] if there is not one flag per row.
     pub fn set_bilateral(&mut self, bilateral: &[bool]) -> Result<(), ProblemError> {
         check_length("bilateral", bilateral.len(), self.offset.len())?;
         self.bilateral.copy_from_slice(bilateral);
         Ok(())
     }
 
-    /// Gives every row an identity for warm starts; rows of bodies may have theirs from the start, by
-    /// [`Row::with_key`].
+    /// Gives every row an identity for warm starts. Rows of bodies can also get theirs by [`Row::with_key`].
     ///
     /// # Errors
     ///
-    /// [`ProblemError::BadLength`].
+    /// [`ProblemError::BadLength`] if there is not one key per row.
     pub fn set_keys(&mut self, keys: &[ContactKey]) -> Result<(), ProblemError> {
         check_length("keys", keys.len(), self.offset.len())?;
         self.keys.clear();
@@ -324,21 +336,21 @@ impl Problem {
         self.offset.is_empty()
     }
 
-    /// The offset b of a = A f + b: what contacts would do without their forces, an acceleration [m/s²], or
-    /// what an impulse must undo [m/s].
+    /// The offset b of a = A f + b by row, negative when closing: accelerations of the gaps without contact forces
+    /// [m/s²], or in impact problems their rates less the rates to be reached [m/s].
     #[must_use]
     pub fn offset(&self) -> &[f64] {
         &self.offset
     }
 
-    /// Which rows are equations.
+    /// One flag per row: true if it is bilateral.
     #[must_use]
     pub fn bilateral(&self) -> &[bool] {
         &self.bilateral
     }
 
-    /// Identities of the rows for warm starts: [`ContactKey::NONE`] for a row without one, and none at all
-    /// for the rows after the last that has one.
+    /// Identities of the rows for warm starts, [`ContactKey::NONE`] for a row without one. The list ends at the last
+    /// row that was given one, so it may be shorter than the problem.
     #[must_use]
     pub fn keys(&self) -> &[ContactKey] {
         &self.keys
@@ -350,15 +362,16 @@ impl Problem {
         matches!(self.matrix, Matrix::Bodies(_))
     }
 
-    /// Whether A is symmetric and positive semidefinite, so that forces minimise an energy.
+    /// Whether the problem was given with a symmetric, positive semidefinite A, so that forces minimise an energy.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         !matches!(self.matrix, Matrix::General(_))
     }
 
-    /// Columns and coefficients of a row, in ascending order, without zeros: of J where the rows are given as
-    /// such (columns 3 k to 3 k + 2 are x, y and rotation of body k), of A otherwise. With
-    /// [`inverse_mass`](Self::inverse_mass) that is all a solver of one's own needs.
+    /// Stored columns (ascending) and coefficients of a row: of J where the problem has bodies (columns 3 k to 3 k + 2
+    /// are x \[1\], y \[1\] and rotation \[m\] of body k), of A [1/kg] otherwise. Entries that are not stored are zero.
+    /// With [`inverse_mass`](Self::inverse_mass) and [`offset`](Self::offset) this is the whole problem, for solvers
+    /// outside this crate.
     ///
     /// # Panics
     ///
@@ -371,7 +384,8 @@ impl Problem {
         }
     }
 
-    /// Inverse mass of each column of J [1/kg, 1/(kg m²)]; `None` where A itself is given.
+    /// Inverse mass of each column of J: [1/kg] for x and y, [1/(kg m²)] for rotation. `None` if the problem was given
+    /// by A.
     #[must_use]
     pub fn inverse_mass(&self) -> Option<&[f64]> {
         match &self.matrix {
@@ -380,7 +394,7 @@ impl Problem {
         }
     }
 
-    /// The matrix A, dense, by rows [1/kg]: for looking at it, and for checks; O(n²).
+    /// The dense matrix A by rows [1/kg], for inspection and checks; O(n²).
     #[must_use]
     pub fn dense(&self) -> Vec<Vec<f64>> {
         let n = self.len();
@@ -411,7 +425,8 @@ impl Default for Problem {
     }
 }
 
-/// Appends the coefficients of a row in ascending order of column; zeros are left out, a body named twice adds up.
+/// Appends the coefficients of a row in ascending order of column. Zeros are left out; the coefficients of a body on
+/// both sides add up.
 fn push_coefficients(rows: &mut SparseMatrix, row: &Row) {
     let (first, second) = match row.normal {
         Some(normal) if normal.0 == row.primary.0 => {

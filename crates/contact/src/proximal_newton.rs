@@ -8,10 +8,10 @@
 //! ```
 //!
 //! Each minimum is found by Newton steps with the matrix I + Ĵ_Cᵀ Ĵ_C/ε, C the rows inside the max, and an exact line
-//! search; the outer iteration is the proximal point method on the forces, which does not mind redundant contacts and
-//! ends near the forces of least norm. Sources: B. Hermans, A. Themelis, P. Patrinos, "QPALM", CDC 2019; A. Bambade et
-//! al., "PROX-QP", RSS 2022; R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point
-//! algorithm", Mathematics of Operations Research 1, 1976. The first step goes straight to the minimum for a guessed C.
+//! search. The outer iteration is the proximal point method on the forces, which works with redundant contacts and ends
+//! near the forces of least norm. Sources: B. Hermans, A. Themelis, P. Patrinos, "QPALM", CDC 2019; A. Bambade et al.,
+//! "PROX-QP", RSS 2022; R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point algorithm",
+//! Mathematics of Operations Research 1, 1976. The first step goes straight to the minimum for a guessed C.
 
 use crate::body_factor::BodyFactor;
 use crate::certificate::refine;
@@ -26,57 +26,62 @@ use crate::solver::{Method, Solver};
 use crate::system::System;
 use crate::warm::WarmStart;
 
-/// Proximal term ε of the first outer iteration from nothing, in units of the unit diagonal of Â.
+/// Proximal term ε of the first outer iteration without an earlier answer, in units of the diagonal of Â, which is 1.
 const FIRST_TERM: f64 = 1e-4;
-/// The same from an earlier answer, whose closed rows are mostly right.
+/// Proximal term ε of the first outer iteration from an earlier answer, whose closed rows are mostly right.
 const WARM_TERM: f64 = 1e-6;
-/// Least ε: below it the Newton matrix is too ill-conditioned to help.
+/// Least proximal term ε: with a smaller one the Newton matrix is too ill-conditioned to help.
 const LEAST_TERM: f64 = 1e-11;
-/// Factor by which ε falls where an outer iteration did not gain much.
+/// Factor on ε after an outer iteration that did not gain much.
 const TERM_FACTOR: f64 = 1e-2;
-/// Residual over the previous one below which ε need not fall.
+/// Ratio of a residual to the previous one up to which ε need not fall.
 const GOOD_GAIN: f64 = 1e-3;
 /// Residual, in units of the scale, that ends the iteration.
 const TARGET: f64 = 1e-13;
-/// Residual, in units of the largest force, that ends it: rounding.
+/// Residual, in units of the largest scaled force, that ends the iteration: rounding.
 const ROUNDING: f64 = 4e-16;
-/// Residual over the previous one above which an outer iteration counts as stalled, and how many may be.
+/// Ratio of a residual to the previous one above which an outer iteration counts as stalled.
 const STALLED: f64 = 0.5;
+/// Number of stalled outer iterations that are allowed at the least ε.
 const STALLS: usize = 3;
-/// Gradient, in units of the largest force, that is rounding.
+/// Largest gradient that is rounding, in units of the largest scaled force.
 const STATIONARY: f64 = 1e-14;
 /// Cap on Newton steps between two updates of the multipliers.
 const INNER_STEPS: usize = 200;
-/// Deviation of a step length from 1 that is rounding.
+/// Largest deviation of a step length from 1 that is rounding.
 const FULL_STEP: f64 = 1e-9;
 
-/// Term by which the interior-point method keeps forces modest, once others went beyond all bounds.
+/// Term δ of the interior-point method, in units of the diagonal of Â, that keeps forces modest after a run without it
+/// went beyond all bounds.
 const JAMMED_TERM: f64 = 1e-9;
 
-/// Newton steps after which an interior-point method is likely to end sooner.
+/// Number of Newton steps after which the interior-point method is likely to end sooner.
 const PATIENCE: usize = 15;
 
-/// Where the iteration begins.
+/// The start of the iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Begin {
-    /// At an earlier answer, or at nothing.
+    /// At an earlier answer, or at zero forces without one.
     Guess,
-    /// At what the interior-point method finds, which begins at an earlier answer if there is one.
+    /// At the forces that the interior-point method finds, itself started from an earlier answer if there is one.
     Inside,
 }
 
-/// The proximal method with its buffers.
+/// Proximal augmented Lagrangian with semismooth Newton steps in body space, for large symmetric problems of bodies.
+///
+/// The number of steps hardly depends on the number of redundant contacts, and the forces are near those of least norm.
+/// Sources: QPALM (B. Hermans et al., CDC 2019) and PROX-QP (A. Bambade et al., RSS 2022).
 #[derive(Clone, Debug, Default)]
 pub struct ProximalNewton {
     settings: Settings,
     system: System,
     factor: BodyFactor,
-    /// The proximal term and rows of the present factor.
+    /// The proximal term ε of the present factor, if there is one; its rows are `inside`.
     factored: Option<f64>,
     epsilon: f64,
     inside: Vec<bool>,
     guess: Vec<bool>,
-    /// u, its change, and the gradient.
+    /// u; `step` is its change, or minus the gradient.
     motion: Vec<f64>,
     step: Vec<f64>,
     /// â and its change.
@@ -89,19 +94,20 @@ pub struct ProximalNewton {
     checker: Checker,
     interior: InteriorPoint,
     steps: usize,
-    /// Newton steps after which it stops for now, and steps that were made before or inside.
+    /// Number of Newton steps after which the iteration stops for now, and number of steps made earlier or by the
+    /// interior-point method.
     most_steps: usize,
     interior_steps: usize,
-    /// Factorisations in the last solve.
+    /// Number of factorisations in the last solve.
     pub(crate) factorizations: usize,
 }
 
 impl ProximalNewton {
-    /// A solver with these settings.
+    /// Makes a solver with the given settings.
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] names a number that is not usable.
+    /// [`SettingsError`] names a setting that is not positive and finite.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(ProximalNewton { settings, ..Self::default() })
@@ -112,8 +118,8 @@ impl ProximalNewton {
         self.system.is_loaded(problem)
     }
 
-    /// The proof that there is no solution, made of a direction along which forces have grown, or of another proof, if
-    /// that leaves no doubt.
+    /// Refines a direction along which forces have grown, or that of a doubtful proof, to a certain proof that there is
+    /// no solution; `None` if that fails.
     pub(crate) fn refine_proof(&mut self, problem: &Problem, direction: &[f64]) -> Option<Infeasibility> {
         if !problem.has_bodies() {
             return None;
@@ -124,8 +130,8 @@ impl ProximalNewton {
         is_ready.then(|| refine(problem, system, factor, direction, settings)).flatten()
     }
 
-    /// As [`solve`](Solver::solve), beginning at what the interior-point method finds, from an earlier answer
-    /// if there is one: where many pivots or steps are in sight.
+    /// Solves a problem in which many pivots or steps are in sight: begins at the forces that the interior-point method
+    /// finds, from an earlier answer if there is one.
     pub(crate) fn solve_inside(
         &mut self,
         problem: &Problem,
@@ -169,7 +175,7 @@ impl ProximalNewton {
         Err(SolveError::Unsolved { method, residuals, iterations })
     }
 
-    /// Makes an answer of the forces, unless the one that is there is better.
+    /// Writes the forces as the answer, unless `solution` already holds a better one.
     fn answer(&mut self, problem: &Problem, solution: &mut Solution) {
         let steps = self.steps + self.interior_steps;
         let is_first = solution.iterations == 0;
@@ -189,8 +195,9 @@ impl ProximalNewton {
         solution.active.extend((0..problem.len()).filter(|&row| solution.force[row] != 0.0));
     }
 
-    /// Begins again inside, where the forces of bodies that are jammed went beyond all bounds: with a term that keeps
-    /// them modest. (It is not without cost: contacts that contradict each other by little end in worse forces.)
+    /// Starts again from the interior-point method where the forces of jammed bodies went beyond all bounds, with a
+    /// term that keeps them modest. It is not used at once, as contacts that contradict each other slightly end in
+    /// worse forces with it.
     fn approach_modestly(&mut self, problem: &Problem) {
         let before = self.steps + self.interior_steps;
         self.load(problem, None);
@@ -217,7 +224,8 @@ impl ProximalNewton {
             values.clear();
             values.resize(columns, 0.0);
         }
-        // The factor stays if only b has changed; from an earlier answer its proximal term is as good as another.
+        // The factor stays if only b has changed; with an earlier answer, its proximal term serves as well as
+        // `WARM_TERM`.
         if !same || warm.is_none() {
             self.inside.clear();
             self.inside.resize(n, false);
@@ -238,8 +246,8 @@ impl ProximalNewton {
         self.move_by_multipliers();
     }
 
-    /// Iterates from where it is to begin, or from inside where that does not end soon. Where nothing is
-    /// found inside, a guess is gone on with after all.
+    /// Iterates from the guess, or from the interior point if `begin` says so or the guess does not end soon. If no
+    /// interior point is found, the iteration from a guess goes on.
     fn approach(&mut self, problem: &Problem, warm: Option<&WarmStart>, begin: Begin) {
         if begin == Begin::Guess {
             self.most_steps = PATIENCE.min(self.settings.newton_steps);
@@ -272,7 +280,7 @@ impl ProximalNewton {
         }
     }
 
-    /// Takes what the interior-point method has found for an earlier answer.
+    /// Takes the forces of the interior-point method for those of an earlier answer.
     fn begin_inside(&mut self, problem: &Problem) {
         self.epsilon = WARM_TERM;
         for row in 0..problem.len() {
@@ -283,14 +291,14 @@ impl ProximalNewton {
         self.move_by_multipliers();
     }
 
-    /// Finds the motion and the accelerations that go with the multipliers.
+    /// Sets the motion and the accelerations to those of the multipliers.
     fn move_by_multipliers(&mut self) {
         self.system.push(&self.multiplier, &mut self.motion);
         self.system.pull(&self.motion, &mut self.acceleration);
         self.acceleration.iter_mut().zip(&self.system.b).for_each(|(a, b)| *a += b);
     }
 
-    /// The outer iteration.
+    /// Runs the outer iteration.
     fn iterate(&mut self, problem: &Problem) {
         let mut previous = f64::INFINITY;
         let mut stalls = 0;
@@ -319,7 +327,7 @@ impl ProximalNewton {
         }
     }
 
-    /// Minimises the augmented Lagrangian. Returns false if that cannot go on.
+    /// Minimises the augmented Lagrangian for the present multipliers. Returns false if the iteration cannot go on.
     fn minimise(&mut self, problem: &Problem, first: bool) -> bool {
         let mut guessed = first;
         let last = self.most_steps.min(self.steps + INNER_STEPS);
@@ -362,7 +370,7 @@ impl ProximalNewton {
                 return true;
             }
         }
-        // A row on the edge may change sides for ever; the outer iteration moves the edge.
+        // A row at the edge of the max may change sides for ever; the outer iteration moves the edge.
         self.steps < self.most_steps
     }
 
@@ -379,7 +387,7 @@ impl ProximalNewton {
         })
     }
 
-    /// Exact minimum along the step.
+    /// Length of the step to the exact minimum along it.
     fn step_length(&mut self, problem: &Problem) -> f64 {
         let (mut value, mut slope) = (0.0, 0.0);
         for (u, s) in self.motion.iter().zip(&self.step) {
@@ -406,7 +414,8 @@ impl ProximalNewton {
         self.derivative.find_zero().unwrap_or(1.0)
     }
 
-    /// Takes the forces as multipliers, and the velocities that go with them. Returns the largest residual and force.
+    /// Makes the forces the multipliers, and updates motion and accelerations. Returns the largest residual and the
+    /// largest force.
     fn update_multipliers(&mut self, problem: &Problem) -> (f64, f64) {
         for row in 0..problem.len() {
             let force = self.multiplier[row] - self.acceleration[row] / self.epsilon;

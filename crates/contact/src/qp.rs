@@ -1,11 +1,11 @@
 //! The contact problem as a quadratic program in body space, solved by clarabel.
 //!
-//! min ½|u|² subject to Ĵ u + b̂ ≥ 0 (= 0 on bilateral rows) in the scaled quantities of [`System`]; the
-//! multipliers are the forces. In this form the objective is strictly convex however redundant the contacts
-//! are; the same problem in the forces is not. An A given by its entries is factored first, Â = Ĵ Ĵᵀ
-//! (Cholesky with diagonal pivoting). The interior-point answer is good to some 1e-4 to 1e-12, so its active
-//! set starts the pivoting method, which ends at an exact one. Source: P. Goulart, Y. Chen, "Clarabel: An
-//! interior-point solver for conic programs with quadratic objectives", arXiv 2405.12762, 2024.
+//! min ½|u|² subject to Ĵ u + b̂ ≥ 0 (= 0 on bilateral rows) in the scaled quantities of [`System`]; the multipliers
+//! are the forces. In this form the objective is strictly convex however redundant the contacts are, unlike that of the
+//! same problem in the forces. An A given by its entries is factored first, Â = Ĵ Ĵᵀ (Cholesky with diagonal pivoting).
+//! The interior-point answer has an error of some 1e-4 to 1e-12, so its active set only starts the pivoting method,
+//! which ends at an exact answer. Source: P. Goulart, Y. Chen, "Clarabel: An interior-point solver for conic programs
+//! with quadratic objectives", arXiv 2405.12762, 2024.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -19,10 +19,14 @@ use crate::solver::{Method, Solver};
 use crate::start::Start;
 use crate::system::System;
 
-/// Rows up to which a matrix A is factored to get rows J, which is dense work.
+/// Largest number of rows of a matrix A that is factored to get rows J, which is dense work.
 const FACTORED: usize = 200;
 
-/// Quadratic programming with an active-set polish.
+/// Quadratic programming in body space by clarabel, with an active-set polish, for symmetric problems.
+///
+/// Minimises ½|u|² subject to Ĵ u + b̂ ≥ 0 (= 0 on bilateral rows) over the scaled motion u of the bodies. A problem
+/// given by the entries of A may have at most 200 rows. Source: P. Goulart, Y. Chen, "Clarabel: An interior-point
+/// solver for conic programs with quadratic objectives", arXiv 2405.12762, 2024.
 #[derive(Clone, Debug, Default)]
 pub struct Qp {
     settings: Settings,
@@ -31,7 +35,7 @@ pub struct Qp {
     closed: Vec<bool>,
 }
 
-/// What the interior-point method found.
+/// The result of the interior-point method.
 struct Interior {
     multiplier: Vec<f64>,
     slack: Vec<f64>,
@@ -39,17 +43,17 @@ struct Interior {
 }
 
 impl Qp {
-    /// A solver with these settings.
+    /// Makes a solver with the given settings.
     ///
     /// # Errors
     ///
-    /// [`SettingsError`] names a number that is not usable.
+    /// [`SettingsError`] names a setting that is not positive and finite.
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         Ok(Qp { settings, polish: DualActiveSet::new(settings)?, ..Self::default() })
     }
 
-    /// Runs clarabel. `None` if it refuses the problem or ends without an answer; infeasible ones are left to the
-    /// polish, which proves them so.
+    /// Runs clarabel. `None` if it refuses the problem or ends without an answer. Infeasible problems are left to the
+    /// polish, which proves that they are.
     fn interior(&self, problem: &Problem) -> Option<Interior> {
         let (rows, columns) = self.system.rows_or_factor(self.settings.dependence);
         let n = problem.len();

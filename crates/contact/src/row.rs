@@ -3,29 +3,33 @@
 use crate::problem::InverseInertia;
 use halfgap_collision::{BodyId, Collision};
 
-/// One scalar constraint between two bodies: its rate is J v over (vA, wA, vB, wB).
+/// One scalar constraint between two bodies of an impact.
+///
+/// The rate of its gap is J v [m/s] with the velocities v = (vAx, vAy, wA, vBx, vBy, wB) [m/s, m/s, rad/s, ...] of the
+/// primary body A and the normal body B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollisionRow {
     /// The primary and the normal body.
     pub bodies: [BodyId; 2],
-    /// J: [1, 1, m, 1, 1, m], three entries a body.
+    /// J [1, 1, m, 1, 1, m]: coefficients of the x, y and angular velocity of the primary, then of the normal body.
     pub jacobian: [f64; 6],
-    /// J M^-1: what a unit impulse changes the six velocities by [1/kg, 1/kg, 1/(kg m), ...].
+    /// J M^-1 [1/kg, 1/kg, 1/(kg m), ...]: change of the six velocities per unit impulse along the row.
     pub response: [f64; 6],
-    /// Share of the closing speed that is given back, 0 to 1.
+    /// Restitution [-], 0 to 1: fraction of the closing speed at which the row opens again.
     pub elasticity: f64,
-    /// Closing speed [m/s] below which the elasticity no longer acts.
+    /// Closing speed [m/s] up to which the elasticity does not act.
     pub velocity_tol: f64,
-    /// True if the rate must be zero, false if it must not be negative.
+    /// True if the rate must be zero (connector), false if it must not be negative (contact).
     pub bilateral: bool,
-    /// True for what was held until now: if it opens slower than `velocity_tol`, that is what its holding errs by.
+    /// True if the row was a held contact before the impact; an opening rate up to `velocity_tol` is then constraint
+    /// error, not separation.
     pub held: bool,
-    /// Rate [m/s], negative when closing.
+    /// Rate J v before the impact [m/s], negative when closing.
     pub rate: f64,
 }
 
 impl CollisionRow {
-    /// The row of a collision between two bodies of the given inertia (primary, normal).
+    /// Makes the row of a collision record, with the `inertia` of its primary and normal body.
     #[must_use]
     pub fn of_collision(collision: &Collision, inertia: [InverseInertia; 2]) -> Self {
         let jacobian = collision.motion.kinematics.jacobian;
@@ -41,8 +45,11 @@ impl CollisionRow {
         }
     }
 
-    /// A row that comes from no collision record, as of a connector. The background ([`BodyId::WORLD`]) and
-    /// other bodies that nothing moves have an inertia of zeros.
+    /// Makes a row that comes from no collision record, such as that of a connector.
+    ///
+    /// Arguments are as the fields of [`CollisionRow`]: `jacobian` [1, 1, m, 1, 1, m], `rate` [m/s] (negative when
+    /// closing), `elasticity` [-], `velocity_tol` [m/s]. The background ([`BodyId::WORLD`]) and other immovable bodies
+    /// have an inertia of zeros.
     #[must_use]
     pub fn new(
         bodies: [BodyId; 2],
@@ -57,7 +64,8 @@ impl CollisionRow {
         Self { bodies, jacobian, response, elasticity, velocity_tol, bilateral, held: false, rate }
     }
 
-    /// True if its elasticity acts when it closes at a speed [m/s], now or at the start of the impact.
+    /// True if the row's elasticity acts when it closes at `speed` [m/s]: that speed, or the closing speed at the start
+    /// of the impact, exceeds `velocity_tol`.
     pub(crate) fn rebounds_at(&self, speed: f64) -> bool {
         speed.max(-self.rate) > self.velocity_tol
     }
@@ -78,21 +86,21 @@ impl CollisionRow {
         sum
     }
 
-    /// What a unit impulse along the row changes its rate by through each of its bodies alone [1/kg]; they
-    /// add up to the row's own coupling.
+    /// Change of the row's own rate per unit impulse along it [1/kg], through each of its two bodies alone. The two add
+    /// up to its diagonal entry of the Delassus matrix.
     #[must_use]
     pub(crate) fn shares(&self) -> [f64; 2] {
         [0, 3].map(|first: usize| (first..first + 3).map(|k| self.jacobian[k] * self.response[k]).sum())
     }
 
-    /// True if the rows act on a common body that can move.
+    /// True if both rows act on a common movable body.
     #[must_use]
     pub fn shares_movable_body(&self, other: &CollisionRow) -> bool {
         let theirs = other.movable_bodies();
         self.movable_bodies().iter().any(|body| body.is_some() && theirs.contains(body))
     }
 
-    /// The bodies that an impulse along the row moves; the background is none of them.
+    /// The bodies that an impulse along the row moves; `None` for an immovable one and for the background.
     pub(crate) fn movable_bodies(&self) -> [Option<BodyId>; 2] {
         [0, 1].map(|side| {
             let moves = self.response[3 * side..3 * side + 3].iter().any(|&x| x != 0.0);

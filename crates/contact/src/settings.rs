@@ -1,113 +1,126 @@
-//! The numbers every solver decides by, in one place.
+//! Thresholds and caps of all solvers, in one place.
 
 use crate::error::{SettingsError, SolveError};
 use crate::matrix::Matrix;
 use crate::problem::Problem;
 
-/// Part of its square that a contact must have to itself to be closed with many others: if rounding has a say in the
-/// forces, which of them are wrong means nothing. Pivots close what has less.
+/// Fraction of a contact's square A_ii that the other closed rows must leave of it so that it can be closed together
+/// with many others. With less, rounding decides the signs of forces, and these tell nothing about which rows are
+/// wrong. Contacts with less are closed by pivots.
 pub(crate) const WELL: f64 = 1e-7;
 
-/// Part of its square below which what earlier rows leave of a row may be no more than rounding, enlarged by
-/// rows of which as little as passes for independent was left: it is measured with care.
+/// Fraction of a row's square A_ii: if earlier rows leave less of it, that remainder may be rounding, enlarged by
+/// earlier rows that are barely independent. It is then compared with its own rounding, or computed anew from the row
+/// itself.
 pub(crate) const DOUBTFUL: f64 = 1e-4;
 
-/// Leakage of a certificate whose rows depend on each other to the last digit.
+/// Largest leakage [-] of a certificate whose rows depend on each other to the last digit, and largest sum, as a
+/// fraction of the sum of its absolute terms, that counts as cancelled to the last digit.
 const SAME: f64 = 2.0 * f64::EPSILON;
 
-/// Thresholds and caps of the solvers. Each threshold is relative, so that none depends on the units of a problem.
+/// Thresholds and caps of the solvers. Every threshold is dimensionless, so that none depends on the units of a
+/// problem.
 ///
 /// Rows are compared after scaling: with `s_i = sqrt(A_ii)` (1 where `A_ii = 0`) the scaled acceleration is
 /// `a_i / s_i`, the scaled force `s_i f_i`, and the *scale* of a problem is `max |b_i / s_i|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Largest natural residual, in units of the scale, of an accepted answer.
+    /// Largest natural residual of an accepted answer, in units of the scale.
     pub natural_residual: f64,
-    /// Growth from which an answer may be judged by its backward residual instead: there rounding alone, times the
-    /// growth, exceeds `natural_residual`.
+    /// Growth from which an answer may be judged by its backward residual instead: there rounding times the growth may
+    /// exceed `natural_residual`. A contradiction of contacts proves infeasibility only if any solution would have at
+    /// least this growth.
     pub least_growth: f64,
-    /// Growth from which the backward residual no longer counts, for the forces mean nothing any more: such an answer is
-    /// accepted only by its natural residual. A proof that every solution has that growth leaves no doubt.
+    /// Growth from which forces mean nothing: such an answer is accepted by its natural residual only, not by its
+    /// backward residual. A proof of infeasibility by which any solution would have at least this growth counts as
+    /// certain.
     pub greatest_growth: f64,
-    /// Largest backward residual of an accepted answer of great growth.
+    /// Largest backward residual of an accepted answer with a growth from `least_growth` to `greatest_growth`.
     pub backward_residual: f64,
-    /// A row depends on the closed rows when what they leave of its squared length is at most this part of it.
+    /// Fraction of a row's square A_ii: the row depends on the closed rows if they leave at most this fraction of it.
     ///
-    /// Larger treats nearly redundant contacts as redundant, smaller lets forces grow by up to its reciprocal.
+    /// A larger value treats nearly redundant contacts as redundant; a smaller one lets forces grow by up to its
+    /// reciprocal.
     pub dependence: f64,
-    /// The same for a second attempt, where rows taken for dependent contradict each other and may only be nearly
-    /// dependent: a few roundings of 1.
+    /// Value of `dependence` in a second attempt, made where rows taken for dependent contradict each other and may be
+    /// only nearly dependent: a few roundings of 1.
     pub least_dependence: f64,
-    /// What the scaled diagonal of `A`, which is 1, is raised by where contacts contradict each other and are
-    /// to be solved as given: a few roundings, and the backward residual of the answer. Forces are about the
-    /// contradiction over it.
+    /// Amount added to the scaled diagonal of `A`, which is 1, where contacts contradict each other and are to be
+    /// solved as given: a few roundings. The backward residual of the answer is about this amount, and its forces are
+    /// about the contradiction divided by it.
     pub raise: f64,
-    /// Contradiction between dependent rows, in units of the scale, up to which they are solved in the least-squares
-    /// sense; beyond it the problem is infeasible.
+    /// Largest contradiction between dependent rows, in units of the scale, that is solved in the least-squares sense;
+    /// with a larger one the problem is infeasible.
     pub inconsistency: f64,
-    /// An acceleration within this part of the scale of zero counts as zero while the solver looks for a next row.
+    /// Fraction of the scale: smaller scaled accelerations count as zero when the active-set method selects the next
+    /// row to close.
     pub open_tolerance: f64,
-    /// A row whose offset b is below this part of the scale starts closed: contacts between bodies at rest on
-    /// each other have b = 0 but for small relative motions.
+    /// Fraction of the scale: a row whose scaled offset b is at most this starts closed. Contacts of bodies at rest on
+    /// each other have b near 0, of either sign by small relative motions.
     pub start_closed: f64,
-    /// As `open_tolerance`, in units of the largest sum of terms that an acceleration is made of: a few roundings.
+    /// Addition to `open_tolerance` for rounding, as a fraction of the largest sum of absolute terms of an
+    /// acceleration: a few roundings.
     pub rounding: f64,
-    /// Cap on pivots, per row of the problem.
+    /// Cap on pivots, per row of the problem plus 5.
     pub pivots_per_row: usize,
-    /// Cap on rounds in which the active-set method exchanges all wrong rows at once.
+    /// Cap on the rounds in which the active-set method exchanges all wrong rows at once.
     pub block_rounds: usize,
-    /// How many such rounds may pass without fewer rows being wrong.
+    /// Number of rounds of exchanges in succession that may leave no fewer rows wrong than the best before.
     pub block_tries: usize,
-    /// Rows from which the automatic choice hands very redundant problems to the proximal method.
+    /// Number of rows from which [`Auto`](crate::Auto) hands very redundant problems of bodies to
+    /// [`ProximalNewton`](crate::ProximalNewton), unless `selection` is [`ForceSelection::LeastNorm`].
     pub hand_over_rows: usize,
-    /// Rows from which it hands problems that take many pivots to the same, where forces may be any.
+    /// Number of rows from which [`Auto`](crate::Auto) hands problems of bodies that take many pivots to
+    /// [`ProximalNewton`](crate::ProximalNewton), unless `selection` is [`ForceSelection::Pivoted`] or
+    /// [`ForceSelection::LeastNorm`].
     pub pivoting_rows: usize,
     /// Cap on steps of iterative refinement of the final forces.
     pub refinements: usize,
-    /// Cap on outer (multiplier) iterations of the proximal method.
+    /// Cap on outer (multiplier) iterations of the proximal method, and on those of the least-norm selection.
     pub outer_iterations: usize,
-    /// Cap on Newton steps of the proximal method, in all.
+    /// Cap on the total number of Newton steps of the proximal method.
     pub newton_steps: usize,
-    /// Tolerance asked of the interior-point method, on its gap and feasibility, in units of the scale.
+    /// Tolerance on gap and feasibility that `Qp` asks of its interior-point method, in units of the scale.
     pub interior_point: f64,
-    /// Proximal term the least-norm choice of forces is made with, in units of the scaled diagonal of `A`, which is 1.
+    /// Proximal term of the least-norm selection of forces, in units of the scaled diagonal of `A`, which is 1.
     pub least_norm_term: f64,
-    /// How forces are chosen where the problem leaves a choice.
+    /// Selection of forces where redundant rows leave a choice.
     pub selection: ForceSelection,
-    /// What to do first about contacts that contradict each other by a little.
+    /// First treatment of contacts that contradict each other by less than `inconsistency`.
     pub contradiction: Contradiction,
 }
 
-/// What to do first about unilateral rows that contradict each other by less than [`Settings::inconsistency`].
+/// First treatment of unilateral rows that contradict each other by less than [`Settings::inconsistency`].
 ///
-/// Nearly redundant contacts can be satisfied as given only by forces of 1e5 times the load and more, which help no
-/// one; within rounding they can be satisfied by forces of the size of the load.
+/// Nearly redundant contacts can be satisfied exactly as given only by forces of 1e5 times the load and more, which are
+/// of no use. Up to rounding, forces of the size of the load satisfy them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Contradiction {
-    /// Solve the rows as given, up to rounding of A, if the residual rules allow the forces that takes; otherwise by
-    /// least squares.
+    /// Solve the rows as given, up to rounding of A, if the residual rules accept the large forces of that answer;
+    /// otherwise by least squares.
     #[default]
     SolveExactly,
-    /// Solve by least squares and report the inconsistency; as given only if the contradiction is larger.
+    /// Solve by least squares and report the inconsistency; solve as given only if the contradiction is larger.
     LeastSquares,
 }
 
-/// Which forces to report when redundant contacts leave a choice; the accelerations do not depend on it.
+/// Selection among the forces that redundant contacts leave open. The accelerations do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ForceSelection {
-    /// Whatever is found soonest: where many rows are redundant, all of them may carry force.
+    /// The forces that are found soonest. Where many rows are redundant, all of them may carry force.
     #[default]
     Quickest,
-    /// Whatever the pivoting ends at, however long that takes: few rows carry force. Only where so many rows
-    /// are redundant that the choice among them is arbitrary, all of them may. For those who go on with the
-    /// rows that carry force, as an integrator does: of rows that share, none that holds something is idle.
+    /// The forces at which the pivoting ends, however long that takes: few rows carry force. Only where so many rows
+    /// are redundant that the choice among them is arbitrary, all of them may. For callers that go on with the rows
+    /// that carry force, as an integrator does: where rows share a load, none of those that are needed has zero force.
     Pivoted,
-    /// Those of rows that do not depend on each other, as the pivoting ends at, or as others are moved to. Some of
-    /// these rows may have no force, by chance, as the second corner of a block that is balanced on the first.
+    /// Forces on rows that do not depend on each other: those at which the pivoting ends, or those of another method
+    /// moved to such rows. Some of these rows may have zero force by chance, such as the second corner of a block that
+    /// is balanced on the first.
     Vertex,
-    /// The least sum of squares of the scaled forces `s_i f_i` among those that hold the same rows at rest:
-    /// symmetric scenes show symmetric forces. Where masses are thousands of times apart, which rows are at
-    /// rest is known to rounding only, and others may hold them with less.
+    /// The forces with the least sum of squares of the scaled forces `s_i f_i` among those that hold the same rows at
+    /// rest, so that symmetric scenes show symmetric forces. Where masses are thousands of times apart, the rows at
+    /// rest are known up to rounding only, and another set of rows might do with smaller forces.
     LeastNorm,
 }
 
@@ -142,7 +155,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks every number.
+    /// Checks that every threshold is positive and finite. The caps may have any value.
     ///
     /// # Errors
     ///
@@ -169,9 +182,9 @@ impl Settings {
         }
     }
 
-    /// Whether an error is a certificate that leaves no doubt: every solution would have forces beyond all
-    /// bounds, or it is bilateral rows, dependent to the last digit, that contradict each other by more than
-    /// may be settled.
+    /// Whether an error is a certificate that leaves no doubt: any solution would have a growth of at least
+    /// `greatest_growth`, or the rows are bilateral, depend on each other to the last digit, and contradict each other
+    /// by more than `inconsistency`.
     pub(crate) fn is_proven(&self, error: &SolveError, problem: &Problem) -> bool {
         let SolveError::Infeasible(proof) = error else { return false };
         let is_bilateral = || proof.direction.iter().zip(problem.bilateral()).all(|(z, is)| *is || *z == 0.0);
@@ -181,14 +194,14 @@ impl Settings {
         proof.least_growth() >= self.greatest_growth || (is_exact && is_bilateral())
     }
 
-    /// Cap on pivots for a problem of `rows` rows: small problems get a little more per row.
+    /// Cap on pivots for a problem of `rows` rows; small problems get a little more per row.
     pub(crate) fn pivot_cap(&self, rows: usize) -> usize {
         self.pivots_per_row.saturating_mul(rows + 5)
     }
 }
 
-/// True if a combination of rows moves no body, to the last digit; where bodies are not known, that is for A to say. A z
-/// is of second order in what it moves, and may be rounding where that is not.
+/// True if a combination z of rows moves no body, to the last digit, or if the problem has no bodies. A z is of second
+/// order in the motion Jᵀ z, so it may be rounding where the motion is not.
 fn cancels(problem: &Problem, direction: &[f64]) -> bool {
     let Matrix::Bodies(bodies) = &problem.matrix else { return true };
     let mut moved = vec![[0.0; 2]; bodies.inverse_mass.len()];

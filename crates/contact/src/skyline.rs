@@ -1,4 +1,4 @@
-//! Cholesky factor of the closed rows, L Lᵀ = Â_CC, kept up to date as rows come and go.
+//! Cholesky factor L Lᵀ = Â_CC of the closed rows, updated as rows are closed and opened.
 //!
 //! Each row of L is stored from its first nonzero on (the *envelope*, which a factor shares with its matrix: A. George,
 //! J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981, chapter 4), so that a stack or a chain,

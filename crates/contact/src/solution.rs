@@ -3,31 +3,31 @@
 use crate::check::Residuals;
 use crate::solver::Method;
 
-/// Forces and accelerations (or impulses and velocities) of every row, with the evidence that they are right.
+/// Forces and accelerations (or impulses and velocities) of every row, with their residuals.
 ///
-/// A solution is filled by a solver and can be used again and again: its buffers keep their room.
+/// A solver fills it; reused for later problems, it keeps the memory of its buffers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// Force f_i of each row \[N\], or impulse [N·s] in an impact problem.
     pub force: Vec<f64>,
     /// Acceleration a = A f + b of each row [m/s²], or velocity [m/s] in an impact problem, from the original data.
     pub acceleration: Vec<f64>,
-    /// Rows the method ended with as closed (a = 0 enforced), ascending. With redundant contacts a subset of
-    /// the rows at a = 0, and a row in it may carry no force.
+    /// Rows that the method ended with as closed (a = 0 enforced), ascending. With redundant contacts these are a
+    /// subset of the rows at a = 0, and some of them may carry no force.
     pub active: Vec<usize>,
     /// Residuals of the forces in the original data.
     pub residuals: Residuals,
-    /// Pivots (active-set method, Lemke) or Newton and interior-point steps.
+    /// Number of pivots (active-set method, Lemke) or of Newton and interior-point steps.
     pub iterations: usize,
-    /// Largest part, in units of the scale max|b/s|, by which dependent rows contradict each other; zero when they
-    /// agree. The forces then solve them in the least-squares sense, and the residual includes it.
+    /// Largest contradiction between dependent rows, in units of the scale max|b/s|; 0 when they agree. Where it is not
+    /// 0, the forces solve these rows in the least-squares sense, and the natural residual includes it.
     pub inconsistency: f64,
     /// The method that found the answer.
     pub method: Method,
 }
 
 impl Solution {
-    /// An empty solution, to be filled by a solver.
+    /// Makes an empty solution, to be filled by a solver.
     #[must_use]
     pub fn new() -> Self {
         Solution {
@@ -53,7 +53,7 @@ impl Solution {
         self.force.is_empty()
     }
 
-    /// Makes room for `rows` rows and sets everything to zero.
+    /// Resizes to `rows` rows and sets all numbers to zero.
     pub(crate) fn reset(&mut self, rows: usize, method: Method) {
         self.force.clear();
         self.force.resize(rows, 0.0);

@@ -1,4 +1,4 @@
-//! What a solver is.
+//! The trait of a solver, and the names of the methods.
 
 use std::fmt;
 
@@ -7,13 +7,13 @@ use crate::problem::Problem;
 use crate::solution::Solution;
 use crate::warm::WarmStart;
 
-/// Solves contact problems; implement it to bring a method of your own.
+/// A method that solves contact problems. Callers can implement it for methods of their own.
 ///
-/// A solver owns its buffers, so that solving again a problem of a size known already allocates nothing.
+/// A solver owns its buffers, so that a later solve of a problem of known size need not allocate.
 ///
 /// # Examples
 ///
-/// Projected Gauss-Seidel, sweep by sweep over the rows; it keeps the motions v = M⁻¹ Jᵀ f and wants no A.
+/// Projected Gauss-Seidel, sweep by sweep over the rows; it keeps the motions v = M⁻¹ Jᵀ f and needs no A.
 ///
 /// ```
 /// use halfgap_contact::{
@@ -86,21 +86,21 @@ use crate::warm::WarmStart;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Solver {
-    /// Which method this is.
+    /// The name of the method.
     fn method(&self) -> Method;
 
-    /// Solves `problem` from nothing. On an error `solution` holds no answer.
+    /// Solves `problem` without an earlier answer. On an error `solution` holds no answer.
     ///
     /// # Errors
     ///
     /// [`SolveError`]: the problem is infeasible, the method does not apply, or its answer failed the check.
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError>;
 
-    /// Solves `problem` starting from an earlier answer. A method that cannot use one solves from nothing.
+    /// Solves `problem` starting from an earlier answer. The default implementation ignores `start`.
     ///
     /// # Errors
     ///
-    /// As [`solve`](Self::solve).
+    /// Those of [`solve`](Self::solve).
     fn solve_from(
         &mut self,
         problem: &Problem,
@@ -112,11 +112,11 @@ pub trait Solver {
     }
 }
 
-/// The methods this crate offers.
+/// Names of the methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// Chosen by size and structure.
+    /// Automatic choice by size and structure; in a solution, islands solved by different methods.
     Auto,
     /// Dual active set with an updated factor.
     DualActiveSet,

@@ -1,45 +1,47 @@
 //! Forces spread over rows that depend on each other, instead of a choice among them.
 //!
-//! Where many contacts are redundant, as in a pyramid of blocks, the rows that would close are more than can
-//! be independent. Which of them carry the forces is then an arbitrary choice, and pivoting to one that has
-//! no negative force takes as many pivots as there are redundant rows. With the diagonal of the factor raised
-//! by a little all of them can be closed at once; the forces are then those of least norm, which weight
-//! mostly leaves positive, and what they lack is made good by refinement, the proximal point method in the
-//! forces: each step leaves δ/(δ + λ) of the accelerations in the direction of an eigenvalue λ of Â, and none
-//! are left in a direction of λ = 0 if the rows do not contradict each other. Source of the method: R. T.
-//! Rockafellar, "Monotone operators and the proximal point algorithm", SIAM Journal on Control and
-//! Optimization 14, 1976, 877-898.
+//! Where many contacts are redundant, as in a pyramid of blocks, more rows would close than can be independent. The
+//! choice of those that carry the forces is then arbitrary, and pivoting to a choice without negative forces takes as
+//! many pivots as there are redundant rows. With the diagonal of the factor raised by a small δ all of them can be
+//! closed at once. The forces are then nearly those of least norm, which the weight of the bodies mostly leaves
+//! positive. Their error is removed by refinement, the proximal point method in the forces: each step leaves δ/(δ + λ)
+//! of the accelerations in the direction of an eigenvalue λ of Â, and in a direction of λ = 0 there are none if the
+//! rows do not contradict each other. Source of the method: R. T. Rockafellar, "Monotone operators and the proximal
+//! point algorithm", SIAM Journal on Control and Optimization 14, 1976, 877-898.
 
 use crate::dual_active_set::{DualActiveSet, REFINED};
 use crate::settings::ForceSelection;
 use crate::start::{REDUNDANT, SUBSTANTIAL};
 
-/// What the diagonal of the factor is raised by: small beside the least eigenvalue of piles that is not zero,
-/// so that few steps of refinement are needed, large beside rounding.
+/// Amount δ by which the diagonal of the factor, which is 1 in Â, is raised: small beside the least nonzero eigenvalue
+/// of piles, so that few steps of refinement are needed, and large beside rounding.
 const RAISE: f64 = 1e-9;
 
-/// Steps of refinement before it is given up.
+/// Cap on the steps of refinement.
 const STEPS: usize = 6;
 
-/// Part of the scale below which the acceleration of a row that depends on closed ones is none, and one in so
-/// many of them that must have none: else they contradict the closed ones, and some must open.
+/// Fraction of the scale up to which the acceleration of a row that depends on closed ones counts as zero.
 const REST: f64 = 1e-4;
+/// Reciprocal of the fraction of dependent rows that must have zero acceleration: with fewer they contradict the closed
+/// rows, and some must open.
 const CONSISTENT: usize = 2;
 
-/// Sum of terms, in units of the scale, beyond which accelerations of dependent rows mean nothing: the closed
-/// ones nearly depend on each other, as in a chain on a floor.
+/// Largest sum of terms, in units of the scale, at which accelerations of dependent rows mean something; beyond it the
+/// closed rows nearly depend on each other, as in a chain on a floor.
 const UNUSABLE: f64 = 1e6;
 
-/// Exchanges that may leave no fewer rows wrong, and how many rows at most are exchanged one by one.
+/// Number of exchanges in succession that may leave no fewer rows wrong.
 const TRIES: usize = 2;
+/// Largest number of rows that are exchanged one by one; for more all are closed anew.
 const FEW: usize = 6;
 
-/// One in so many rows wrong with all closed, at most: else they are not redundant, but nearly so, and forces
-/// are large.
+/// Reciprocal of the fraction of rows that may be wrong with all closed. With more wrong rows they are only nearly
+/// redundant, and forces are large.
 const WRONG: usize = 4;
 
 impl DualActiveSet {
-    /// Whether of so many rows that are to be closed, many depend on those that are.
+    /// Whether many of the `flagged` rows that are to be closed depend on the closed ones without contradicting them,
+    /// and some closed row pulls.
     pub(crate) fn is_worth_spreading(&self, flagged: usize) -> bool {
         let closed = self.closed.len();
         let pulls = |&row: &usize| self.closed.force[row] < 0.0 && !self.closed.free[row];
@@ -57,15 +59,15 @@ impl DualActiveSet {
                 || (0..self.start.len()).filter(rests).count() * CONSISTENT >= flagged - closed)
     }
 
-    /// Closes all rows with a flag, redundant ones too, and exchanges wrong ones while that leaves fewer. If
-    /// that does not end well, no rows are closed.
+    /// Closes all flagged rows, redundant ones too, and exchanges wrong ones while that leaves fewer. Returns whether
+    /// that ended at admissible forces; if not, no rows are closed.
     pub(crate) fn spread_forces(&mut self) -> bool {
         self.try_spread(Self::exchange_spread)
     }
 
-    /// Whether forces were spread in the last solve, and can be so again, with the rows that are to start
-    /// closed now. If not, and that was tried, no rows are closed. Where connectors came first it is not tried: the
-    /// factor of all rows would be wide.
+    /// Whether forces were spread in the last solve and can be spread again with the rows that start closed now. If
+    /// that was tried and failed, no rows are closed. It is not tried if connectors were closed first, as the factor of
+    /// all rows would be wide.
     pub(crate) fn is_still_spread(&mut self) -> bool {
         let closed = &self.closed;
         let was_spread = closed.was_spread && self.is_warm && closed.proximal == 0.0 && closed.kept == 0;
@@ -78,7 +80,7 @@ impl DualActiveSet {
             })
     }
 
-    /// Leaves the rows to start with, and the factor without a raise, if something does not end well.
+    /// Runs `something`; if that fails, restores the rows to start with and the factor without a raise.
     fn try_spread(&mut self, something: impl FnOnce(&mut Self) -> bool) -> bool {
         let mut set_aside = std::mem::take(&mut self.set_aside);
         set_aside.clear();
@@ -99,7 +101,7 @@ impl DualActiveSet {
         self.go_on_spread()
     }
 
-    /// Exchanges wrong rows until none is left. Returns whether forces are admissible then and closed rows at rest.
+    /// Exchanges wrong rows until none is left. Returns whether the forces are admissible and the closed rows at rest.
     fn go_on_spread(&mut self) -> bool {
         let mut fewest = self.start.len() / WRONG;
         let mut tries = 0;
@@ -121,7 +123,7 @@ impl DualActiveSet {
         }
     }
 
-    /// Closes the rows with a flag instead of those that are closed, `wrong` of which differ.
+    /// Closes exactly the flagged rows; `wrong` flags differ from the closed rows.
     fn close_marked(&mut self, wrong: usize) {
         if wrong > FEW {
             self.closed.open_all();
@@ -140,11 +142,11 @@ impl DualActiveSet {
         }
     }
 
-    /// Solves the closed rows, and flags those that should be closed instead. Returns how many that changes.
+    /// Solves the closed rows, and flags the rows that should be closed instead. Returns the number of wrong rows.
     fn mark_wrong_spread(&mut self) -> usize {
         self.closed.solve_closed();
         self.closed.accelerate();
-        // Accelerations are known but for the raise times the forces.
+        // Accelerations are known up to the raise times the forces.
         self.mark_wrong(-self.noise() - RAISE * self.closed.terms)
     }
 
@@ -166,7 +168,7 @@ impl DualActiveSet {
         self.closed.spread = 0.0;
     }
 
-    /// Goes on with independent rows only.
+    /// Closes only independent rows from here on.
     pub(crate) fn gather_forces(&mut self) {
         self.start.clear();
         self.start.extend((0..self.closed.force.len()).map(|row| self.closed.is_closed(row)));
@@ -192,12 +194,12 @@ mod tests {
             (DualActiveSet::default(), Solution::new(), WarmStart::new());
         let problem = pyramid(8, 0.5);
         solver.solve(&problem, &mut solution).expect("forces of a pyramid");
-        // 36 blocks that rise and turn: so many rows can be independent.
+        // Each of the 36 blocks can rise and turn, so two rows per block can be independent.
         let independent = 2 * 36;
         assert!(solution.iterations == 0 && solution.active.len() > independent);
         let ground: f64 = solution.force[..16].iter().sum();
         assert!((ground - 36.0 / 0.8 * 9.81).abs() < 1e-10, "the floor carries {ground} N of 36 blocks");
-        // Wider blocks have another J, as redundant as this one; the next step of the same ones, the same factor.
+        // Wider blocks have another J, as redundant as this one; the next step of the same blocks has the same factor.
         warm.remember(&problem, &solution);
         let wider = pyramid(8, 0.51);
         for next in [&wider, &wider, &problem] {
@@ -223,7 +225,7 @@ mod tests {
         warm.remember(&problem, &solution);
         solver.solve_from(&problem, &warm, &mut solution).expect("forces of a pyramid");
         let closed = solver.closed.len();
-        // As if the last ones were spread, these rows are not, and two connectors had been closed first.
+        // A state in which the last solve was spread, this one is not, and two connectors were closed first.
         (solver.closed.was_spread, solver.closed.spread, solver.closed.kept) = (true, 0.0, 2);
         assert!(!solver.is_still_spread());
         assert_eq!((solver.closed.len(), solver.closed.spread), (closed, 0.0));

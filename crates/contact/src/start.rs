@@ -1,9 +1,10 @@
-//! The rows that the dual active-set method closes to begin with.
+//! The rows with which the dual active-set method starts as closed.
 //!
-//! Those that would close without forces, or that were closed before; then all wrong rows are exchanged at once while
-//! that makes fewer of them wrong, which it mostly does (L. Portugal, J. Júdice, L. Vicente, "A comparison of block
-//! pivoting and interior-point algorithms for linear least squares problems with nonnegative variables", Mathematics of
-//! Computation 63, 1994, 625-643); at last rows whose force would pull are opened, so that pivoting can begin.
+//! These are first the rows that would close without forces, or that were closed before. Then all wrong rows are
+//! exchanged at once while that makes fewer of them wrong, which it mostly does (L. Portugal, J. Júdice, L. Vicente, "A
+//! comparison of block pivoting and interior-point algorithms for linear least squares problems with nonnegative
+//! variables", Mathematics of Computation 63, 1994, 625-643). At last rows whose force would pull are opened, so that
+//! pivoting can begin.
 
 use crate::closed_rows::ClosedRows;
 use crate::dual_active_set::{DualActiveSet, HandOver};
@@ -12,41 +13,44 @@ use crate::problem::{Problem, pushing};
 use crate::settings::WELL;
 use crate::warm::WarmStart;
 
-/// One in so many rows dependent makes a problem a very redundant one, where spreading forces or handing over
-/// is worth it.
+/// Reciprocal of the fraction of dependent rows from which a problem is so redundant that spreading forces or handing
+/// over is worth it.
 pub(crate) const REDUNDANT: usize = 5;
 
-/// Fewer than one in so many rows independent make it a simple one (a box on a floor), where pivots are cheap.
+/// Reciprocal of the fraction of independent rows below which a problem is a simple one (a box on a floor), where
+/// pivots are cheap.
 pub(crate) const SUBSTANTIAL: usize = 4;
 
-/// Pivots that are in sight are not waited for if they are so many times more work than there is patience
-/// for: some rows come right with others.
+/// Multiple of the patience: if the pivots in sight are more work than this, the problem is handed over at once. It
+/// exceeds 1 because some wrong rows come right with others.
 const SURELY: usize = 2;
 
-/// One in so many rows still to be closed makes the choice of the closed rows not arbitrary.
+/// Reciprocal of the fraction of flagged rows up to which open ones may still close: with more, the choice of the
+/// closed rows is not arbitrary.
 const MOVING: usize = 50;
 
-/// One in so many closed rows to be opened at once makes a new factor cheaper than taking them out of the old one.
+/// Reciprocal of the fraction of closed rows above which a new factor is cheaper than removing the rows to be opened
+/// from the old one.
 const MANY: usize = 8;
 
-/// Growth of the factor's envelope, since it was made in a good order, at which it is made anew.
+/// Factor by which the envelope may have grown since the factor was made in a narrow order; with more it is made anew.
 const WIDENED: usize = 2;
 
-/// Where a solve begins.
+/// The start of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Start<'a> {
-    /// With the rows closed that would close without forces.
+    /// The rows are closed that would close without forces.
     Nothing,
-    /// With the rows closed that were so in an earlier answer, or are guessed to be.
+    /// The rows are closed that were closed in an earlier answer, or are guessed to be.
     Earlier(&'a WarmStart),
-    /// With these rows closed, one flag per row.
+    /// The flagged rows are closed, one flag per row.
     #[cfg(feature = "qp")]
     Closed(&'a [bool]),
 }
 
 impl DualActiveSet {
-    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the
-    /// factor narrow; if some turn out dependent, they come first, so that what they contradict is each
+    /// Closes the rows to start with. Bilateral rows are mixed with the others in the order that keeps the factor
+    /// narrow. If some turn out dependent, all bilateral rows are closed first, so that they contradict only each
     /// other.
     pub(crate) fn find_start(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
         if self.exchange_blocks() {
@@ -60,8 +64,8 @@ impl DualActiveSet {
         certificate
     }
 
-    /// Closes the bilateral rows; those that depend on others must agree with them, if that is not left to contacts:
-    /// which may hold a body still that two pins nearly at one place would hold but by huge forces.
+    /// Closes the bilateral rows. Those that depend on others must agree with them, unless that is left to contacts:
+    /// these may hold a body that two pins nearly at the same place could hold only by huge forces.
     pub(crate) fn close_connectors(&mut self, problem: &Problem) -> Option<Box<Infeasibility>> {
         let independent = self.closed.close_bilateral();
         self.closed.kept = self.closed.len();
@@ -83,7 +87,7 @@ impl DualActiveSet {
         self.shift.reconcile_connectors(&mut self.closed, problem, noise, limit)
     }
 
-    /// Marks the rows to begin with: those given; otherwise, and for new rows, those that would close.
+    /// Flags the rows to start with: those that `start` gives, and of the rows it does not know those that would close.
     pub(crate) fn choose_start(&mut self, problem: &Problem, start: Start<'_>) {
         let system = &self.closed.system;
         let limit = self.settings.start_closed * system.scale;
@@ -120,15 +124,15 @@ impl DualActiveSet {
         }));
     }
 
-    /// Exchanges all wrong rows at once, as long as that leaves fewer wrong. Returns false if a bilateral row
-    /// depends on others and the bilateral rows did not come first.
+    /// Exchanges all wrong rows at once, while that leaves fewer of them. Returns false if a bilateral row depends on
+    /// others and the bilateral rows were not closed first.
     pub(crate) fn exchange_blocks(&mut self) -> bool {
         if self.is_still_spread() {
             return true;
         }
         let mut fewest = usize::MAX;
         let mut tries = 0;
-        // The closed rows of an earlier answer stay, unless its forces were spread over more than are independent.
+        // The closed rows of an earlier answer stay, unless its forces were spread over dependent rows.
         let kept = self.is_warm && !self.closed.was_spread;
         for round in 0..self.settings.block_rounds {
             let independent = self.closed.still_closed(&self.start) || {
@@ -170,9 +174,8 @@ impl DualActiveSet {
         true
     }
 
-    /// Flags, of the unilateral rows, those that should be closed instead of those that are: wrong is a
-    /// closed row whose force pulls, and an open one whose acceleration is below `limit`. Returns how many
-    /// are wrong.
+    /// Flags the unilateral rows that should be closed next. Wrong are closed rows whose force pulls and open rows
+    /// whose acceleration is below `limit`. Returns the number of wrong rows.
     pub(crate) fn mark_wrong(&mut self, limit: f64) -> usize {
         let mut wrong = 0;
         let closed = &self.closed;
@@ -185,9 +188,9 @@ impl DualActiveSet {
         wrong
     }
 
-    /// Notes that another method is likely to be faster, if so many wrong rows, which take a pivot each at
-    /// least, are more than there is patience for. Where few are closed, as of a box on a floor, a pivot
-    /// rights many of them.
+    /// Notes that another method is likely to be faster, if the pivots of the wrong rows, at least one each, are more
+    /// work than the patience allows. If few rows are closed, as under a box on a floor, a pivot rights many wrong
+    /// ones, and none is noted.
     fn look_ahead(&mut self, wrong: usize) {
         let is_much = self.patience.is_some_and(|patience| wrong * self.work_of_pivot() > SURELY * patience);
         if is_much && self.closed.len() * SUBSTANTIAL >= wrong {
@@ -195,9 +198,9 @@ impl DualActiveSet {
         }
     }
 
-    /// Whether a large part of the rows to be closed depends on the rest, which alone keep nearly all others from
-    /// closing, so that the closed rows are an arbitrary choice among many and most pivots would only better it. Not so
-    /// where the rest is few (a box on a floor), for then pivots are cheap.
+    /// Whether a large part of the flagged rows depends on the closed ones, which alone keep nearly all others from
+    /// closing. The closed rows are then an arbitrary choice among many, and most pivots would only improve it. False
+    /// if few are closed (a box on a floor), for then pivots are cheap.
     fn is_redundant(&self, flagged: usize) -> bool {
         let closed = self.closed.len();
         let moving =
@@ -206,7 +209,7 @@ impl DualActiveSet {
         dependent >= flagged / REDUNDANT && closed >= flagged / SUBSTANTIAL && moving <= flagged / MOVING
     }
 
-    /// Whether pivots have widened the factor by much.
+    /// Whether pivots have widened the factor much.
     pub(crate) fn is_factor_wide(&self) -> bool {
         self.closed.factor.envelope() > WIDENED * (self.closed.narrow_envelope + self.closed.force.len())
     }
@@ -220,8 +223,8 @@ impl DualActiveSet {
         }
     }
 
-    /// Opens closed rows until no unilateral force is negative. The forces must be those with zero acceleration of the
-    /// closed rows, and the accelerations up to date; they are so afterwards.
+    /// Opens closed rows until no unilateral force is negative. Before and after, the forces must be those with zero
+    /// acceleration of the closed rows, and all accelerations up to date.
     pub(crate) fn make_forces_admissible(&mut self) {
         let before = self.closed.len();
         while !self.is_out_of_patience() {
@@ -285,7 +288,8 @@ mod tests {
 
     #[test]
     fn connectors_do_not_come_first_where_pivots_would_not_end() {
-        // A chain on a floor, whose links touch it with both ends: what depended on each other is off by a thousandth.
+        // A chain on a floor, whose links touch it with both ends: rows that depended on each other are off by a
+        // thousandth.
         const LINKS: usize = 500;
         let off = |k: usize| 1.0 + 1e-3 * (k as f64 * 2.4).sin();
         let mut problem = Problem::new();

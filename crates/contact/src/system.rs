@@ -1,17 +1,19 @@
 //! The scaled problem that symmetric solvers work on.
 //!
 //! With s_i = sqrt(A_ii) (1 where A_ii = 0): f̂ = s f, â = a/s, b̂ = b/s, Â_ij = A_ij/(s_i s_j), so that Â has a unit
-//! diagonal and nothing depends on units. For rows of bodies Â = Ĵ Ĵᵀ with Ĵ_ik = J_ik sqrt(M⁻¹_k)/s_i, and Â is never
-//! formed: an entry costs at most six products and a product Â f̂ costs twelve per row. Columns without mass drop out.
+//! diagonal and nothing depends on units. For rows of bodies Â = Ĵ Ĵᵀ with Ĵ_ik = J_ik sqrt(M⁻¹_k)/s_i. The entries of
+//! Â are formed only if the same pattern of rows comes again (see `entries`); without them an entry costs at most six
+//! products, and a product Â f̂ costs twelve per row. Immovable columns drop out.
 
 use crate::entries::Entries;
 use crate::matrix::{BodyRows, Matrix, SparseMatrix};
 use crate::problem::Problem;
 
+/// The end of a list, or the position of an open row.
 const NONE: u32 = u32::MAX;
 
-/// Scaled rows, with the closed rows listed per column so that A_dC is found in time proportional to the contacts of
-/// the bodies that row d touches.
+/// Scaled rows. The closed rows are listed per column, so that Â_dC takes time proportional to the contacts of the
+/// bodies that row d touches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct System {
     /// Whether the rows below are Ĵ; otherwise they are Â.
@@ -19,7 +21,7 @@ pub(crate) struct System {
     start: Vec<usize>,
     column: Vec<u32>,
     value: Vec<f64>,
-    /// s_i.
+    /// s_i [1/sqrt(kg)].
     pub(crate) row_scale: Vec<f64>,
     /// 1/s_i.
     inverse_scale: Vec<f64>,
@@ -27,20 +29,20 @@ pub(crate) struct System {
     pub(crate) b: Vec<f64>,
     /// max |b̂_i|, or 1 where b = 0.
     pub(crate) scale: f64,
-    /// Per row, whether it moves anything.
+    /// Per row, whether it moves any body: A_ii > 0.
     pub(crate) movable: Vec<bool>,
-    /// sqrt(M⁻¹) per column; then Ĵᵀ f̂ with the sum of the absolute terms.
+    /// sqrt(M⁻¹) per column; below, Ĵᵀ f̂ with the sum of the absolute terms.
     root: Vec<f64>,
     motion: Vec<[f64; 2]>,
     /// Ĵᵀ f̂ alone.
     speed: Vec<f64>,
-    /// The matrix that is loaded, to know it again.
+    /// The matrix that is loaded, for comparison with the next one.
     source_rows: SparseMatrix,
     source_mass: Vec<f64>,
-    /// The entries of A, if the rows are of bodies seen before, and then those of Â off the diagonal, by rows.
+    /// The entries of A, if the pattern of the rows was seen before, and those of Â off the diagonal, by rows.
     pub(crate) entries: Entries,
     entry: Vec<f64>,
-    /// Otherwise doubly linked lists of the coefficients of closed rows, one list per column.
+    /// Without entries: doubly linked lists of the coefficients of closed rows, one list per column.
     head: Vec<u32>,
     next: Vec<u32>,
     previous: Vec<u32>,
@@ -58,8 +60,8 @@ impl System {
         self.bodies == bodies && self.source_mass == mass && self.source_rows == *rows
     }
 
-    /// Scales `problem`, whose matrix must not be a general one. If only b differs from what is loaded, the rest stays,
-    /// the lists of closed rows included, and the answer is true.
+    /// Scales `problem`, whose matrix must be symmetric. If its matrix is the one that is loaded, only b is replaced,
+    /// and the result is true; the lists of closed rows stay.
     pub(crate) fn load(&mut self, problem: &Problem) -> bool {
         let same = self.is_loaded(problem);
         self.b.clear();
@@ -134,7 +136,7 @@ impl System {
         }
     }
 
-    /// Forms the entries of Â where the same rows are solved again without them.
+    /// Forms the entries of Â when the same rows are solved again and the entries were not looked for before.
     pub(crate) fn form_entries(&mut self, problem: &Problem) {
         match &problem.matrix {
             Matrix::Bodies(bodies) if !self.entries.are_listed() && self.entries.load(bodies) => {
@@ -277,7 +279,7 @@ impl System {
         largest
     }
 
-    /// a := Â f + b̂, without its terms, for rows of bodies. Returns whether they are.
+    /// a := Â f + b̂ without the sums of terms, for rows of bodies only. Returns whether the rows are of bodies.
     pub(crate) fn evaluate(&mut self, f: &[f64], a: &mut [f64]) -> bool {
         if self.bodies {
             let mut speed = std::mem::take(&mut self.speed);

@@ -1,4 +1,4 @@
-//! Problems that the tests of several rooms share.
+//! Problems that the tests of several modules share.
 
 use crate::matrix::Matrix;
 use crate::problem::{InverseInertia, Problem, Row};
@@ -29,12 +29,12 @@ pub(crate) fn pyramid(layers: usize, arm: f64) -> Problem {
     problem
 }
 
-/// Part of itself by which a coefficient of a crooked pyramid is changed at most.
+/// Largest change of a coefficient of a crooked pyramid, as a fraction of itself.
 const CROOKED: f64 = 1e-3;
-/// Phase [rad] by which that differs from one coefficient to the next.
+/// Phase [rad] of the change from one coefficient to the next.
 const PHASE: f64 = 1.7;
 
-/// The same with each block of its own width: the corners no longer meet, and some of them open.
+/// A pyramid in which each block has its own width: the corners no longer meet, and some of them open.
 pub(crate) fn crooked_pyramid(layers: usize) -> Problem {
     let mut problem = pyramid(layers, 0.5);
     if let Matrix::Bodies(bodies) = &mut problem.matrix {

@@ -1,14 +1,14 @@
 //! Numbers of twice as many digits: unevaluated sums of two `f64`.
 //!
 //! T. Dekker, "A floating-point technique for extending the available precision", Numerische Mathematik 18, 1971; sums
-//! after D. Knuth. Some 31 digits where all goes well; slower than `f64` by more than ten times.
+//! after D. Knuth. About 31 decimal digits; more than ten times slower than `f64`.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Splits the digits of an `f64` in halves, the products of which are exact: 2^27 + 1.
+/// 2^27 + 1, which splits the digits of an `f64` into halves with exact products.
 const SPLITTER: f64 = 134_217_729.0;
 
-/// A number that dictionaries are made of.
+/// Type of the entries of a dictionary.
 pub(crate) trait Number:
     Copy
     + std::fmt::Debug
@@ -21,13 +21,13 @@ pub(crate) trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A unit of its last digit, in units of 1.
+    /// Unit of the last digit of 1.
     const ROUNDING: f64;
 
     /// The nearest `f64`.
     fn nearest(self) -> f64;
 
-    /// Its size.
+    /// The absolute value.
     fn abs(self) -> Self {
         if self < Self::default() { -self } else { self }
     }
@@ -41,7 +41,7 @@ impl Number for f64 {
     }
 }
 
-/// A sum of two `f64`, of which the second is a rounding of the first.
+/// A sum of two `f64`, the second at most a rounding of the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(crate) struct Twofold {
     high: f64,
@@ -150,7 +150,7 @@ mod tests {
     fn a_third_has_31_digits() {
         let rest = third() * Twofold::from(3.0) - Twofold::from(1.0);
         assert!(rest.abs().nearest() < 1e-31, "{rest:?}");
-        // By `f64` alone nothing of this is left.
+        // In `f64` this sum would be off by about 1e-16.
         let tenth = Twofold::from(1.0) / Twofold::from(10.0);
         let mut sum = Twofold::from(-1.0);
         for _ in 0..10 {

@@ -1,16 +1,15 @@
 //! Carrying an answer over to the next problem.
 //!
-//! From step to step contacts appear and vanish, so rows are identified by their [`ContactKey`], or by their
-//! place where rows have none. A row not found starts closed or open by the sign of its offset, as in a solve
-//! from nothing.
+//! Contacts appear and vanish from step to step, so rows are identified by their [`ContactKey`], or by index if any row
+//! lacks a key. A row that is not found starts closed or open by its offset, as in a solve without an earlier answer.
 
 use crate::problem::{ContactKey, Problem};
 use crate::solution::Solution;
 
-/// Which contacts were closed, and with what force, in an earlier answer.
+/// The closed rows and forces of an earlier answer, or a guess of them, as the start of a later solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WarmStart {
-    /// Sorted by key where rows have keys, by row otherwise.
+    /// Sorted by key if all rows have keys, by row otherwise.
     entries: Vec<Entry>,
     by_key: bool,
     is_guess: bool,
@@ -22,31 +21,31 @@ struct Entry {
     id: u64,
     force: f64,
     closed: bool,
-    /// False for a place without an earlier row.
+    /// False for a row of which nothing is known.
     known: bool,
 }
 
-/// What an earlier answer says about a row.
+/// The state of a row in an earlier answer or guess.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Earlier {
-    /// Its force \[N\]; zero where only a guess of what is closed was made.
+    /// Its force \[N\], or impulse [N·s]; zero if only the closed rows were guessed.
     pub force: f64,
-    /// Whether a = 0 was enforced.
+    /// True if the row was closed: a = 0 was enforced.
     pub closed: bool,
 }
 
 impl WarmStart {
-    /// Knows nothing yet.
+    /// Makes a warm start that knows no rows.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Remembers the answer `solution` of `problem`, replacing what was remembered.
+    /// Stores the answer `solution` of `problem` in place of all that was stored before.
     ///
     /// # Panics
     ///
-    /// If the answer is that of a problem with more rows.
+    /// If `solution` has more rows than `problem` and all rows of `problem` have keys.
     pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
         (self.by_key, self.is_guess, self.has_forces) = (has_keys(problem), false, false);
         self.entries.clear();
@@ -62,8 +61,8 @@ impl WarmStart {
         }
     }
 
-    /// Replaces what is remembered by a guess: for each row, by its place, whether it is closed, if anything
-    /// is known of it.
+    /// Stores a guess of the closed rows in place of all that was stored before: one flag per row, in the order of
+    /// rows; `None` for a row of which nothing is known.
     pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, false);
         self.entries.clear();
@@ -75,7 +74,8 @@ impl WarmStart {
         }));
     }
 
-    /// Replaces what is remembered by a guess of the force of each row, by its place, if anything is known of it.
+    /// Stores a guess of the forces \[N\] (or impulses [N·s]) in place of all that was stored before: one per row, in
+    /// the order of rows; `None` for a row of which nothing is known. Rows with a positive force count as closed.
     pub fn guess_forces(&mut self, forces: impl IntoIterator<Item = Option<f64>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, true);
         self.entries.clear();
@@ -85,27 +85,28 @@ impl WarmStart {
         }));
     }
 
-    /// What is remembered of a row of `problem`; `None` if that is nothing. For solvers of one's own.
+    /// Looks up a row of `problem`; `None` if nothing is known of it. For solvers outside this crate.
     ///
     /// # Panics
     ///
-    /// If there is no such row, and rows are found by their keys.
+    /// If there is no such row and rows are found by their keys.
     #[must_use]
     pub fn of_row(&self, problem: &Problem, row: usize) -> Option<Earlier> {
         self.lookup(problem).find(row)
     }
 
-    /// True if these are forces from which to look for the answer.
+    /// True after [`guess_forces`](Self::guess_forces): the solve may start from these forces.
     pub(crate) fn has_forces(&self) -> bool {
         self.has_forces
     }
 
-    /// False if these are rows that were closed in an answer, and then independent of each other.
+    /// False if the closed rows are those of an answer, which were independent of each other.
     pub(crate) fn is_guess(&self) -> bool {
         self.is_guess
     }
 
-    /// Makes this the warm start of a part of `problem`, the rows `rows`, identified by their place in it.
+    /// Makes this the warm start of the part of `problem` that consists of `rows`, identified by their index in the
+    /// part.
     pub(crate) fn restrict(&mut self, whole: &WarmStart, problem: &Problem, rows: &[u32]) {
         let lookup = whole.lookup(problem);
         (self.by_key, self.is_guess, self.has_forces) = (false, whole.is_guess, whole.has_forces);
@@ -129,7 +130,7 @@ pub(crate) struct Lookup<'a> {
 }
 
 impl Lookup<'_> {
-    /// What is remembered of a row.
+    /// The earlier state of a row, if it is known.
     #[inline]
     pub(crate) fn find(&self, row: usize) -> Option<Earlier> {
         let entry = self.entry(row).filter(|entry| entry.known);
@@ -143,7 +144,8 @@ impl Lookup<'_> {
         match (self.warm.by_key, self.keys) {
             (true, Some(keys)) => {
                 let id = keys[row].0;
-                // Contacts mostly keep their order from step to step, so that the place is right at once.
+                // Contacts mostly keep their order from step to step, so that the entry at the row's own index is
+                // mostly the one.
                 match entries.get(row) {
                     Some(entry) if entry.id == id => Some(*entry),
                     _ => entries.binary_search_by_key(&id, |entry| entry.id).ok().map(|k| entries[k]),

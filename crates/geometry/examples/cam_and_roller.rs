@@ -1,4 +1,4 @@
-//! A cam turns under a roller: how high does it lift it?
+//! Lift of a roller by a cam that turns under it.
 //!
 //! The cam is a base circle and a nose, both true arcs, joined by the two straight flanks that touch both. The roller
 //! slides up and down above the cam's shaft. For each angle the roller is lowered until the distance of the two shapes
@@ -41,7 +41,7 @@ fn main() -> Result<(), ShapeError> {
     Ok(())
 }
 
-/// How far [mm] the roller is above its lowest height, to 0.1 nm.
+/// Lift [mm] of a roller at a height [m] above its lowest height, rounded to 0.1 nm.
 fn lift_of(height: f64) -> f64 {
     ((height - BASE - ROLLER) * 1e10).round() * 1e-7 + 0.0
 }
@@ -64,8 +64,8 @@ fn cam() -> Result<Shape, ShapeError> {
     }])
 }
 
-/// The height at which the roller rests on the cam: it is lowered by its distance from the cam, which it can never
-/// overshoot, until nothing remains.
+/// Height [m] at which the roller rests on the cam: it is lowered by its distance from the cam, so that it never
+/// overshoots, until no distance remains.
 fn resting_height(cam: &Shape, cam_pose: &Pose, roller: &Shape) -> f64 {
     let mut height = 3.0 * (BASE + THROW);
     for _ in 0..2000 {
@@ -78,7 +78,7 @@ fn resting_height(cam: &Shape, cam_pose: &Pose, roller: &Shape) -> f64 {
     height
 }
 
-/// The height of a roller that rests on one of the cam's arcs.
+/// Height [m] of a roller that rests on one of the cam's arcs, at the cam's angle [rad]; `None` on a flank.
 fn on_arc_height(part: &str, angle: f64) -> Option<f64> {
     let on_circle =
         |center: DVec2, radius: f64| center.y + ((radius + ROLLER).powi(2) - center.x.powi(2)).sqrt();

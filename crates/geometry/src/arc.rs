@@ -43,10 +43,10 @@ impl Arc {
         Ok(Self { center, radius, start_angle, sweep_angle, from, to })
     }
 
-    /// The full circle about `center` [m] that starts at `from` [m].
+    /// The full circle about `center` [m] that starts and ends at `from` [m], run clockwise or counter-clockwise.
     ///
     /// # Errors
-    /// A radius that is not positive, or a number that is not finite.
+    /// A radius (the distance of the two points) that is not positive, or a number that is not finite.
     pub fn circle(center: DVec2, from: DVec2, clockwise: bool) -> Result<Self, ArcError> {
         if !(center.is_finite() && from.is_finite()) {
             return Err(ArcError::NotFinite);
@@ -60,11 +60,12 @@ impl Arc {
 
     /// The arc from `from` to `to` about the point nearest to `center` that is equally far from both [m].
     ///
-    /// `fit_tol` [m], which may be infinite, says by how much the radii at the two ends may differ before the
-    /// center is moved.
+    /// `fit_tol` [m], which may be infinite, is the largest accepted difference of the radii at the two ends and, for
+    /// an arc of more than half a turn, the largest accepted shift of the center.
     ///
     /// # Errors
-    /// Ends that coincide, radii that differ by more than `fit_tol`, or a number that is not finite.
+    /// Ends that coincide, radii that differ by more than `fit_tol`, a center that has to move by more than that, a
+    /// radius that overflows, or a number that is not finite.
     pub fn between(
         from: DVec2,
         to: DVec2,
@@ -84,7 +85,7 @@ impl Arc {
         let across = chord.perp() / chord.length();
         let height = across.dot(center - middle);
         let exact_center = middle + across * height;
-        // For more than half a turn a shift of the center moves the far side as much as itself.
+        // For more than half a turn a shift of the center moves the far side of the arc by as much.
         let beyond_half = clockwise == (height > 0.0);
         let moved = (exact_center - center).length();
         let off = (from_radius - to_radius).abs();
@@ -97,7 +98,8 @@ impl Arc {
         let radius = (from - exact_center).length();
         check_radius(radius)?;
         let start_angle = angle_of(from - exact_center);
-        // Half of the sweep is seen from the center over half of the chord: exact for flat and for nearly full arcs.
+        // Half of the sweep is the angle that half of the chord subtends at the center: exact for flat and for nearly
+        // full arcs.
         let inwards = if clockwise { -height } else { height };
         let size = 2.0 * libm::atan2(0.5 * chord.length(), inwards);
         let sweep_angle = if clockwise { -size } else { size };
@@ -165,7 +167,7 @@ impl Arc {
         DVec2::new(cos, sin)
     }
 
-    /// Directions, seen from the center, in which the arc has points.
+    /// Range of directions, seen from the center, in which the arc has points.
     #[must_use]
     pub fn directions(&self) -> DirectionRange {
         if self.is_circle() {
@@ -189,7 +191,7 @@ impl Arc {
         self.direction_at(self.to)
     }
 
-    /// The same edge run the other way.
+    /// The arc run the other way.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
@@ -201,13 +203,13 @@ impl Arc {
         }
     }
 
-    /// The edge shifted by `shift` [m].
+    /// The arc shifted by `shift` [m].
     #[must_use]
     pub fn translated(&self, shift: DVec2) -> Self {
         Self { center: self.center + shift, from: self.from + shift, to: self.to + shift, ..*self }
     }
 
-    /// The edge turned and shifted, as a body at the given pose carries it.
+    /// The arc in world coordinates, as a body at the given pose carries it.
     #[must_use]
     pub fn posed(&self, pose: &Pose) -> Self {
         Self {
@@ -219,7 +221,8 @@ impl Arc {
         }
     }
 
-    /// Signed distance [m] of a point from the circle, positive on the side away from the solid.
+    /// Signed distance [m] of a point [m] from the whole circle, positive on the side away from the solid: outside of a
+    /// convex arc's circle, inside of a concave one's.
     #[must_use]
     pub fn signed_distance(&self, point: DVec2) -> f64 {
         let from_circle = (point - self.center).length() - self.radius;

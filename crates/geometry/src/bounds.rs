@@ -12,19 +12,19 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that is one point.
+    /// The box that holds only one point [m].
     #[must_use]
     pub fn around(point: DVec2) -> Self {
         Self { min: point, max: point }
     }
 
-    /// The box around a disc.
+    /// The box around a disc of the given center and radius [m].
     #[must_use]
     pub fn around_disc(center: DVec2, radius: f64) -> Self {
         Self { min: center - DVec2::splat(radius), max: center + DVec2::splat(radius) }
     }
 
-    /// The least box around this one and a point.
+    /// The least box around this one and a point [m].
     #[must_use]
     pub fn including(self, point: DVec2) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
@@ -45,7 +45,7 @@ impl Aabb {
     /// True if the boxes share a point.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
-        // Without branches: near a tree's leaves none of the four could be foretold.
+        // Without branches: near a tree's leaves none of the four comparisons is predictable.
         (self.min.x <= other.max.x)
             & (other.min.x <= self.max.x)
             & (self.min.y <= other.max.y)
@@ -73,20 +73,20 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// Half of the circumference [m]: what a tree wants small.
+    /// Half of the perimeter [m]: the cost that a tree of boxes keeps small.
     #[must_use]
     pub fn half_perimeter(&self) -> f64 {
         self.size().element_sum()
     }
 
-    /// Distance [m] of a point from the box, 0 inside.
+    /// Distance [m] of a point [m] from the box, 0 inside.
     #[must_use]
     #[inline]
     pub fn distance_to(&self, point: DVec2) -> f64 {
         self.distance_squared_to(point).sqrt()
     }
 
-    /// Its square [m^2].
+    /// Square [m^2] of the distance of a point from the box, 0 inside.
     #[must_use]
     #[inline]
     pub(crate) fn distance_squared_to(&self, point: DVec2) -> f64 {

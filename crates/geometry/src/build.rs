@@ -1,12 +1,13 @@
 //! Ready-made shapes.
 
+use crate::edge_spec::EdgeSpec;
 use crate::error::ShapeError;
-use crate::path::{EdgeSpec, PathSpec};
+use crate::path::PathSpec;
 use crate::shape::Shape;
 use glam::DVec2;
 
 impl Shape {
-    /// A disc about the origin.
+    /// A disc of the given radius [m] about the origin.
     ///
     /// # Errors
     /// A radius [m] that is not positive and finite.
@@ -15,7 +16,7 @@ impl Shape {
         Self::from_paths(&[PathSpec::circle(DVec2::ZERO, radius)])
     }
 
-    /// A rectangle about the origin.
+    /// A rectangle of the given width (along x) and height [m] about the origin.
     ///
     /// # Errors
     /// A side [m] that is not positive and finite.
@@ -27,7 +28,8 @@ impl Shape {
         Self::polygon(&[-corner, -flip, corner, flip])
     }
 
-    /// A rectangle about the origin whose corners are quarter circles.
+    /// A rectangle of the given width (along x) and height [m] about the origin whose corners are quarter circles of
+    /// the given radius [m].
     ///
     /// # Errors
     /// A side or radius [m] that is not positive and finite, or a radius of more than half a side.
@@ -68,7 +70,7 @@ impl Shape {
         Self::from_paths(&[PathSpec::polygon(vertices)])
     }
 
-    /// The ring between two circles about the origin.
+    /// The ring between two circles about the origin, of the given outer and inner radii [m].
     ///
     /// # Errors
     /// A radius [m] that is not positive and finite, or an inner one that is not less than the outer one.

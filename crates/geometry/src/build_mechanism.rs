@@ -1,15 +1,16 @@
-//! Ready-made shapes that people draw mechanisms with.
+//! Ready-made shapes for mechanisms: capsules, regular polygons, sectors, slotted blocks.
 
 use crate::build::check_length;
+use crate::edge_spec::EdgeSpec;
 use crate::error::ShapeError;
-use crate::path::{EdgeSpec, PathSpec};
+use crate::path::PathSpec;
 use crate::shape::Shape;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
 impl Shape {
-    /// A capsule (stadium) about the origin, lying along x: two half circles about centers `length` apart, joined by
-    /// straight edges. It is `length + 2 radius` long in total.
+    /// A capsule (stadium) about the origin, lying along x: two half circles of the given radius [m] about centers
+    /// `length` [m] apart, joined by straight edges. It is `length + 2 radius` long in total.
     ///
     /// # Errors
     /// A length between the centers or a radius [m] that is not positive and finite.
@@ -19,8 +20,8 @@ impl Shape {
         Self::from_paths(&[stadium(length, radius)])
     }
 
-    /// The regular polygon about the origin whose corners lie on the circle of the given radius, the first of them on
-    /// the x axis.
+    /// The regular polygon about the origin whose corners lie on the circle of the given radius [m], the first of them
+    /// on the positive x axis.
     ///
     /// # Errors
     /// Fewer than three sides, or a radius [m] that is not positive and finite.
@@ -31,8 +32,8 @@ impl Shape {
         Self::polygon(&(0..sides).map(corner).collect::<Vec<_>>())
     }
 
-    /// The sector (pie slice) of a disc about the origin, between the angles `-sweep / 2` and `sweep / 2`
-    /// [rad] from the x axis; a full turn gives the disc. Its centroid is not the origin.
+    /// The sector (pie slice) of a disc of the given radius [m] about the origin, between the angles `-sweep / 2` and
+    /// `sweep / 2` [rad] from the x axis; a full turn gives the disc. Its centroid is not the origin.
     ///
     /// # Errors
     /// A radius [m] that is not positive and finite, a sweep [rad] that is not positive or more than a full
@@ -52,7 +53,7 @@ impl Shape {
     }
 
     /// A rectangle about the origin with a slot along x in its middle: a hole in the form of a capsule, `slot_length`
-    /// between the centers of its round ends and `2 slot_radius` wide.
+    /// [m] between the centers of its round ends and `2 slot_radius` [m] wide.
     ///
     /// (A solid in the form of a slot is a [`capsule`](Self::capsule).)
     ///
@@ -89,7 +90,7 @@ fn on_circle(radius: f64, angle: f64) -> DVec2 {
     DVec2::new(cos, sin) * radius
 }
 
-/// The counter-clockwise outline of a capsule.
+/// The counter-clockwise outline of a capsule, see [`Shape::capsule`].
 fn stadium(length: f64, radius: f64) -> PathSpec {
     let (x, y) = (length / 2.0, radius);
     let cap =

@@ -1,17 +1,18 @@
 //! Points in which two edges cross.
 //!
-//! Lines cross where each has the other's ends on both sides (and the crossing is on both, which only
+//! Two lines cross if each has the ends of the other on both of its sides (and the crossing lies on both, which only
 //! rounding denies); a line meets a circle half a chord to either side of the centre's foot; two circles meet
 //! on the radical line, whose offset is measured from the centre of the lesser circle (seen from the larger
-//! one a crossing is known only to rounding times the ratio of the radii). Edges that only touch may or may
-//! not be found to cross, as rounding has it: their distance is zero to rounding either way.
+//! one a crossing is known only to rounding times the ratio of the radii). Rounding decides whether edges that only
+//! touch are found to cross: their distance is zero to rounding either way.
 
 use crate::arc::Arc;
 use crate::edge::Edge;
 use crate::line::Line;
 use glam::DVec2;
 
-/// A point this part of the lines' lengths off a line is on it: rounding.
+/// Rounding of a crossing of two lines, as a fraction of the sum of their lengths [-]: up to this distance from a line
+/// a point counts as on it.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The points in which two edges cross: at most two [m].
@@ -45,9 +46,9 @@ fn line_line(a: &Line, b: &Line) -> Option<DVec2> {
     if from_a == to_a || from_b == to_b || from_a * to_a > 0.0 || from_b * to_b > 0.0 {
         return None;
     }
-    // The point is exact at an end that lies on the other line.
+    // At an end of `a` that lies on the other line the fraction is exactly 0 or 1.
     let point = a.from() + (a.to() - a.from()) * (from_a / (from_a - to_a));
-    // Of lines that are parallel to rounding the sides tell nothing, and the point may be anywhere.
+    // The sides of lines that are parallel to rounding are noise, and the point may be anywhere.
     let off = (b.nearest(point) - point).length();
     (off <= ROUNDING * (a.length() + b.length())).then_some(point)
 }
@@ -66,7 +67,7 @@ fn line_arc(line: &Line, arc: &Arc) -> [Option<DVec2>; 2] {
     })
 }
 
-/// `a` has the lesser radius.
+/// Crossings of two arcs, of which `a` has the lesser radius.
 fn arc_arc(a: &Arc, b: &Arc) -> [Option<DVec2>; 2] {
     let offset = b.center() - a.center();
     let distance = offset.length();
@@ -87,7 +88,7 @@ fn arc_arc(a: &Arc, b: &Arc) -> [Option<DVec2>; 2] {
     })
 }
 
-/// True if a point of the circle is one of the arc.
+/// True if a point of the arc's circle lies on the arc.
 fn is_on(arc: &Arc, point: DVec2) -> bool {
     arc.directions().contains((point - arc.center()) / arc.radius())
 }

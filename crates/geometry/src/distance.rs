@@ -2,7 +2,7 @@
 //!
 //! Outlines are compared as curves: the least distance of two edges (`edge_distance`), found by branch and bound over
 //! both trees. Where outlines do not meet, each path of one shape lies wholly inside or outside of the other's solid,
-//! and one point of it tells which.
+//! and one point of the path tells which.
 //!
 //! The first shape is measured in the body coordinates of the second, so that nothing is lost far from the origin.
 
@@ -15,21 +15,22 @@ use crate::shape::Shape;
 use crate::tree::{Below, FeatureTree};
 use glam::DVec2;
 
-/// Outlines nearer than this part of the sizes involved touch: rounding.
+/// Distance up to which outlines touch, as a fraction of the sum of both reaches and the distance of the bodies'
+/// origins [-]: rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// How two posed shapes lie to each other.
+/// Position of two posed shapes relative to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
-    /// They have no point in common. One may lie in a hole of the other.
+    /// The shapes have no point in common. One may lie in a hole of the other.
     Apart,
-    /// Their outlines cross, or touch to rounding.
+    /// The outlines cross, or touch to rounding.
     Crossing,
-    /// All outlines of the first lie in the solid of the second.
+    /// All paths of the first shape lie in the solid of the second.
     FirstInside,
-    /// All outlines of the second lie in the solid of the first.
+    /// All paths of the second shape lie in the solid of the first.
     SecondInside,
-    /// The outlines do not meet, but some (of shapes in several pieces) lie in the other's solid.
+    /// The outlines do not meet, but some paths (of shapes in several pieces) lie in the other shape's solid.
     Overlapping,
 }
 
@@ -38,15 +39,15 @@ pub enum Relation {
 pub struct ShapeDistance {
     /// Distance [m] of the outlines; 0 where they cross.
     pub distance: f64,
-    /// How the shapes lie to each other.
+    /// Position of the shapes relative to each other.
     pub relation: Relation,
-    /// A point of the first outline nearest to the second [m]; where they cross, one crossing.
+    /// A point of the first outline nearest to the second [m]; where they cross, one of the crossings.
     pub point_a: DVec2,
     /// A point of the second outline nearest to the first [m].
     pub point_b: DVec2,
-    /// Edge of the first shape on which its point lies.
+    /// Edge of the first shape on which `point_a` lies.
     pub edge_a: EdgeId,
-    /// Edge of the second shape on which its point lies.
+    /// Edge of the second shape on which `point_b` lies.
     pub edge_b: EdgeId,
 }
 
@@ -54,8 +55,8 @@ impl Shape {
     /// Finds the distance of the outlines of this shape at `pose` and another at its own pose, and a nearest pair of
     /// points.
     ///
-    /// Good to a few units in the last place of the shapes' size, of the radii of their arcs, and of their
-    /// distance from each other: an arc that is nearly straight is no better known than where its centre is.
+    /// The result is good to a few units in the last place of the shapes' size, of the radii of their arcs, and of
+    /// their distance from each other: a nearly straight arc is known no better than the place of its centre.
     ///
     /// # Examples
     ///
@@ -71,7 +72,7 @@ impl Shape {
     /// ```
     ///
     /// # Panics
-    /// If a number of a pose, or the square of a distance, is not finite: at coordinates from some 1e150 m on.
+    /// If a number of a pose, or the square of a distance, is not finite: at coordinates from about 1e150 m on.
     #[must_use]
     pub fn distance(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> ShapeDistance {
         let relative = pose.seen_from(other_pose);
@@ -91,9 +92,9 @@ impl Shape {
         }
     }
 
-    /// How this shape at `pose` lies to another at its own pose: the [`distance`](Self::distance)'s relation,
-    /// for a part of the time, since edges that do not meet need not be measured. What is at no finite pose
-    /// is apart.
+    /// Returns the position of this shape at `pose` relative to another at its own pose: the relation of
+    /// [`distance`](Self::distance), in less time, since edges that do not meet need not be measured. Shapes at poses
+    /// that are not finite are apart.
     #[must_use]
     pub fn relation(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> Relation {
         let relative = pose.seen_from(other_pose);
@@ -157,7 +158,7 @@ impl Search<'_> {
         }
     }
 
-    /// Least distance [m] that the features below two nodes can have.
+    /// Lower bound [m] of the distance of the features below two nodes; may be negative.
     fn bound(&self, tree_a: &FeatureTree, a: usize, tree_b: &FeatureTree, b: usize) -> f64 {
         let (a, b) = (tree_a.node(a), tree_b.node(b));
         let center_a = self.relative.point_to_world(a.center);
@@ -169,12 +170,12 @@ impl Search<'_> {
     }
 }
 
-/// Distance [m] of outlines up to which they touch.
+/// Distance [m] up to which two outlines touch, `relative` being the pose of `a` in the coordinates of `b`.
 fn touching_distance(a: &Shape, b: &Shape, relative: &Pose) -> f64 {
     ROUNDING * (a.reach() + b.reach() + relative.position.length())
 }
 
-/// How two shapes lie whose outlines do not touch.
+/// Relation of two shapes whose outlines do not touch.
 fn relation_of_apart(a: &Shape, b: &Shape, relative: &Pose) -> Relation {
     let start = |path: &Path| path.edges()[0].from();
     let in_b = |path: &&Path| b.contains(relative.point_to_world(start(path)));

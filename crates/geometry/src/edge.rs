@@ -71,7 +71,7 @@ impl Edge {
         }
     }
 
-    /// The same edge run the other way.
+    /// The edge run the other way.
     #[must_use]
     pub fn reversed(&self) -> Self {
         match self {
@@ -89,7 +89,7 @@ impl Edge {
         }
     }
 
-    /// The edge turned and shifted, as a body at the given pose carries it.
+    /// The edge in world coordinates, as a body at the given pose carries it.
     #[must_use]
     pub fn posed(&self, pose: &Pose) -> Self {
         match self {
@@ -98,7 +98,7 @@ impl Edge {
         }
     }
 
-    /// Outward unit normal at a point of the edge.
+    /// Outward unit normal at a point [m] of the edge.
     #[must_use]
     pub fn normal_at(&self, point: DVec2) -> DVec2 {
         match self {
@@ -110,7 +110,7 @@ impl Edge {
         }
     }
 
-    /// Signed distance [m] of a point from the edge's infinite line or whole circle, positive away from the solid.
+    /// Signed distance [m] of a point [m] from the edge's infinite line or whole circle, positive away from the solid.
     #[must_use]
     pub fn signed_distance(&self, point: DVec2) -> f64 {
         match self {
@@ -128,7 +128,7 @@ impl Edge {
         }
     }
 
-    /// Smallest axis-aligned box around the edge.
+    /// Smallest axis-aligned box [m] around the edge.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         let ends = Aabb::around(self.from()).including(self.to());

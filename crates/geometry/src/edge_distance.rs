@@ -29,7 +29,7 @@ impl ClosestPair {
 /// Finds a closest pair of points of two edges.
 ///
 /// Edges are curves, not regions: an arc within a circle is apart from it. Every pair of edges has an answer, good to a
-/// few units in the last place of the largest radius or coordinate.
+/// few units in the last place of the largest radius or coordinate [m].
 ///
 /// # Examples
 ///
@@ -59,7 +59,7 @@ fn common_normal_points(a: &Edge, b: &Edge) -> [Option<DVec2>; 2] {
         (Edge::Line(_), Edge::Line(_)) => [None; 2],
         (Edge::Line(line), Edge::Arc(arc)) => [Some(line.nearest(arc.center())), None],
         (Edge::Arc(arc), Edge::Line(line)) => {
-            // Of the circle only the side that faces the line can be nearest without crossing it.
+            // Only the side of the circle that faces the line can be nearest without crossing it.
             let towards =
                 if line.signed_distance(arc.center()) > 0.0 { -line.normal() } else { line.normal() };
             [arc_point(arc, towards), None]

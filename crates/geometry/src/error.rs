@@ -1,6 +1,6 @@
-//! What can be wrong with an edge or a shape.
+//! Errors of building an edge or a shape.
 
-/// Why a straight edge could not be built.
+/// Reason why a straight edge could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
@@ -12,11 +12,11 @@ pub enum LineError {
     ZeroLength(f64, f64),
 }
 
-/// Why an arc could not be built.
+/// Reason why an arc could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ArcError {
-    /// A coordinate is infinite or not a number.
+    /// A coordinate or the start angle is infinite or not a number, or the fit tolerance is not a number.
     #[error("arc center and end points must be finite, their tolerance a number")]
     NotFinite,
     /// The radius is not a positive, finite length.
@@ -25,46 +25,57 @@ pub enum ArcError {
     /// The sweep is empty or more than a full turn.
     #[error("arc sweep must be between 0 and a full turn in size, got {0} rad")]
     BadSweep(f64),
-    /// The two ends have different distances from the center.
+    /// The distances of the two ends from the center differ by more than the fit tolerance.
     #[error("arc radius is {from_radius} m at its start but {to_radius} m at its end: off by {off} m")]
     RadiusMismatch {
         /// Distance [m] of the start from the center.
         from_radius: f64,
         /// Distance [m] of the end from the center.
         to_radius: f64,
-        /// Difference of the two [m].
+        /// Difference of the two distances [m], not negative.
         off: f64,
     },
-    /// The center of an arc of more than half a turn lies off the line of the points as far from both ends.
+    /// The center of an arc of more than half a turn lies off the perpendicular bisector of its chord.
     #[error(
         "arc center is {off} m off the line of all points that are as far from its start as from its end"
     )]
     CenterOff {
-        /// How far [m].
+        /// Distance [m] of the center from the bisector.
         off: f64,
     },
 }
 
-/// Why a shape could not be built. Paths and edges are counted from 0.
+/// Reason why an edge could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EdgeError {
+    /// A straight edge cannot be built.
+    #[error(transparent)]
+    Line(#[from] LineError),
+    /// An arc cannot be built.
+    #[error(transparent)]
+    Arc(#[from] ArcError),
+}
+
+/// Reason why a shape could not be built. Paths and edges are counted from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// A measure of a ready-made shape is out of range.
+    /// A measure of a ready-made shape is not positive and finite.
     #[error("{name} must be positive and finite, got {value} m")]
     BadLength {
-        /// Which measure.
+        /// Name of the measure.
         name: &'static str,
-        /// Its value [m].
+        /// Value of the measure [m].
         value: f64,
     },
-    /// A measure of a ready-made shape does not go with another one.
+    /// A measure of a ready-made shape conflicts with another one.
     #[error("{name} is {value} m, but must be {rule} {limit} m")]
     OutOfRange {
-        /// Which measure.
+        /// Name of the measure.
         name: &'static str,
-        /// Its value [m].
+        /// Value of the measure [m].
         value: f64,
-        /// How it must stand to the limit: "less than", "at most".
+        /// Required relation of the value to the limit: "less than", "at most".
         rule: &'static str,
         /// The limit [m].
         limit: f64,
@@ -72,14 +83,14 @@ pub enum ShapeError {
     /// An angle of a ready-made shape is out of range.
     #[error("{name} must be more than 0 and at most {limit} rad, got {value} rad")]
     BadAngle {
-        /// Which angle.
+        /// Name of the angle.
         name: &'static str,
-        /// Its value [rad].
+        /// Value of the angle [rad].
         value: f64,
-        /// The limit [rad].
+        /// Largest permitted angle [rad].
         limit: f64,
     },
-    /// There are not enough corners.
+    /// A polygon has fewer than three vertices.
     #[error("a polygon needs at least 3 vertices, got {0}")]
     TooFewVertices(usize),
     /// A shape without paths.
@@ -106,7 +117,7 @@ pub enum ShapeError {
         path: usize,
         /// Index of the last edge.
         edge: usize,
-        /// Distance [m] from the start.
+        /// Distance [m] from the end of the last edge to the start.
         gap: f64,
     },
     /// Both ends of an edge are one point.
@@ -116,7 +127,7 @@ pub enum ShapeError {
         path: usize,
         /// Index of the edge.
         edge: usize,
-        /// Distance [m] of the end points.
+        /// Distance [m] between the end points.
         length: f64,
     },
     /// An arc is impossible.
@@ -126,13 +137,13 @@ pub enum ShapeError {
         path: usize,
         /// Index of the edge.
         edge: usize,
-        /// What is wrong with it.
+        /// Reason why the arc could not be built.
         source: ArcError,
     },
-    /// The shape is so small or so large that its area and moments are no numbers.
+    /// The shape is so small or so large that its area or moments under- or overflow.
     #[error("a shape that reaches {reach:e} m from its origin has moments beyond what numbers hold")]
     NoMoments {
-        /// How far it reaches [m].
+        /// Largest distance [m] of a point of the shape from the body's origin.
         reach: f64,
     },
     /// Two edges cross or touch.
@@ -146,9 +157,9 @@ pub enum ShapeError {
         path_b: usize,
         /// Index of the second edge.
         edge_b: usize,
-        /// Where they meet [m].
+        /// x coordinate of the point at which they meet [m].
         x: f64,
-        /// Where they meet [m].
+        /// y coordinate of the point at which they meet [m].
         y: f64,
     },
 }

@@ -7,10 +7,10 @@ use glam::DVec2;
 pub struct FeatureId(pub u32);
 
 impl FeatureId {
-    /// The feature at a place in the list of a shape's features.
+    /// The id of the feature at an index of [`Shape::features`](crate::Shape::features).
     ///
     /// # Panics
-    /// If the place is no number of 32 bits.
+    /// If the index does not fit into 32 bits.
     #[must_use]
     #[inline]
     pub fn from_index(index: usize) -> Self {
@@ -18,7 +18,7 @@ impl FeatureId {
     }
 }
 
-/// Which edge of a shape: its path and its place in the path as the shape runs it.
+/// Index of an edge of a shape: its path, and its place in the path in the direction in which the shape runs it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeId {
     /// Index of the path.
@@ -34,32 +34,32 @@ pub enum FeatureKind {
     Vertex,
     /// An arc that bulges outwards.
     ConvexArc,
-    /// An arc that is hollow.
+    /// An arc that bulges inwards: the solid lies outside of its circle.
     ConcaveArc,
     /// A straight edge.
     Line,
 }
 
-/// Which part of the outline a feature is.
+/// Part of the outline that a feature stands for: an edge, or the vertex at which an edge starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FeatureSource {
     /// Index of the path.
     pub path: u32,
     /// Index of the edge; for a vertex, of the edge that starts at it.
     pub edge: u32,
-    /// What the feature is.
+    /// Kind of the feature.
     pub kind: FeatureKind,
 }
 
-/// A vertex or an arc: everything at one distance from a center, seen from it in a range of directions.
+/// A vertex or an arc: the points at one distance from a center, in a range of directions from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundFeature {
     /// Center in body coordinates [m].
     pub center: DVec2,
     /// Signed radius [m]: vertex 0, convex arc positive, concave arc negative.
     pub radius: f64,
-    /// Directions, in body coordinates and seen from the center, of the points of an arc; of the outward normals of a
-    /// vertex (its normal cone).
+    /// Directions, in body coordinates: for an arc, of its points as seen from the center; for a vertex, of its outward
+    /// normals (the normal cone).
     pub range: DirectionRange,
 }
 
@@ -72,23 +72,23 @@ impl RoundFeature {
     }
 }
 
-/// A straight edge as a half-plane's border between two bounds along it.
+/// A straight edge, as the part of a half-plane's border between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFeature {
     /// Outward unit normal in body coordinates.
     pub normal: DVec2,
     /// Unit vector of travel in body coordinates: the normal turned +90 degrees.
     pub direction: DVec2,
-    /// Offset [m] of the line from the body's origin along the normal.
+    /// Signed offset [m] of the line from the body's origin along the normal.
     pub offset: f64,
-    /// Where the edge starts [m], measured along `direction` from the foot of the body's origin.
+    /// Start of the edge [m], measured along `direction` from the foot of the body's origin on the line.
     pub start: f64,
-    /// Where the edge ends [m]; more than `start`.
+    /// End of the edge [m], measured as `start` is; more than `start`.
     pub end: f64,
 }
 
 impl LineFeature {
-    /// The point of the line at the given place along it [m], in body coordinates.
+    /// Point of the line [m, body coordinates] at `along` [m], measured as [`start`](Self::start) is.
     #[must_use]
     #[inline]
     pub fn point_at(&self, along: f64) -> DVec2 {
@@ -106,7 +106,7 @@ pub enum Feature {
 }
 
 impl Feature {
-    /// Which of the four kinds this is.
+    /// Kind of this feature.
     #[must_use]
     pub fn kind(&self) -> FeatureKind {
         match self {
@@ -117,7 +117,7 @@ impl Feature {
         }
     }
 
-    /// Signed radius of curvature [m]; `None` for a straight edge.
+    /// Signed radius of curvature [m]: vertex 0, convex arc positive, concave arc negative; `None` for a straight edge.
     #[must_use]
     pub fn radius(&self) -> Option<f64> {
         match self {
@@ -126,7 +126,7 @@ impl Feature {
         }
     }
 
-    /// Largest distance [m] of a point of the feature from `place`, in body coordinates.
+    /// Largest distance [m] of a point of the feature from `place` [m, body coordinates].
     #[must_use]
     pub fn farthest(&self, place: DVec2) -> f64 {
         match self {
@@ -191,7 +191,7 @@ impl DirectionRange {
         }
     }
 
-    /// The range grown by small angles [rad] at its first and at its last end; `sweep` [rad] is its width.
+    /// The range extended by small angles [rad] at its first and at its last end; `sweep` [rad] is its width before.
     #[must_use]
     pub(crate) fn grown(self, first: f64, last: f64, sweep: f64) -> Self {
         let Some([from, to]) = self.ends() else { return self };
@@ -232,9 +232,8 @@ impl DirectionRange {
         self.ends().map_or(0.0, |[from, to]| angle_between(from, direction).min(angle_between(to, direction)))
     }
 
-    /// An angle [rad] that a unit vector in the range is away from its ends, or less; none at all for one
-    /// outside, and without end for all directions. The straight way to an end is taken for the turn, which
-    /// is longer.
+    /// Lower bound [rad] of the angle between a unit vector in the range and the nearer end; 0 outside of the range,
+    /// infinite for all directions. It is the chord to that end, which is shorter than the angle.
     #[must_use]
     #[inline]
     pub fn margin(&self, direction: DVec2) -> f64 {
@@ -245,7 +244,7 @@ impl DirectionRange {
         (direction - from).length_squared().min((direction - to).length_squared()).sqrt()
     }
 
-    /// The two ends; `None` for all directions.
+    /// The unit vectors at the first and at the last end; `None` for all directions.
     #[must_use]
     #[inline]
     pub fn ends(&self) -> Option<[DVec2; 2]> {

@@ -5,9 +5,10 @@
 //! * centre to centre: s = -1 if a radius is concave, else +1; n = s d/|d|, g = s |d| - (rhoA + rhoB);
 //! * centre to line: n = the line's outward normal, b = foot of cA on it, g = n.(cA - b) - rhoA.
 //!
-//! A is the *primary* side, n points from the *normal* side B to A. Only a vertex or a convex arc of the
-//! lesser radius touches a concave arc inside its range, and one of the same radius, as if that were larger
-//! by 1e-12 of itself; concave against concave or a line is carried by the arc's end vertices.
+//! A is the *primary* side, n points from the *normal* side B to A. A concave arc is touched inside its range only by
+//! vertices and by convex arcs of lesser or equal radius (to 1e-12 of it; an equal one is measured as if the concave
+//! arc's radius were larger by 1e-12 of itself); its contacts with concave arcs and lines are carried by its end
+//! vertices.
 //!
 //! Sources: D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH '94, 23-34,
 //! appendix; E. Neumann, "Curved Edge Physics", 2015.
@@ -16,16 +17,16 @@ use crate::feature::{Feature, LineFeature, RoundFeature};
 use crate::pose::Pose;
 use glam::DVec2;
 
-/// What is measured between two features.
+/// Kind of the distance that is measured between two features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GapKind {
-    /// From centre to centre.
+    /// Distance from centre to centre.
     CenterCenter,
-    /// From a centre to a line.
+    /// Distance from a centre to a line.
     CenterLine,
 }
 
-/// How two features, `a` and `b`, can touch.
+/// Kind of contact that is possible between two features, `a` and `b`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairKind {
     /// Two features that are both convex or vertices.
@@ -38,12 +39,15 @@ pub enum PairKind {
     LineRound,
 }
 
-/// Play, as a part of the radius, of an arc in a hollow of the same radius up to as much: shapes are drawn
-/// so, and without any there would be no direction in which they touch.
+/// Play given to a convex arc in a concave one of equal radius, as a fraction of the larger radius [-]; also the
+/// fraction up to which radii count as equal. Shapes are drawn so, and without play the direction of contact would be
+/// undefined.
 const LEAST_PLAY: f64 = 1e-12;
 
-/// The sum of the signed radii of two features [m], whose size is the distance of their centres where they
-/// touch; of an arc in a hollow that just fits, that of a hollow a little larger.
+/// Sum of the signed radii of two features [m], whose size is the distance of their centres when they touch.
+///
+/// It is positive or zero for convex arcs and vertices, negative for one of them inside a concave arc of larger radius.
+/// For radii equal to 1e-12 of the larger one, the sum is that of a concave arc larger by 1e-12 of itself.
 #[must_use]
 #[inline]
 pub fn touching_distance(a: &RoundFeature, b: &RoundFeature) -> f64 {
@@ -55,7 +59,8 @@ pub fn touching_distance(a: &RoundFeature, b: &RoundFeature) -> f64 {
     if sum.abs() <= play { -play } else { sum }
 }
 
-/// How two features can touch inside their ranges; `None` if they cannot, or if end vertices carry their contact.
+/// Returns the kind of contact that two features can have inside their ranges; `None` if they cannot touch there, or if
+/// end vertices carry their contact.
 #[must_use]
 pub fn pair_kind(a: &Feature, b: &Feature) -> Option<PairKind> {
     match (a, b) {
@@ -74,7 +79,7 @@ pub fn pair_kind(a: &Feature, b: &Feature) -> Option<PairKind> {
 pub struct CenterGap {
     /// Distance [m] of the touching points along the normal; negative if they overlap.
     pub gap: f64,
-    /// Unit vector from `b` to `a`.
+    /// Unit normal: from the centre of `b` to that of `a`, or the other way if one of them is a concave arc.
     pub normal: DVec2,
     /// Distance [m] of the centres.
     pub center_distance: f64,
@@ -85,9 +90,9 @@ pub struct CenterGap {
 }
 
 impl CenterGap {
-    /// Measures the gap; `inner` if one of the two is a concave arc.
+    /// Measures the gap of `a` at its pose from `b` at its own; `inner` is true if one of the two is a concave arc.
     ///
-    /// Where the centres coincide every normal is right, and +x is taken.
+    /// If the centres coincide, every normal is right, and +x is returned.
     #[must_use]
     #[inline]
     pub fn measure(a: &RoundFeature, pose_a: &Pose, b: &RoundFeature, pose_b: &Pose, inner: bool) -> Self {
@@ -101,7 +106,7 @@ impl CenterGap {
         Self { gap, normal, center_distance, center_a, center_b }
     }
 
-    /// Angles [rad] by which the contact lies outside the ranges of `a` and of `b`.
+    /// Angles [rad] by which the contact lies outside the ranges of `a` and of `b`, 0 inside.
     #[must_use]
     #[inline]
     pub fn excess(&self, a: &RoundFeature, pose_a: &Pose, b: &RoundFeature, pose_b: &Pose) -> [f64; 2] {
@@ -121,7 +126,7 @@ pub struct LineGap {
     pub normal: DVec2,
     /// Centre of the round feature [m].
     pub center: DVec2,
-    /// Where the centre's foot lies along the line [m], as `LineFeature::start` and `end` measure it.
+    /// Position [m] of the centre's foot along the line, measured as [`LineFeature::start`] is.
     pub along: f64,
 }
 
@@ -137,31 +142,31 @@ impl LineGap {
         Self { gap, normal, center, along: normal.perp().dot(seen) }
     }
 
-    /// Distance [m] by which the foot lies beyond the line's ends, 0 inside.
+    /// Distance [m] by which the centre's foot lies beyond the line's ends, 0 between them.
     #[must_use]
     #[inline]
     pub fn overrun(&self, line: &LineFeature) -> f64 {
         (line.start - self.along).max(self.along - line.end).max(0.0)
     }
 
-    /// Angle [rad] by which the contact lies outside the round feature's range.
+    /// Angle [rad] by which the contact lies outside the round feature's range, 0 inside.
     #[must_use]
     #[inline]
     pub fn excess(&self, round: &RoundFeature, pose_round: &Pose) -> f64 {
         round.range.excess(pose_round.vector_to_body(-self.normal))
     }
 
-    /// Foot of the centre on the line [m].
+    /// Foot of the centre on the line [m, world coordinates].
     #[must_use]
     pub fn foot(&self, line: &LineFeature, pose_line: &Pose) -> DVec2 {
         pose_line.position + self.normal * line.offset + self.normal.perp() * self.along
     }
 }
 
-/// The gap of two features with everything that is known of it, in world coordinates.
+/// The gap of two features with normal, points and distances outside the features' ranges, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GapSample {
-    /// What was measured.
+    /// Kind of the distance that was measured.
     pub kind: GapKind,
     /// True if `a` is the primary side, false if `b` is.
     pub primary_is_a: bool,
@@ -194,8 +199,8 @@ impl GapSample {
         Some(sample)
     }
 
-    /// As [`GapSample::measure`] for features continued without end: their ranges of directions are not
-    /// looked at, and both excesses are 0. Angles cost more than everything else.
+    /// Measures the gap as [`GapSample::measure`] does, but leaves both excesses at 0: the angles cost more than
+    /// everything else. [`GapSample::find_excess`] fills them in.
     #[must_use]
     #[inline(always)]
     pub fn measure_unbounded(a: &Feature, pose_a: &Pose, b: &Feature, pose_b: &Pose) -> Option<Self> {
@@ -208,7 +213,8 @@ impl GapSample {
                 Self::of_line(round, pose_b, line, pose_a, false)
             }
             (_, Feature::Round(a), Feature::Round(b)) => {
-                // The concave arc is the normal side; otherwise the vertex is the primary side.
+                // A concave arc is the normal side; otherwise the feature of lesser radius, such as a vertex, is the
+                // primary side.
                 let primary_is_a =
                     if kind == PairKind::Inner { b.radius < 0.0 } else { a.radius <= b.radius };
                 if primary_is_a {
@@ -221,7 +227,8 @@ impl GapSample {
         })
     }
 
-    /// Fills in by how much the contact lies outside the ranges of the features `a` and `b` that were measured.
+    /// Sets the angles [rad] by which the contact lies outside the ranges of the features `a` and `b`, which must be
+    /// those that were measured, at their poses.
     pub fn find_excess(&mut self, [a, b]: [(&Feature, &Pose); 2]) {
         let (primary, other) = if self.primary_is_a { (a, b) } else { (b, a) };
         let Feature::Round(round) = primary.0 else { return };
@@ -236,7 +243,7 @@ impl GapSample {
         self.excess_primary = round.range.excess(primary.1.vector_to_body(toward));
     }
 
-    /// True if the contact lies within both features.
+    /// True if the contact lies within both features: no excess and no overrun.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.excess_primary <= 0.0 && self.excess_normal <= 0.0 && self.overrun <= 0.0

@@ -2,8 +2,8 @@
 //!
 //! Paths run with the solid on their left, so they wind once around each point of the solid and not at all
 //! around any other. The winding number is counted along the ray from the point towards +x; an arc counts as
-//! its chord and the circular segment between them, so that no crossing is ever computed. The tree skips what
-//! the ray does not meet; its boxes hold the very ends of the edges, so that nothing is lost to rounding.
+//! its chord and the circular segment between arc and chord, so that no crossing is ever computed. The tree skips edges
+//! that the ray does not meet; its boxes hold the exact ends of the edges, so that nothing is lost to rounding.
 
 use crate::path::winding;
 use crate::shape::Shape;

@@ -14,10 +14,10 @@
 //! # Code map
 //!
 //! `pose` places a body, by the `sine` of its angle; `line`, `arc` and `edge` are the edges, `crossing` and
-//! `edge_distance` what two of them have to do with each other; `path` chains them, `outline` orients paths,
-//! `simple` refuses those that meet, `mass` integrates over them; `shape` bundles outline, features and tree,
-//! `pool` keeps equal ones once; `build` and `build_mechanism` are the ready-made shapes. `feature` and `gap`
-//! answer how far apart two features are; `tree` finds the features near a place. The queries on shapes are
+//! `edge_distance` the common points and the distance of two edges; `path` chains edges, `outline` orients paths,
+//! `simple` refuses paths that meet, `mass` integrates over their inside; `shape` bundles outline, features and tree,
+//! `pool` keeps equal shapes once; `build` and `build_mechanism` are the ready-made shapes. `feature` and `gap`
+//! measure how far apart two features are; `tree` finds the features near a place. The queries on shapes are
 //! `inside`, `nearest`, `ray`, `distance` (of two shapes), `bounds` and `swept` (boxes).
 //!
 //! # Examples
@@ -43,6 +43,7 @@ mod crossing;
 mod distance;
 mod edge;
 mod edge_distance;
+mod edge_spec;
 mod error;
 mod feature;
 mod gap;
@@ -67,7 +68,8 @@ pub use crossing::edge_crossings;
 pub use distance::{Relation, ShapeDistance};
 pub use edge::Edge;
 pub use edge_distance::{ClosestPair, edge_distance};
-pub use error::{ArcError, LineError, ShapeError};
+pub use edge_spec::EdgeSpec;
+pub use error::{ArcError, EdgeError, LineError, ShapeError};
 pub use feature::{
     DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
@@ -76,7 +78,7 @@ pub use glam::DVec2;
 pub use line::Line;
 pub use mass::MassProperties;
 pub use nearest::NearestPoint;
-pub use path::{EdgeSpec, Path, PathSpec};
+pub use path::{Path, PathSpec};
 pub use pool::ShapePool;
 pub use pose::{Pose, Rotation};
 pub use ray::{Ray, RayHit};

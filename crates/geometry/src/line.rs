@@ -17,7 +17,8 @@ impl Line {
     /// The edge between two points [m].
     ///
     /// # Errors
-    /// A point that is not finite, two points that coincide, or whose distance has a square that is no number.
+    /// A point that is not finite, two points that coincide, or points so far apart that the square of their distance
+    /// overflows.
     pub fn new(from: DVec2, to: DVec2) -> Result<Self, LineError> {
         if !(from.is_finite() && to.is_finite()) {
             return Err(LineError::NotFinite);
@@ -62,7 +63,7 @@ impl Line {
         self.length
     }
 
-    /// The same edge run the other way.
+    /// The edge run the other way.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self { from: self.to, to: self.from, direction: -self.direction, length: self.length }
@@ -74,7 +75,7 @@ impl Line {
         Self { from: self.from + shift, to: self.to + shift, ..*self }
     }
 
-    /// The edge turned and shifted, as a body at the given pose carries it.
+    /// The edge in world coordinates, as a body at the given pose carries it.
     #[must_use]
     pub fn posed(&self, pose: &Pose) -> Self {
         Self {
@@ -85,7 +86,7 @@ impl Line {
         }
     }
 
-    /// Signed distance [m] of a point from the infinite line, positive outside.
+    /// Signed distance [m] of a point [m] from the infinite line, positive on the side away from the solid.
     #[must_use]
     pub fn signed_distance(&self, point: DVec2) -> f64 {
         self.normal().dot(point - self.from)

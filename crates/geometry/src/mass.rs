@@ -1,4 +1,4 @@
-//! Area, centroid and second moment of what closed paths enclose, exactly.
+//! Exact area, centroid and second moment of the region that closed paths enclose.
 //!
 //! Green's theorem turns the integrals over the area into sums over the edges: each edge contributes the triangle
 //! between its chord and a reference point, and an arc also the circular segment between chord and arc. With the sweep
@@ -18,7 +18,7 @@ use crate::edge::Edge;
 use crate::path::Path;
 use glam::DVec2;
 
-/// Up to this sweep [rad] a segment is integrated numerically: the rule is exact to rounding there.
+/// Largest sweep [rad] of a segment that is integrated numerically: the rule is exact to rounding up to there.
 const SHALLOW: f64 = 0.5;
 /// Positive nodes and their weights of the Gauss-Legendre rule with eight points on [-1, 1].
 const GAUSS: [(f64, f64); 4] = [
@@ -40,7 +40,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Integrates over the region to the left of the given closed paths.
+    /// Integrates over the region to the left of the given closed paths, about `reference` [m].
     #[must_use]
     pub(crate) fn of_paths(paths: &[Path], reference: DVec2) -> Self {
         let sum = paths
@@ -55,7 +55,7 @@ impl MassProperties {
         }
     }
 
-    /// True if all of them are numbers, to full precision.
+    /// True if area and moment are normal numbers (positive or negative, of full precision) and the centroid is finite.
     pub(crate) fn is_sound(&self) -> bool {
         self.area.is_normal() && self.centroid.is_finite() && self.moment_per_mass.is_normal()
     }
@@ -89,7 +89,7 @@ impl Moments {
         }
     }
 
-    /// Adds a part whose moments are about a place.
+    /// Adds a part whose moments are about `place` [m], given relative to the reference of the sum.
     fn plus_part(self, part: Moments, place: DVec2) -> Self {
         Self {
             area: self.area + part.area,
@@ -99,7 +99,7 @@ impl Moments {
     }
 }
 
-/// The segment between an arc and its chord, about the centre of the circle.
+/// Moments of the segment between an arc and its chord, about the centre of the circle.
 fn segment(arc: &Arc) -> Moments {
     let (r, t) = (arc.radius(), arc.sweep_angle());
     let (sin, cos) = libm::sincos(t);
@@ -111,7 +111,7 @@ fn segment(arc: &Arc) -> Moments {
     }
 }
 
-/// The segment between a shallow arc and its chord, about the middle of the chord.
+/// Moments of the segment between a shallow arc and its chord, about the middle of the chord.
 fn shallow_segment(arc: &Arc) -> Moments {
     let (r, half) = (arc.radius(), 0.5 * arc.sweep_angle().abs());
     let (mut area, mut first, mut polar) = (0.0, 0.0, 0.0);
@@ -119,7 +119,7 @@ fn shallow_segment(arc: &Arc) -> Moments {
         let angle = half * node;
         let rise = 2.0 * r * libm::sin(0.5 * (half + angle)) * libm::sin(0.5 * (half - angle));
         let (sin, cos) = libm::sincos(angle);
-        // Both halves of the segment, one on each side of its middle.
+        // Twice, for both halves of the segment, one on each side of its middle.
         let width = 2.0 * weight * half * r * cos;
         area += rise * width;
         first += 0.5 * rise * rise * width;

@@ -8,13 +8,13 @@ use glam::DVec2;
 /// The nearest point of an outline, in body coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// Where it is [m].
+    /// Nearest point of the outline [m].
     pub point: DVec2,
-    /// The edge on which it lies; at a vertex either of the two.
+    /// Edge on which the point lies; at a vertex either of the two.
     pub edge: EdgeId,
-    /// Outward unit normal of that edge there. At a vertex it need not point towards the point asked for.
+    /// Outward unit normal of `edge` at the point. At a vertex it need not point towards the query point.
     pub normal: DVec2,
-    /// Distance [m] of the point asked for, negative inside the solid.
+    /// Signed distance [m] of the query point from the outline, negative inside the solid.
     pub signed_distance: f64,
 }
 
@@ -22,7 +22,7 @@ impl Shape {
     /// Finds the point of the outline nearest to a point [m] in body coordinates.
     ///
     /// The sign of the distance is that of [`contains`](Self::contains). Where several points of the outline
-    /// are equally near, one of them is given: the same one each time.
+    /// are equally near, one of them is returned, on each call the same.
     ///
     /// # Examples
     ///
@@ -36,7 +36,7 @@ impl Shape {
     /// ```
     ///
     /// # Panics
-    /// If a coordinate of the point is not a number, or the square of its distance is none: from some 1e150 m on.
+    /// If a coordinate of the point is not a number, or the square of its distance overflows (from about 1e150 m on).
     #[must_use]
     pub fn nearest(&self, point: DVec2) -> NearestPoint {
         let bound =

@@ -26,7 +26,8 @@ pub(crate) fn build_outline(specs: &[PathSpec]) -> Result<Vec<Path>, ShapeError>
     Ok(drawn.iter().enumerate().map(|(index, path)| oriented(path, index, &drawn)).collect())
 }
 
-/// The path run so that the solid is on its left: inside of it if an even number of others surround it.
+/// Returns the path run so that the solid is on its left. The solid lies inside of a path that an even number of other
+/// paths surround.
 fn oriented(path: &Path, index: usize, all: &[Path]) -> Path {
     let start = path.edges()[0].from();
     let depth =

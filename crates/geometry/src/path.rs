@@ -1,87 +1,19 @@
-//! Closed paths of edges, and the specification from which they are made.
+//! Closed paths of edges, and the specification from which they are made. That of an edge is in `edge_spec`.
 
 use crate::arc::Arc;
 use crate::bounds::Aabb;
 use crate::edge::Edge;
-use crate::error::{ArcError, LineError, ShapeError};
-use crate::line::Line;
+use crate::edge_spec::EdgeSpec;
+use crate::error::{EdgeError, LineError, ShapeError};
 use glam::DVec2;
 
-/// End points and arc radii may be off by this part of the outline's size; they are then made exact.
-const FIT: f64 = 1e-6;
-/// A minor arc whose radius is more than this many chords is a straight edge.
-///
-/// Its rise is then less than 1.25e-8 chords; the rounding of so far a center would cost as much.
-const FLATTEST: f64 = 1e7;
-/// Vertices closer than this part of the outline's size are one point.
+/// Distance up to which vertices count as one point, as a fraction of the outline's size [-].
 const COINCIDENT: f64 = 1e-9;
 
-/// An edge as a person writes it: it starts where the last one ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EdgeSpec {
-    /// A straight edge.
-    Line {
-        /// Where it ends [m].
-        to: DVec2,
-    },
-    /// An arc about a center.
-    Arc {
-        /// Where it ends [m].
-        to: DVec2,
-        /// Center of the circle [m].
-        center: DVec2,
-        /// Which way it runs.
-        clockwise: bool,
-    },
-    /// An arc given by its bulge, the tangent of a quarter of its sweep; positive counter-clockwise, 0 a straight edge.
-    Bulge {
-        /// Where it ends [m].
-        to: DVec2,
-        /// Tangent of a quarter of the sweep.
-        bulge: f64,
-    },
-}
-
-impl EdgeSpec {
-    /// Where the edge ends [m].
-    #[must_use]
-    pub fn to(&self) -> DVec2 {
-        match *self {
-            EdgeSpec::Line { to } | EdgeSpec::Arc { to, .. } | EdgeSpec::Bulge { to, .. } => to,
-        }
-    }
-
-    /// Center and radius of an arc of half a turn or more that starts at `from`.
-    fn major_circle(&self, from: DVec2) -> Option<(DVec2, f64)> {
-        let chord = self.to() - from;
-        match *self {
-            EdgeSpec::Line { .. } => None,
-            EdgeSpec::Arc { center, clockwise, .. } => {
-                let left = chord.perp_dot(center - from);
-                let major = if clockwise { left >= 0.0 } else { left <= 0.0 };
-                major.then(|| (center, (from - center).length()))
-            }
-            EdgeSpec::Bulge { bulge, .. } => (bulge.abs() >= 1.0).then(|| {
-                let center = bulge_center(from, chord, bulge);
-                (center, (from - center).length())
-            }),
-        }
-    }
-
-    fn is_finite(&self) -> bool {
-        self.to().is_finite()
-            && match *self {
-                EdgeSpec::Line { .. } => true,
-                EdgeSpec::Arc { center, .. } => center.is_finite(),
-                EdgeSpec::Bulge { bulge, .. } => bulge.is_finite(),
-            }
-    }
-}
-
-/// A closed path as a person writes it: the last edge ends at `start`.
+/// Specification of a closed path, whose last edge ends at `start`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathSpec {
-    /// Where the first edge starts and the last one ends [m].
+    /// Start of the first edge and end of the last one [m].
     pub start: DVec2,
     /// The edges in order.
     pub edges: Vec<EdgeSpec>,
@@ -98,28 +30,28 @@ impl PathSpec {
         Self { start, edges }
     }
 
-    /// The full counter-clockwise circle about `center` [m].
+    /// The full counter-clockwise circle about `center` [m] of the given radius [m].
     #[must_use]
     pub fn circle(center: DVec2, radius: f64) -> Self {
         let start = center + DVec2::X * radius;
         Self { start, edges: vec![EdgeSpec::Arc { to: start, center, clockwise: false }] }
     }
 
-    /// Index of the first edge with a coordinate that is not finite.
+    /// Index of the first edge with a number that is not finite; 0 if the start is not.
     pub(crate) fn first_not_finite(&self) -> Option<usize> {
         let edge = self.edges.iter().position(|edge| !edge.is_finite());
         if self.start.is_finite() { edge } else { Some(0) }
     }
 
-    /// Box around all end points and the circles of all arcs of half a turn or more, and of one that is all of the path:
-    /// what "the size of the outline" is measured on.
+    /// Box around all end points, the circles of all arcs of half a turn or more, and that of a path of a single arc.
+    /// The size of the outline is measured on these boxes.
     fn rough_bounds(&self) -> Aabb {
         let mut from = self.start;
         let mut bounds = Aabb::around(from);
         for edge in &self.edges {
             bounds = bounds.including(edge.to());
             let circle = match *edge {
-                // It closes, whichever side of its start rounding has its end.
+                // A single arc is a full circle, on whichever side of its start rounding puts its end.
                 EdgeSpec::Arc { center, .. } if self.edges.len() == 1 => {
                     Some((center, (from - center).length()))
                 }
@@ -147,14 +79,14 @@ impl Path {
         &self.edges
     }
 
-    /// Smallest axis-aligned box around the path.
+    /// Smallest axis-aligned box [m] around the path.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         let start = Aabb::around(self.edges[0].from());
         self.edges.iter().fold(start, |bounds, edge| bounds.union(edge.bounds()))
     }
 
-    /// True if the path runs around the point, whichever way. On the path itself the answer is either.
+    /// True if the path runs around the point [m], in either direction. On the path itself the answer is either.
     #[must_use]
     pub fn surrounds(&self, point: DVec2) -> bool {
         self.edges.iter().map(|edge| winding(edge, point)).sum::<i32>() != 0
@@ -175,18 +107,18 @@ pub(crate) fn outline_size(specs: &[PathSpec]) -> f64 {
     boxes.reduce(Aabb::union).map_or(0.0, |bounds| bounds.size().max_element())
 }
 
-/// Two points are one when closer than this [m], in an outline of the given size [m].
+/// Distance [m] up to which two points of an outline of the given size [m] count as one.
 pub(crate) fn coincidence_tol(size: f64) -> f64 {
     COINCIDENT * size
 }
 
-/// Builds the path with index `path`, whose numbers are finite, of an outline of the given size [m].
+/// Builds the path with index `path` of an outline of the given size [m]; the numbers of `spec` must be finite.
 pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path, ShapeError> {
     let Some(last) = spec.edges.len().checked_sub(1) else {
         return Err(ShapeError::EmptyPath { path });
     };
     let gap = (spec.edges[last].to() - spec.start).length();
-    if gap > FIT * size {
+    if gap > EdgeSpec::FIT * size {
         return Err(ShapeError::OpenPath { path, edge: last, gap });
     }
     if let [EdgeSpec::Arc { center, clockwise, .. }] = spec.edges[..] {
@@ -202,67 +134,30 @@ pub(crate) fn build_path(spec: &PathSpec, path: usize, size: f64) -> Result<Path
         if length <= coincidence_tol(size) {
             return Err(ShapeError::CoincidentVertices { path, edge, length });
         }
-        edges.push(build_edge(from, to, part, FIT * size).map_err(|error| error.at(path, edge))?);
+        let built = part.edge_between(from, to, EdgeSpec::FIT * size);
+        edges.push(built.map_err(|error| path_error(error, path, edge))?);
         from = to;
     }
     Ok(Path { edges })
 }
 
-fn build_edge(from: DVec2, to: DVec2, spec: &EdgeSpec, fit_tol: f64) -> Result<Edge, EdgeFault> {
-    let arc = match *spec {
-        EdgeSpec::Line { .. } => return Ok(Edge::Line(Line::new(from, to)?)),
-        EdgeSpec::Bulge { bulge, .. } if 4.0 * FLATTEST * bulge.abs() < 1.0 => {
-            return Ok(Edge::Line(Line::new(from, to)?));
-        }
-        EdgeSpec::Arc { center, clockwise, .. } => Arc::between(from, to, center, clockwise, fit_tol)?,
-        EdgeSpec::Bulge { bulge, .. } => {
-            let center = bulge_center(from, to - from, bulge);
-            Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)?
-        }
-    };
-    let flat = FLATTEST * arc.sweep_angle().abs() < 1.0;
-    Ok(if flat { Edge::Line(Line::new(from, to)?) } else { Edge::Arc(arc) })
-}
-
-/// Center of the arc over a chord: on the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
-fn bulge_center(from: DVec2, chord: DVec2, bulge: f64) -> DVec2 {
-    from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge))
-}
-
-enum EdgeFault {
-    Line(LineError),
-    Arc(ArcError),
-}
-
-impl From<LineError> for EdgeFault {
-    fn from(error: LineError) -> Self {
-        EdgeFault::Line(error)
-    }
-}
-
-impl From<ArcError> for EdgeFault {
-    fn from(error: ArcError) -> Self {
-        EdgeFault::Arc(error)
-    }
-}
-
-impl EdgeFault {
-    fn at(self, path: usize, edge: usize) -> ShapeError {
-        match self {
-            EdgeFault::Arc(source) => ShapeError::Arc { path, edge, source },
-            EdgeFault::Line(LineError::NotFinite) => ShapeError::NotFinite { path, edge },
-            EdgeFault::Line(LineError::ZeroLength(..)) => {
-                ShapeError::CoincidentVertices { path, edge, length: 0.0 }
-            }
+/// The error of a path whose edge with index `edge` cannot be built.
+fn path_error(error: EdgeError, path: usize, edge: usize) -> ShapeError {
+    match error {
+        EdgeError::Arc(source) => ShapeError::Arc { path, edge, source },
+        EdgeError::Line(LineError::NotFinite) => ShapeError::NotFinite { path, edge },
+        EdgeError::Line(LineError::ZeroLength(..)) => {
+            ShapeError::CoincidentVertices { path, edge, length: 0.0 }
         }
     }
 }
 
-/// Crossings of the ray from `point` towards +x by the edge, upward ones counted +1 and downward ones -1.
+/// Number of crossings of the edge with the ray from `point` towards +x, upward ones counted +1 and downward ones -1.
 ///
-/// An arc is its chord plus the circular segment between them, around which it winds once or not at all.
+/// An arc counts as its chord plus the border of the circular segment between the two, which winds around the point
+/// once or not at all.
 ///
-/// A point on a chord counts as just to the right of it and above, for chord and segment alike.
+/// A point on a chord counts as lying just beyond it towards +x, and above its ends, for chord and segment alike.
 pub(crate) fn winding(edge: &Edge, point: DVec2) -> i32 {
     let (from, to) = (edge.from() - point, edge.to() - point);
     // Positive if the point is on the left of the chord.

@@ -1,17 +1,17 @@
-//! Equal shapes, kept in memory once: what many bodies have in common stays in the cache.
+//! A pool that keeps equal shapes in memory once, so that data shared by many bodies stays in the cache.
 
 use crate::shape::Shape;
 use std::collections::BTreeMap;
 
-/// The shapes that have been seen so far.
+/// Pool of the different shapes passed to [`ShapePool::share`] so far.
 #[derive(Clone, Debug, Default)]
 pub struct ShapePool {
-    /// By the number of their features, and the bits of reach and area: few that differ agree in these.
+    /// Shapes by the number of their features and the bits of reach and area: few different shapes agree in these.
     by_size: BTreeMap<(usize, u64, u64), Vec<Shape>>,
 }
 
 impl ShapePool {
-    /// The shape itself, or one seen before with the very same edges.
+    /// Returns a shape passed before whose edges are exactly equal, else `shape` itself, which the pool then keeps.
     pub fn share(&mut self, shape: Shape) -> Shape {
         let size = (shape.features().len(), shape.reach().to_bits(), shape.mass_properties().area.to_bits());
         let alike = self.by_size.entry(size).or_default();

@@ -27,14 +27,14 @@ impl Rotation {
         Self { cos, sin }
     }
 
-    /// Turns a vector.
+    /// Turns a vector by the rotation.
     #[must_use]
     #[inline]
     pub fn apply(self, v: DVec2) -> DVec2 {
         DVec2::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
     }
 
-    /// Turns a vector back.
+    /// Turns a vector back: the inverse of [`apply`](Self::apply).
     #[must_use]
     #[inline]
     pub fn unapply(self, v: DVec2) -> DVec2 {
@@ -42,7 +42,7 @@ impl Rotation {
     }
 }
 
-/// Where a body is: body coordinates are turned, then shifted.
+/// Placement of a body: body coordinates are turned about the body's origin, then shifted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// World position [m] of the body's origin.
@@ -52,38 +52,38 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Body coordinates that are world coordinates.
+    /// The pose at which body coordinates are world coordinates.
     pub const IDENTITY: Pose = Pose { position: DVec2::ZERO, rotation: Rotation::IDENTITY };
 
-    /// The pose at `position` [m], turned by `angle` [rad].
+    /// The pose at `position` [m], turned by `angle` [rad] counter-clockwise.
     #[must_use]
     #[inline]
     pub fn new(position: DVec2, angle: f64) -> Self {
         Self { position, rotation: Rotation::from_angle(angle) }
     }
 
-    /// True if all its numbers are finite.
+    /// True if all numbers of the pose are finite.
     #[must_use]
     #[inline]
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.rotation.cos.is_finite() && self.rotation.sin.is_finite()
     }
 
-    /// World coordinates of a point given in body coordinates.
+    /// World coordinates [m] of a point given in body coordinates [m].
     #[must_use]
     #[inline]
     pub fn point_to_world(&self, body_point: DVec2) -> DVec2 {
         self.position + self.rotation.apply(body_point)
     }
 
-    /// Body coordinates of a point given in world coordinates.
+    /// Body coordinates [m] of a point given in world coordinates [m].
     #[must_use]
     #[inline]
     pub fn point_to_body(&self, world_point: DVec2) -> DVec2 {
         self.rotation.unapply(world_point - self.position)
     }
 
-    /// The pose in the body coordinates of another.
+    /// This pose in the body coordinates of another pose.
     #[must_use]
     pub fn seen_from(&self, other: &Pose) -> Self {
         let (own, its) = (self.rotation, other.rotation);

@@ -1,8 +1,8 @@
-//! Where does a ray first meet the outline of a shape?
+//! The first point at which a ray meets the outline of a shape.
 //!
 //! A line is met if its ends lie on different sides of the ray (the end itself counts, and neighbours share their end,
-//! so nothing slips through between them); a circle is met half a chord before and after the centre's foot on the ray,
-//! and the point counts if the arc has it, to rounding. The tree skips boxes and circles that the ray misses.
+//! so no ray slips through between them); a circle is met half a chord before and after the centre's foot on the ray,
+//! and the point counts if it lies on the arc, to rounding. The tree skips boxes that the ray misses.
 
 use crate::arc::Arc;
 use crate::bounds::Aabb;
@@ -13,37 +13,39 @@ use crate::shape::Shape;
 use crate::tree::Node;
 use glam::DVec2;
 
-/// An arc is met if it misses the ray's point by no more than this part of the coordinates: rounding.
+/// Rounding of a meeting point, as a fraction of the lengths involved [-]: for an arc, the distances of the ray's
+/// origin and the arc's centre from the body's origin plus the radius, over the slope of the crossing; for a box, the
+/// distance of the ray's origin from the body's origin plus that from the farthest side of the box.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A ray in body coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts [m].
+    /// Start of the ray [m].
     pub origin: DVec2,
-    /// In which direction it goes: of any length but none.
+    /// Direction of the ray, of any length but zero.
     pub direction: DVec2,
 }
 
-/// Where a ray meets an outline, in body coordinates.
+/// A point at which a ray meets an outline, in body coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// Distance [m] from the ray's origin.
     pub distance: f64,
-    /// Where it is [m].
+    /// Point at which the ray meets the outline [m].
     pub point: DVec2,
-    /// Outward unit normal of the edge there: it points against a ray that enters the solid and along one
-    /// that leaves it.
+    /// Outward unit normal of the edge at the point: it points against a ray that enters the solid and along one that
+    /// leaves it.
     pub normal: DVec2,
-    /// The edge that is met.
+    /// Edge that the ray meets.
     pub edge: EdgeId,
 }
 
 impl Shape {
     /// Finds the first point within `max_distance` [m] at which a ray meets the outline, from outside or inside.
     ///
-    /// None is met in a direction that is zero or no number. Whether a ray that starts on the outline meets it at
-    /// once, and whether one that only touches an arc meets it, is for rounding to say.
+    /// A ray whose direction is zero or not finite meets nothing. Rounding decides whether a ray that starts on the
+    /// outline meets it at once, and whether one that only touches an arc meets it.
     ///
     /// # Examples
     ///
@@ -73,21 +75,22 @@ impl Shape {
 }
 
 impl Ray {
-    /// Distance [m] along the ray at which it first meets an edge, if it does.
+    /// Distance [m] along the ray at which it first meets an edge; `None` if it misses, or if its direction is zero or
+    /// not finite.
     #[must_use]
     pub fn distance_to(&self, edge: &Edge) -> Option<f64> {
         self.of_unit_direction()?.along_to(edge)
     }
 
-    /// The ray with a unit vector as its direction, if it has one.
+    /// The ray with its direction normalized; `None` if the direction is zero or not finite.
     fn of_unit_direction(&self) -> Option<Self> {
-        // Squares of what is very long, or short, are no numbers.
+        // The square of a very long or very short direction over- or underflows.
         let size = self.direction.abs().max_element();
         let direction = (self.direction / size).try_normalize()?;
         Some(Self { direction, ..*self })
     }
 
-    /// The same for a direction that is a unit vector.
+    /// [`distance_to`](Self::distance_to) of a ray whose direction is a unit vector.
     fn along_to(&self, edge: &Edge) -> Option<f64> {
         match edge {
             Edge::Line(line) => self.distance_to_line(line),
@@ -122,7 +125,7 @@ impl Ray {
         let foot = self.direction.dot(to_center);
         let half_chord = half_chord_sq.sqrt();
         let size = self.origin.length() + arc.center().length() + arc.radius();
-        // The less the ray crosses the arc, the less is it known where.
+        // The flatter the ray crosses the arc, the less exactly the crossing is known.
         let slope = (half_chord / arc.radius()).max(ROUNDING.sqrt());
         let slack = ROUNDING * size / slope;
         let is_met = |along: f64| {
@@ -132,7 +135,8 @@ impl Ray {
         [foot - half_chord, foot + half_chord].into_iter().find(|&along| is_met(along))
     }
 
-    /// Distance [m] along the ray at which it enters a box, a little less for rounding; infinite if it misses.
+    /// Distance [m] along the ray at which it enters a box, reduced by rounding; infinite if it misses. `inverse` holds
+    /// the reciprocals of the direction's components.
     fn entry_into_box(&self, bounds: &Aabb, inverse: DVec2) -> f64 {
         let reach = (bounds.min - self.origin).abs().max((bounds.max - self.origin).abs()).max_element();
         let slack = ROUNDING * (self.origin.length() + reach);

@@ -15,12 +15,13 @@ use glam::DVec2;
 use std::f64::consts::PI;
 use std::sync::Arc as Shared;
 
-/// A corner whose edges' directions differ by less than this angle [rad] is smooth: the edges carry all contacts there.
+/// Turn [rad] between two edges up to which their joint is smooth: the edges carry all contacts there.
 const SMOOTH_CORNER: f64 = 1e-9;
-/// A line reaches beyond a smooth joint with another, for bodies that are so many times as large as its shape.
+/// Size of the largest bodies for which a line extends beyond a smooth joint with another line, as a multiple of the
+/// size of the line's shape [-].
 const LARGEST_NEIGHBOUR: f64 = 64.0;
 
-/// A flat, rigid shape with holes, in body coordinates. Clones share what lies in memory.
+/// A flat, rigid shape in body coordinates, which may have holes and several pieces. Clones share their data.
 #[derive(Clone, Debug)]
 pub struct Shape {
     parts: Shared<Parts>,
@@ -34,20 +35,20 @@ struct Parts {
     reach: f64,
     features: Vec<Feature>,
     sources: Vec<FeatureSource>,
-    /// Of each feature, see [`Shape::lever`].
+    /// Lever [m] of each feature, see [`Shape::lever`].
     levers: Vec<f64>,
     tree: FeatureTree,
 }
 
 impl Shape {
-    /// The shape that the given closed paths outline: what an odd number of them surrounds is solid, whichever way they
-    /// run.
+    /// Builds the shape that the given closed paths outline: points that an odd number of paths surround are solid,
+    /// whichever way the paths run.
     ///
     /// End points and arc radii may be off by 1e-6 of the shape's size, and are then made exact.
     ///
     /// # Errors
-    /// Open, empty, crossing or degenerate paths: the error names path and edge. Sizes whose fourth powers
-    /// are no numbers.
+    /// No paths; open, empty, crossing or degenerate paths: the error names path and edge. Shapes so small or so large
+    /// that the fourth power of their size under- or overflows.
     pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
         let shape = Self::from_oriented(build_outline(specs)?);
         if shape.parts.mass.is_sound() {
@@ -78,24 +79,24 @@ impl Shape {
         &self.parts.paths
     }
 
-    /// All edges of all paths.
+    /// All edges of all paths, in the order of [`paths`](Self::paths).
     pub fn edges(&self) -> impl Iterator<Item = &Edge> {
         self.parts.paths.iter().flat_map(Path::edges)
     }
 
-    /// Area, centroid and second moment.
+    /// Area, centroid and second moment of the solid.
     #[must_use]
     pub fn mass_properties(&self) -> MassProperties {
         self.parts.mass
     }
 
-    /// Smallest axis-aligned box around the shape in body coordinates.
+    /// Smallest axis-aligned box [m] around the shape in body coordinates.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.parts.bounds
     }
 
-    /// Smallest axis-aligned box around the posed shape.
+    /// Smallest axis-aligned box [m] around the shape at `pose`, in world coordinates.
     #[must_use]
     pub fn bounds_at(&self, pose: &Pose) -> Aabb {
         let x_axis = pose.vector_to_body(DVec2::X);
@@ -105,7 +106,8 @@ impl Shape {
         Aabb { min: pose.position + min, max: pose.position + max }
     }
 
-    /// The radius [m] of a shape that is nothing but a disc about the body's origin: how it is turned does not matter.
+    /// Radius [m] of a shape that is a single disc about the body's origin, whose angle does not matter; `None` for all
+    /// other shapes.
     #[must_use]
     pub fn centered_disc(&self) -> Option<f64> {
         match self.features() {
@@ -122,7 +124,8 @@ impl Shape {
         self.parts.reach
     }
 
-    /// Farthest point of the shape along a unit vector of the body: its distance [m] from the origin along the vector.
+    /// Signed distance [m] from the body's origin, along a unit vector [body coordinates], of the shape's farthest
+    /// point along it (the support function); negative if the whole shape lies behind the origin.
     #[must_use]
     pub fn extent(&self, direction: DVec2) -> f64 {
         let bound = |node: &Node| -(node.center.dot(direction) + node.radius);
@@ -132,54 +135,72 @@ impl Shape {
         farthest.map_or(0.0, |(least, ())| -least)
     }
 
-    /// The edge that a feature is, or that starts at the vertex that it is.
+    /// Returns the edge of a feature; for a vertex, the edge that starts at it.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     pub fn edge_of(&self, id: FeatureId) -> &Edge {
         let source = self.source(id);
         self.edge(EdgeId { path: source.path, edge: source.edge })
     }
 
-    /// One of the edges.
+    /// Returns an edge by its id.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's edges.
     #[must_use]
     pub fn edge(&self, id: EdgeId) -> &Edge {
         &self.parts.paths[id.path as usize].edges()[id.edge as usize]
     }
 
-    /// The edge that a feature is; `None` for a vertex.
+    /// Id of the edge of a feature; `None` for a vertex.
     pub(crate) fn whole_edge(&self, id: FeatureId) -> Option<EdgeId> {
         let FeatureSource { path, edge, kind } = self.source(id);
         (kind != FeatureKind::Vertex).then_some(EdgeId { path, edge })
     }
 
-    /// The parts of the shape that can touch.
+    /// The parts of the shape that can touch others: vertices, arcs and lines, in the order of the edges.
     #[must_use]
     pub fn features(&self) -> &[Feature] {
         &self.parts.features
     }
 
-    /// One of the features.
+    /// Returns a feature by its id.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     #[inline]
     pub fn feature(&self, id: FeatureId) -> &Feature {
         &self.parts.features[id.0 as usize]
     }
 
-    /// Length [m] over which an angle outside of a feature's range becomes a distance: an arc's radius, the
-    /// shorter of the two edges at a vertex, a line's length.
+    /// Length [m] by which an angle outside of a feature's range is multiplied to become a distance: the radius of an
+    /// arc, the length of the shorter of the two edges at a vertex, the length of a line.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     #[inline]
     pub fn lever(&self, feature: FeatureId) -> f64 {
         self.parts.levers[feature.0 as usize]
     }
 
-    /// Which part of the outline a feature is.
+    /// Part of the outline that a feature stands for.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     pub fn source(&self, id: FeatureId) -> FeatureSource {
         self.parts.sources[id.0 as usize]
     }
 
-    /// The corners at the two ends of an edge; `None` where the outline goes on smoothly or turns inwards,
-    /// and for a vertex.
+    /// Vertices at the start and at the end of an edge; `None` where the outline goes on smoothly or turns inwards, and
+    /// twice `None` for a vertex.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     pub fn ends_of(&self, feature: FeatureId) -> [Option<FeatureId>; 2] {
         let Some(EdgeId { path, edge }) = self.whole_edge(feature) else { return [None; 2] };
@@ -193,8 +214,11 @@ impl Shape {
         })
     }
 
-    /// True if the outline goes on straight and smoothly beyond an arc that bulges outwards, at the end that
-    /// is nearer to a direction from its centre [body coordinates]; false of all other features.
+    /// True if a straight edge continues a convex arc smoothly at one end: the end nearer to `direction`, a vector from
+    /// the arc's centre in body coordinates. False for all other features.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     pub fn goes_on_straight(&self, arc: FeatureId, direction: DVec2) -> bool {
         let FeatureSource { path, edge, kind } = self.source(arc);
@@ -212,7 +236,10 @@ impl Shape {
         matches!(neighbour, Some(Edge::Line(_)))
     }
 
-    /// The edges that end and start at a corner; `None` for an edge.
+    /// The edges that end and start at a vertex, in this order; `None` for an edge.
+    ///
+    /// # Panics
+    /// If the id is not that of one of this shape's features.
     #[must_use]
     pub fn sides_of(&self, feature: FeatureId) -> Option<[FeatureId; 2]> {
         let FeatureSource { path, edge, kind } = self.source(feature);
@@ -262,13 +289,13 @@ fn lever(paths: &[Path], feature: &Feature, source: &FeatureSource) -> f64 {
     }
 }
 
-/// Box around a feature, taken from the edge: the center of a flat arc would place its ends less exactly.
+/// Box around a feature, taken from its edge: the center of a flat arc would place its ends less exactly.
 fn feature_box(paths: &[Path], source: &FeatureSource) -> Aabb {
     let edge = &paths[source.path as usize].edges()[source.edge as usize];
     if source.kind == FeatureKind::Vertex { Aabb::around(edge.from()) } else { edge.bounds() }
 }
 
-/// Largest distance [m] from the origin along a unit vector.
+/// Signed distance [m] from the body's origin, along a unit vector, of the feature's farthest point along it.
 fn feature_extent(feature: &Feature, direction: DVec2) -> f64 {
     match feature {
         Feature::Line(line) => {
@@ -277,7 +304,7 @@ fn feature_extent(feature: &Feature, direction: DVec2) -> f64 {
         Feature::Round(round) => {
             let (center, radius) = (round.center.dot(direction), round.radius.abs());
             match round.range.ends() {
-                // A hollow arc has neighbours that reach farther than its inside.
+                // The neighbours of a concave arc reach farther than its inner points.
                 Some(ends) if round.radius < 0.0 || !round.range.contains(direction) => {
                     center + radius * ends[0].dot(direction).max(ends[1].dot(direction))
                 }
@@ -318,7 +345,7 @@ fn corner_turn(before: &Edge, after: &Edge) -> f64 {
     if PI - turn.abs() >= SMOOTH_CORNER || bend == 0.0 {
         return turn;
     }
-    // At a cusp the directions are opposite to rounding: which edge lies on the left is for the curvatures to say.
+    // At a cusp the directions are opposite to rounding: the curvatures tell which edge lies on the left.
     let solid_between = bend < 0.0;
     if solid_between { PI } else { -PI }
 }
@@ -327,7 +354,7 @@ fn is_smooth(before: &Edge, after: &Edge) -> bool {
     corner_turn(before, after).abs() <= SMOOTH_CORNER
 }
 
-/// The vertex between two edges, if it points outwards.
+/// The vertex between two edges; `None` if the joint is smooth or points inwards.
 fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
     let turn = corner_turn(before, after);
     // The outward normal is the direction of travel turned by -90 degrees.
@@ -336,11 +363,11 @@ fn corner(before: &Edge, after: &Edge) -> Option<RoundFeature> {
     (turn > SMOOTH_CORNER).then_some(RoundFeature { center: after.from(), radius: 0.0, range })
 }
 
-/// The feature of an edge of a shape of a size [m], which is told with which neighbour, and by what turn [rad], the outline
-/// goes on smoothly at its two ends.
+/// The feature of an edge of a shape of the given size [m]. `smooth` holds, for each end at which the outline goes on
+/// smoothly, the neighbouring edge and the turn [rad] towards it, not negative.
 ///
-/// No vertex stands at a smooth joint, so features take in what their neighbours could leave open: the surface there
-/// differs from them by the square of such turns.
+/// No vertex stands at a smooth joint, so features extend over the opening that the turn leaves between neighbours; the
+/// surface differs from them there by the square of the turn.
 fn edge_feature(edge: &Edge, smooth: [Option<(&Edge, f64)>; 2], size: f64) -> Feature {
     match edge {
         Edge::Line(line) => {
@@ -350,13 +377,13 @@ fn edge_feature(edge: &Edge, smooth: [Option<(&Edge, f64)>; 2], size: f64) -> Fe
                 _ => 0.0,
             });
             let start = direction.dot(line.from());
-            // Both ends lie on the line to rounding; the middle is as far from either as can be.
+            // Both ends lie on the line only to rounding; the middle is farthest from both.
             let offset = normal.dot(0.5 * (line.from() + line.to()));
             let (start, end) = (start - before, start + line.length() + after);
             Feature::Line(LineFeature { normal, direction, offset, start, end })
         }
         Edge::Arc(arc) => {
-            // What a flat arc reaches beyond its end is no longer than of an arc as large as its shape.
+            // An arc flatter than one as large as its shape extends beyond its end by no greater length than that one.
             let flatness = (size / arc.radius()).min(1.0);
             let [first, last] =
                 smooth.map(|joint| joint.map_or(0.0, |(_, turn)| turn.max(SMOOTH_CORNER * flatness)));

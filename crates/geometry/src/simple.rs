@@ -1,6 +1,6 @@
-//! Are the paths of an outline simple: do no two edges meet but neighbours in their common vertex?
+//! Test of whether the paths of an outline are simple: no two edges meet, except neighbours in their common vertex.
 //!
-//! Boxes are swept along x so that only pairs whose boxes overlap are looked at. Edges that are no neighbours meet if
+//! Boxes are swept along x so that only pairs whose boxes overlap are tested. Edges that are not neighbours meet if
 //! their distance is within the tolerance. Neighbours lie on two lines or circles through their common vertex, which
 //! share at most one more point, its mirror image in the line of centres: they meet if that point lies on both edges,
 //! or if the far end of one lies on the other (which covers edges that fold back onto each other).
@@ -20,7 +20,7 @@ pub(crate) struct Meeting {
     point: DVec2,
 }
 
-/// Path and edge.
+/// Indices of a path and of an edge in it.
 type Place = (usize, usize);
 
 impl From<Meeting> for ShapeError {
@@ -84,16 +84,16 @@ fn meeting_point(paths: &[Path], a: &Item, b: &Item, tol: f64) -> Option<DVec2> 
     (pair.distance <= tol).then_some(0.5 * (pair.point_a + pair.point_b))
 }
 
-/// Where two edges meet apart from their common vertices.
+/// Point [m] at which two neighbours meet apart from their common vertices; `None` if they do not.
 fn neighbours_meet(a: &Edge, b: &Edge, common: [Option<DVec2>; 2], tol: f64) -> Option<DVec2> {
     let is_common = |p: DVec2| common.iter().flatten().any(|&vertex| (p - vertex).length() <= tol);
     let is_on = |edge: &Edge, p: DVec2| (edge.nearest(p) - p).length() <= tol;
     if let [Some(_), Some(_)] = common {
-        // Two lines with both ends in common are one.
+        // Two lines with both ends in common coincide.
         if let (Edge::Line(line), Edge::Line(_)) = (a, b) {
             return Some(0.5 * (line.from() + line.to()));
         }
-        // Two arcs with both ends in common are one if their middles are.
+        // Two arcs with both ends in common coincide if their middles do.
         let middle = middle_of(a);
         return is_on(b, middle).then_some(middle);
     }
@@ -102,7 +102,7 @@ fn neighbours_meet(a: &Edge, b: &Edge, common: [Option<DVec2>; 2], tol: f64) -> 
     ends.chain(mirror_image(a, b, vertex)).find(|&p| !is_common(p) && is_on(a, p) && is_on(b, p))
 }
 
-/// The other point that the whole lines or circles of two edges share, given one.
+/// Second common point of the whole lines or circles of two edges, given the first.
 fn mirror_image(a: &Edge, b: &Edge, shared: DVec2) -> Option<DVec2> {
     let (on_mirror, along) = match (a, b) {
         (Edge::Line(_), Edge::Line(_)) => return None,

@@ -1,22 +1,22 @@
 //! Sine and cosine of an angle at once, the same bits on every machine.
 //!
-//! Poses ask for little else, so this is made to be short: no branch but the one for angles of many turns,
-//! which `libm` takes. The angle is reduced to an eighth of a turn either way in two parts (W. J. Cody and W.
-//! Waite, "Software Manual for the Elementary Functions", 1980, ch. 8), where the Taylor series are summed
-//! pairwise. Near multiples of a quarter turn the small one of the two is exact to rounding of 1, not of
-//! itself: to a rotation that is all the same.
+//! Poses are computed from little else, so the code is kept short: its only branch hands angles of many turns to
+//! `libm`. The angle is reduced to an eighth of a turn either way in two parts (W. J. Cody and W. Waite, "Software
+//! Manual for the Elementary Functions", 1980, ch. 8), where the Taylor series are summed pairwise. Near multiples of a
+//! quarter turn the smaller of sine and cosine is exact to rounding of 1, not of itself; a rotation needs no more.
 
 use std::f64::consts::FRAC_2_PI;
 
-/// Beyond this angle [rad] the reduction would lose digits.
+/// Largest angle [rad] of the series: beyond it the reduction would lose digits.
 const LARGEST: f64 = 1e5;
-/// What a number is added to to be rounded to an integer, which the last bits then hold.
+/// Number that rounds a small number added to it to an integer; the last bits of the sum hold that integer.
 const TO_INTEGER: f64 = 1.5 / f64::EPSILON;
-/// The first 33 bits of a quarter turn, and what they lack of it.
+/// First 33 bits of a quarter turn [rad].
 const QUARTER: f64 = f64::from_bits(0x3ff9_21fb_5440_0000);
+/// Rest of a quarter turn [rad] beyond [`QUARTER`].
 const QUARTER_REST: f64 = f64::from_bits(0x3dd0_b461_1a62_6331);
 
-/// (sin r - r)/r^3 = S0 + S1 r^2 + ...
+/// Coefficients of the series (sin r - r)/r^3 = S0 + S1 r^2 + ...
 const S: [f64; 8] = [
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -27,7 +27,7 @@ const S: [f64; 8] = [
     -1.0 / 1_307_674_368_000.0,
     1.0 / 355_687_428_096_000.0,
 ];
-/// (cos r - 1 + r^2/2)/r^4 = C0 + C1 r^2 + ...
+/// Coefficients of the series (cos r - 1 + r^2/2)/r^4 = C0 + C1 r^2 + ...
 const C: [f64; 7] = [
     1.0 / 24.0,
     -1.0 / 720.0,
@@ -38,10 +38,10 @@ const C: [f64; 7] = [
     1.0 / 20_922_789_888_000.0,
 ];
 
-/// Sine and cosine of an angle [rad].
+/// Sine and cosine of an angle [rad], in this order; not numbers for an angle that is not finite.
 #[inline]
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
-    // What is no number goes to `libm`, too.
+    // Angles that are not finite go to `libm`, too.
     if angle.abs() <= LARGEST { by_series(angle) } else { libm::sincos(angle) }
 }
 
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// How far off the other library's the two are, in roundings of 1.
+    /// Larger of the differences of sine and cosine from those of `libm`, as a multiple of the machine epsilon [-].
     fn off(angle: f64) -> f64 {
         let ((sin, cos), (their_sin, their_cos)) = (sin_cos(angle), libm::sincos(angle));
         (sin - their_sin).abs().max((cos - their_cos).abs()) / f64::EPSILON

@@ -1,9 +1,9 @@
-//! The box that a shape needs throughout a motion.
+//! The box around a shape throughout a motion.
 //!
 //! Geometry knows no time: a motion is bounded by the box of its positions and the interval of its angles. Of all turns
 //! in the interval the extent along an axis is largest where a point's direction meets the axis, or at an end of the
-//! interval; in body coordinates it is the axis that turns. For an arc about c of radius r the extent along u is
-//! c.u + r as long as the arc has the direction u, and that of an end otherwise.
+//! interval; in body coordinates it is the axis that turns. The extent of an arc about c of radius r along u is c.u + r
+//! if the arc has a point in the direction u from c, and that of one of its ends otherwise.
 
 use crate::bounds::Aabb;
 use crate::feature::{DirectionRange, Feature, RoundFeature};
@@ -13,7 +13,7 @@ use crate::tree::Node;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Where a motion may take a body: any of the positions with any of the angles.
+/// Bounds of a body's motion: any of the positions may be taken with any of the angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionBound {
     /// Box [m] around all positions of the body's origin.
@@ -25,7 +25,8 @@ pub struct MotionBound {
 }
 
 impl Shape {
-    /// Smallest axis-aligned box (to rounding) that contains the shape at every position and angle of a motion.
+    /// Smallest axis-aligned box [m, world coordinates] (to rounding) that contains the shape at every position and
+    /// angle of a motion.
     ///
     /// # Examples
     ///
@@ -56,7 +57,7 @@ impl Shape {
         Aabb { min: motion.positions.min + min, max: motion.positions.max + max }
     }
 
-    /// Largest extent [m] along any of the given axes.
+    /// Largest extent [m] of the shape along any of the given axes.
     fn turning_extent(&self, axes: &DirectionRange) -> f64 {
         let bound = |node: &Node| -(point_extent(node.center, axes) + node.radius);
         let farthest = self
@@ -66,7 +67,7 @@ impl Shape {
     }
 }
 
-/// Largest extent of a point along any of the axes.
+/// Largest extent [m] of a point along any of the axes.
 fn point_extent(point: DVec2, axes: &DirectionRange) -> f64 {
     let distance = point.length();
     match axes.ends() {
@@ -92,7 +93,7 @@ fn round_extent(round: &RoundFeature, axes: &DirectionRange) -> f64 {
         let [first, last] = ends.map(|end| point_extent(center + end * radius, axes));
         first.max(last)
     });
-    // A hollow arc has neighbours that reach farther than its inside.
+    // The neighbours of a concave arc reach farther than its inner points.
     if round.radius < 0.0 {
         return of_ends;
     }
@@ -103,7 +104,7 @@ fn round_extent(round: &RoundFeature, axes: &DirectionRange) -> f64 {
     let of_inside =
         candidates.filter(|&axis| round.range.contains(axis)).map(|axis| center.dot(axis) + radius);
     let of_inside = of_inside.fold(f64::NEG_INFINITY, f64::max);
-    // About its own center a whole circle reaches as far along any axis.
+    // A whole circle about the body's origin reaches equally far along all axes.
     let of_circle =
         if away.is_none() && round.range == DirectionRange::Full { radius } else { f64::NEG_INFINITY };
     of_ends.max(of_inside).max(of_circle)

@@ -1,4 +1,5 @@
-//! A bounding tree over the features of a shape, so that finding what is near costs a logarithm.
+//! A bounding tree over the features of a shape, so that the cost of finding near features grows as the logarithm of
+//! their number.
 //!
 //! Each node keeps a box in body coordinates and a circle: of two posed trees, the circles of one are compared with the
 //! boxes of the other, in the other's coordinates, so that no box ever needs turning.
@@ -11,11 +12,11 @@ use glam::DVec2;
 /// A node of the tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// Box around all features below, in body coordinates.
+    /// Box around all features below, in body coordinates [m].
     pub bounds: Aabb,
     /// Centre of a circle around all features below, in body coordinates [m].
     pub center: DVec2,
-    /// Radius of that circle [m].
+    /// Radius of the circle about `center` around all features below [m].
     pub radius: f64,
     content: Content,
 }
@@ -23,16 +24,16 @@ pub struct Node {
 #[derive(Clone, Copy, Debug)]
 enum Content {
     Leaf(FeatureId),
-    /// The first child follows its parent; this is the second.
+    /// Index of the second child; the first child follows its parent.
     Branch(u32),
 }
 
-/// What hangs below a node.
+/// Content of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Below {
     /// One feature.
     Leaf(FeatureId),
-    /// Two nodes.
+    /// Indices of two nodes.
     Branch([usize; 2]),
 }
 
@@ -40,16 +41,16 @@ pub(crate) enum Below {
 #[derive(Clone, Debug)]
 pub struct FeatureTree {
     nodes: Vec<Node>,
-    /// The nodes that are leaves, in their order.
+    /// Indices of the leaves, ascending.
     leaves: Vec<usize>,
 }
 
-/// Two trees of no more leaves are compared leaf by leaf: those of one with the root of the other, then what
-/// is left of both with each other.
+/// Largest number of leaves of two trees that are compared leaf by leaf: the leaves of each with the root of the other,
+/// then the remaining leaves of both with each other.
 const FEW: usize = 16;
 
 impl FeatureTree {
-    /// The tree over the features, each in its box.
+    /// Builds the tree over the features, `boxes` holding the box of each.
     pub(crate) fn build(features: &[Feature], boxes: &[Aabb]) -> Self {
         let mut items: Vec<Item> = boxes
             .iter()
@@ -76,7 +77,7 @@ impl FeatureTree {
         &self.nodes[index]
     }
 
-    /// What hangs below a node.
+    /// Content of a node: its feature, or the indices of its children.
     pub(crate) fn below(&self, index: usize) -> Below {
         match self.nodes[index].content {
             Content::Leaf(feature) => Below::Leaf(feature),
@@ -84,10 +85,11 @@ impl FeatureTree {
         }
     }
 
-    /// The least value of the features that is below `limit`, and the feature; `None` if there is none.
+    /// Finds the least value of a feature below `limit`, and returns it with the data that `value` gives for the
+    /// feature; `None` if no value is below `limit`.
     ///
-    /// Branch and bound: `bound` never exceeds the value of a feature below the node, and the nearer child is looked at
-    /// first.
+    /// Branch and bound: `bound` must not exceed the value of any feature below the node; the child with the lesser
+    /// bound is searched first.
     pub(crate) fn find_least<T>(
         &self,
         limit: f64,
@@ -101,15 +103,15 @@ impl FeatureTree {
         best.found.map(|found| (best.limit, found))
     }
 
-    /// Visits every feature below nodes that are `wanted`.
+    /// Visits every feature whose node and all of its ancestors are `wanted`.
     pub(crate) fn visit_where(&self, wanted: &impl Fn(&Node) -> bool, visit: &mut impl FnMut(FeatureId)) {
         if !self.nodes.is_empty() {
             self.visit_below(0, wanted, visit);
         }
     }
 
-    /// Visits every pair of features, of this tree at `pose` and of another at its own, whose bounds come within
-    /// `distance` [m] of each other.
+    /// Visits every pair of features, of this tree at `pose` and of another at its own, whose bounds (boxes and
+    /// circles) are within `distance` [m] of each other.
     pub fn visit_near_pairs(
         &self,
         pose: &Pose,
@@ -172,7 +174,7 @@ impl FeatureTree {
         }
     }
 
-    /// Adds the subtree over `items`; its root is the next node.
+    /// Appends the subtree over `items`; its root is the next node.
     fn add(&mut self, items: &mut [Item], features: &[Feature]) {
         let bounds =
             items.iter().map(|item| item.bounds).reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
@@ -200,9 +202,9 @@ impl FeatureTree {
     }
 }
 
-/// The best found so far.
+/// The best feature found so far.
 struct Best<T> {
-    /// Its value: only less is better.
+    /// Value of the best feature, or the limit of the search: only lesser values are better.
     limit: f64,
     found: Option<T>,
 }
@@ -215,7 +217,7 @@ struct Item {
 struct PosedTrees<'a> {
     a: &'a FeatureTree,
     b: &'a FeatureTree,
-    /// Where `a` is as seen from `b`.
+    /// Pose of `a` in the coordinates of `b`.
     a_in_b: Pose,
     distance: f64,
 }
@@ -234,7 +236,7 @@ struct NearLeaves {
 }
 
 impl NearLeaves {
-    /// Those of a tree of few leaves that `place` does not leave out.
+    /// Collects the leaves of a tree of at most [`FEW`] for which `place` returns a place.
     #[inline]
     fn find(tree: &FeatureTree, place: impl Fn(usize) -> Option<Placed>) -> Self {
         let mut near = Self { leaves: [Placed { node: 0, center: DVec2::ZERO }; FEW], count: 0 };
@@ -265,7 +267,7 @@ impl PosedTrees<'_> {
         Placed { node, center: self.a_in_b.point_to_body(self.b.nodes[node].center) }
     }
 
-    /// Visits the pairs of near leaves of two trees of few.
+    /// Visits the pairs of near leaves of two trees of at most [`FEW`] leaves each.
     fn visit_leaves(&self, visit: &mut impl FnMut(FeatureId, FeatureId)) {
         let (root_a, root_b) = (&self.a.nodes[0], &self.b.nodes[0]);
         let (at_a, at_b) = (self.of_a(0).center, self.of_b(0).center);
@@ -326,7 +328,8 @@ impl PosedTrees<'_> {
         self.descend(self.of_a(second as usize), at_b, visit);
     }
 
-    /// True if the bounds of two nodes are farther apart than the distance, given each centre as the other sees it.
+    /// True if the bounds of two nodes are farther apart than the distance, given each centre in the coordinates of the
+    /// other tree.
     #[inline]
     fn are_apart(&self, (a, center_a): (&Node, DVec2), (b, center_b): (&Node, DVec2)) -> bool {
         let (reach_a, reach_b) = (a.radius + self.distance, b.radius + self.distance);
@@ -347,7 +350,7 @@ mod tests {
     use crate::shape::Shape;
     use std::f64::consts::TAU;
 
-    /// A polygon of so many corners on a circle of radius 1 m.
+    /// A regular polygon of the given number of corners on a circle of radius 1 m.
     fn polygon(corners: u32) -> Shape {
         let at = |index: u32| DVec2::from_angle(TAU * f64::from(index) / f64::from(corners));
         Shape::polygon(&(0..corners).map(at).collect::<Vec<_>>()).expect("a convex polygon")

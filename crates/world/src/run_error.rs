@@ -5,7 +5,7 @@ use crate::finding::Finding;
 use crate::rounded::Rounded;
 use halfgap_advance::rigid::{AdvanceError, Between};
 use halfgap_collision::BodyId;
-use halfgap_contact::{ImpactError, SolveError};
+use halfgap_contact::{ImpactError, Problem, SolveError};
 
 /// So many names are shown in a message; the error itself has all of them.
 const MOST_NAMES: usize = 12;
@@ -26,12 +26,14 @@ pub enum Status {
 #[non_exhaustive]
 pub enum RunError {
     /// An impact cannot be resolved.
-    #[error("at {time} s in an impact of {}: {source}", quoted(bodies))]
+    #[error("at {time} s in an impact of {}: {source}{}", quoted(bodies), on_row(between))]
     Impact {
         /// When [s].
         time: f64,
         /// Names of the bodies that take part.
         bodies: Vec<String>,
+        /// Names of the two bodies of the row that the source names.
+        between: Option<[String; 2]>,
         /// Why not.
         source: ImpactError,
     },
@@ -69,12 +71,16 @@ pub enum RunError {
         step: f64,
     },
     /// The forces of contacts and connectors cannot be found.
-    #[error("at {time} s in the contacts of {}: {source}", quoted(bodies))]
+    #[error("at {time} s in the contacts of {}: {source}{}", quoted(bodies), on_row(between))]
     Contacts {
         /// When [s].
         time: f64,
         /// Names of the bodies that take part.
         bodies: Vec<String>,
+        /// Names of the two bodies of the row that the source names.
+        between: Option<[String; 2]>,
+        /// The problem that was to be solved last: accelerations [m/s^2] of the rows by their forces [N].
+        problem: Box<Problem>,
         /// Why not.
         source: Box<SolveError>,
     },
@@ -233,11 +239,14 @@ impl RunError {
     pub(crate) fn new(error: AdvanceError, name: impl Fn(BodyId) -> String) -> Self {
         let names = |between: Between| (name(between.primary), name(between.normal));
         match error {
-            AdvanceError::Impact { time, bodies, source } => {
-                Self::Impact { time, bodies: bodies.into_iter().map(name).collect(), source }
+            AdvanceError::Impact { time, bodies, between, source } => {
+                let between = between.map(|Between { primary, normal }| [primary, normal].map(&name));
+                Self::Impact { time, bodies: bodies.into_iter().map(name).collect(), between, source }
             }
-            AdvanceError::Contacts { time, bodies, source } => {
-                Self::Contacts { time, bodies: bodies.into_iter().map(name).collect(), source }
+            AdvanceError::Contacts { time, bodies, between, problem, source } => {
+                let between = between.map(|Between { primary, normal }| [primary, normal].map(&name));
+                let bodies = bodies.into_iter().map(name).collect();
+                Self::Contacts { time, bodies, between, problem, source }
             }
             AdvanceError::StepCollapsed { time, step, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
@@ -274,6 +283,11 @@ fn under(laws: &[String]) -> String {
 }
 
 /// Names in a message: all of a few, the first of many.
+/// Names the two bodies of the row that a message has named by its index.
+fn on_row(between: &Option<[String; 2]>) -> String {
+    between.as_ref().map_or_else(String::new, |[a, b]| format!("; the row is of \"{a}\" and \"{b}\""))
+}
+
 fn quoted(names: &[String]) -> String {
     let (shown, rest) = names.split_at(names.len().min(MOST_NAMES));
     let shown = shown.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");

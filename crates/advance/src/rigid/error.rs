@@ -1,8 +1,8 @@
 //! Reasons why the advance of rigid bodies stops.
 
 use super::parts::PartsError;
-use halfgap_collision::BodyId;
-use halfgap_contact::{ImpactError, SolveError};
+use halfgap_collision::{BodyId, Collision};
+use halfgap_contact::{ImpactError, Problem, SolveError};
 
 /// The two bodies of a contact, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +11,13 @@ pub struct Between {
     pub primary: BodyId,
     /// The normal body.
     pub normal: BodyId,
+}
+
+impl Between {
+    pub(crate) fn of(record: &Collision) -> Self {
+        let [primary, normal] = record.bodies();
+        Self { primary, normal }
+    }
 }
 
 /// Reason why the advance stopped. Times are on the system's clock.
@@ -35,6 +42,8 @@ pub enum AdvanceError {
         time: f64,
         /// The bodies that take part.
         bodies: Vec<BodyId>,
+        /// The two bodies of the row that the error names; `None` if it names none.
+        between: Option<Between>,
         /// Error of the impact law.
         source: ImpactError,
     },
@@ -45,6 +54,10 @@ pub enum AdvanceError {
         time: f64,
         /// The bodies that take part.
         bodies: Vec<BodyId>,
+        /// The two bodies of the row that the error names; `None` if it names none.
+        between: Option<Between>,
+        /// The problem that was solved last: accelerations [m/s^2] of the rows by their forces [N].
+        problem: Box<Problem>,
         /// Error of the solver.
         source: Box<SolveError>,
     },

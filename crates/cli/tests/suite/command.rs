@@ -469,6 +469,52 @@ fn sweep_goes_on_past_a_value_of_which_no_world_can_be_made() {
     assert_eq!(object["runs"][1]["result"]["status"], "done");
 }
 
+/// A bar that a pin and a slot hold to second order only: once it turns, no forces keep it in both.
+const LOCKED: &str = r#"format = "halfgap-scene-1"
+title = "Locked"
+run = { duration = 1.0 }
+
+[[body]]
+name = "bar"
+mass = 1.0
+shape = { block = { width = 2.0, height = 0.1 } }
+
+[[body]]
+name = "ball"
+mass = 1.0
+position = [0.8, 1.0]
+velocity = [0.0, -2.0]
+shape = { disc = { radius = 0.1 } }
+
+[[connector]]
+pin = { a = { body = "world", point = [0.0, 0.0] }, b = { body = "bar", point = [0.0, 0.0] } }
+
+[[connector]]
+slot = { a = { body = "world", point = [1.0, 0.0] }, b = { body = "bar", point = [1.0, 0.0] }, normal = [1.0, 0.0] }
+"#;
+
+#[test]
+fn a_contact_problem_that_stops_a_run_is_kept_and_can_be_replayed() {
+    let folder = Folder::new("problem");
+    let (scene, out) = (folder.write("locked.toml", LOCKED), folder.path("out"));
+    let output = halfgap(&["run", &scene, "--quiet", "--out", &out]);
+    assert_eq!(output.status.code(), Some(3));
+    let message = folder.plain(&output.stderr);
+    assert!(message.contains("the row is of \"world\" and \"bar\""), "{message}");
+    assert!(
+        message
+            .ends_with("`halfgap solve out/problem.json` explains the contact problem that has no answer\n")
+    );
+    let problem = folder.path("out/problem.json");
+    let output = halfgap(&["solve", &problem]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(folder.plain(&output.stdout).contains("INFEASIBLE"));
+    // A later run that does not stop takes it away.
+    let flight = folder.write("flight.toml", FLIGHT);
+    assert_eq!(halfgap(&["run", &flight, "--quiet", "--out", &out]).status.code(), Some(0));
+    assert!(!Path::new(&problem).exists());
+}
+
 #[test]
 fn sweep_opens_its_table_before_it_runs() {
     let folder = Folder::new("sweep-out");

@@ -1,22 +1,22 @@
-//! How a body is moved to satisfy a connector before the start.
+//! Translation of a body that satisfies a connector before the start.
 
 use super::{Connector, ConnectorKind};
 use crate::motion::Moving;
 use glam::DVec2;
 use halfgap_geometry::Pose;
 
-/// Which end of a connector is moved, and by how much.
+/// Translation of one end of a connector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
     /// True if body b is moved, false if body a is.
     pub moves_b: bool,
-    /// Translation [m] of that body.
+    /// Translation [m] of the body, in world coordinates.
     pub shift: DVec2,
 }
 
 impl Connector {
-    /// The least translation of body b, or of body a if b cannot be moved, that satisfies the connector; `None` if
-    /// neither can be moved.
+    /// Finds the least translation of body b, or of body a if b cannot be moved, that satisfies the connector; `None`
+    /// if neither can be moved. `can_move` is true for the bodies a and b that may be moved.
     #[must_use]
     pub fn align(&self, a: &Pose, b: &Pose, can_move: [bool; 2]) -> Option<Alignment> {
         let moves_b = can_move[1] && self.anchors().1.is_some();
@@ -32,7 +32,7 @@ impl Connector {
         let row = self.measure(0, a, b);
         match &self.kind {
             ConnectorKind::Pin { .. } => row.point_b - row.point_a,
-            // Both points stay on a line with the normal, so that the way back is the gap.
+            // Both points stay on a line along the normal, so the translation is the gap.
             ConnectorKind::Slot { .. } | ConnectorKind::Rod { .. } => row.normal * -row.gap,
             ConnectorKind::Rope { .. } => row.normal * (-row.gap).max(0.0),
             ConnectorKind::Rail { .. } => row.point_b - row.point_a,

@@ -6,7 +6,7 @@
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
-/// The tree; it has at least one piece.
+/// A tree of boxes over at least one piece.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BoxTree {
     boxes: Vec<Aabb>,
@@ -21,7 +21,7 @@ impl BoxTree {
         Some(Self { boxes, count: leaves.len() })
     }
 
-    /// The box around everything.
+    /// The box [m] around all pieces.
     pub(super) fn bounds(&self) -> Aabb {
         self.boxes[0]
     }
@@ -60,7 +60,7 @@ impl BoxTree {
     }
 }
 
-/// A node: its place in the list, and the pieces under it.
+/// A node: its place in the list of boxes, and the first and the number of the pieces under it.
 #[derive(Clone, Copy)]
 struct Node {
     place: usize,

@@ -3,24 +3,28 @@
 use super::path::Foot;
 use glam::DVec2;
 
-/// A step along a curve is sound as long as half of what the curve turns by, bent as it is where it starts,
-/// is less [rad].
+/// Half [rad] of the angle by which the curve, bent as at the start of a step, may turn along the step for the series
+/// to be trusted; a longer Newton step is cut to it.
 const SOUND_TURN: f64 = 0.25;
-/// Later terms of a series are trusted as long as they change the step by less than this part.
+/// Change of a step by the later terms of a series up to which they are trusted, as a fraction of the step [-].
 const SOUND_CORRECTION: f64 = 0.5;
 
-/// Q(u) = from + u (slope + u (bend + u twist)) for u from 0 to `width`.
+/// The cubic Q(u) = from + u (slope + u (bend + u twist)) [m] for u from 0 to `width` [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cubic {
+    /// Point at u = 0 [m].
     pub(super) from: DVec2,
+    /// First derivative at u = 0 [-].
     pub(super) slope: DVec2,
+    /// Half of the second derivative at u = 0 [1/m].
     pub(super) bend: DVec2,
+    /// A sixth of the third derivative [1/m^2].
     pub(super) twist: DVec2,
-    /// Width of the piece in the parameter [m]: the distance of the points it joins.
+    /// Width of the piece in the parameter [m]: the distance of the points that it joins.
     pub(super) width: f64,
 }
 
-/// A cubic about one of its parameters: Q(u + s) = point + s (slope + s (bend + s twist)).
+/// A cubic expanded about one of its parameters u: Q(u + s) = point + s (slope + s (bend + s twist)).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jet {
     pub(super) point: DVec2,
@@ -46,7 +50,7 @@ impl Cubic {
         (self.slope + (self.bend * 2.0 + self.twist * (3.0 * u)) * u).length()
     }
 
-    /// Largest size of the second derivative between two parameters, in which it is linear.
+    /// Largest size [1/m] of the second derivative, which is linear, between two parameters [m].
     #[inline]
     pub(super) fn largest_second(&self, from: f64, to: f64) -> f64 {
         let at = |u: f64| (self.bend * 2.0 + self.twist * (6.0 * u)).length_squared();
@@ -61,7 +65,7 @@ impl Cubic {
 }
 
 impl Jet {
-    /// The jet of the same cubic `step` further on.
+    /// The cubic expanded about a parameter that is `step` [m] further on.
     #[inline]
     pub(super) fn moved(&self, step: f64) -> Self {
         let Self { point, slope, bend, twist } = *self;
@@ -73,20 +77,21 @@ impl Jet {
         }
     }
 
-    /// The jet of a straight continuation, `u` beyond this one.
+    /// The straight continuation of the curve, expanded about a parameter `u` [m] beyond this one.
     pub(super) fn straight_on(&self, u: f64) -> Self {
         let Self { point, slope, .. } = *self;
         Self { point: point + slope * u, slope, bend: DVec2::ZERO, twist: DVec2::ZERO }
     }
 
-    /// The step to the parameter at which a point is nearest; `None` if the distance is not convex here, or no number.
+    /// The step [m] towards the parameter nearest to a point; `None` if the distance is not convex here, or not a
+    /// number.
     ///
     /// With e the way to the point and t1, t2, t3 slope, bend and twist, half of the squared distance has the
     /// derivative f0 + f1 s + f2 s^2 + f3 s^3 + .. with f0 = -e.t1, f1 = t1.t1 - 2 e.t2, f2 = 3 (t1.t2 -
     /// e.t3) and f3 = 2 t2.t2 + 4 t1.t3. The step s = -f0 (f1^2 - f0 f2)/(f1^3 - 2 f0 f1 f2 + f0^2 f3) is
-    /// Householder's, of order 4 and with a single division. Where the series says little, since the curve,
-    /// bent as it is here, turns much along the step or the later terms are large, Newton's step -f0/f1 is
-    /// taken, cut.
+    /// Householder's, of order 4 and with a single division. Where the series is not to be trusted, because the curve,
+    /// bent as it is here, turns much along the step ([`SOUND_TURN`]) or the later terms are large
+    /// ([`SOUND_CORRECTION`]), Newton's step -f0/f1 is taken, cut.
     ///
     /// Source: A. Householder, "The Numerical Treatment of a Single Nonlinear Equation", 1970, section 4.4.
     #[inline]
@@ -113,7 +118,7 @@ impl Jet {
         Some((ahead / convexity).clamp(-sound, sound))
     }
 
-    /// What the curve is here, as the foot of `point`: k = (Q' x Q'')/|Q'|^3 and its derivative.
+    /// The place of the curve here as the foot of `point`, with the curvature k = (Q' x Q'')/|Q'|^3 and its derivative.
     #[inline]
     pub(super) fn foot(&self, piece: usize, parameter: f64, point: DVec2) -> Foot {
         let (first, second, third) = (self.slope, self.bend * 2.0, self.twist * 6.0);

@@ -5,27 +5,24 @@ use super::edge_piece::EdgePiece;
 use super::error::RailError;
 use super::path::{Foot, RailHint, RailKnot, RailPlace};
 use glam::DVec2;
-use halfgap_geometry::{Aabb, Arc, Edge, EdgeSpec, Line};
+use halfgap_geometry::{Aabb, Arc, Edge, EdgeError, EdgeSpec};
 
-/// End points and arc radii may be off by this part of the path's size; they are then made exact.
-const FIT: f64 = 1e-6;
-/// A bulge below this is a straight edge: its rise would be less than 1.25e-8 chords.
-const FLATTEST_BULGE: f64 = 2.5e-8;
-/// A joint that turns by less than this [rad] is smooth.
+/// Turn of a joint [rad] below which it is smooth.
 const SMOOTH_TURN: f64 = 1e-6;
 
-/// A point may lie off the path by this part of its length, and where it is looked for along it is not doubted.
+/// Distance of a point, as a fraction of the path's length [-]: off the path, up to which its place as followed from a
+/// hint is not doubted; beyond the end of a piece, up to which it counts as beside the piece.
 const ASTRAY: f64 = 1e-9;
-/// A place elsewhere on the path is the right one if the point is nearer to it by this factor.
+/// Ratio of distances from a point [-] below which a place elsewhere on the path replaces the one followed from a hint.
 pub(super) const NEARER: f64 = 0.5;
 
-/// The path. An open one has its two continuations as first and last piece.
+/// A path of edges. An open one has its two straight continuations as first and last piece.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EdgePath {
     pieces: Vec<EdgePiece>,
     closed: bool,
     length: f64,
-    /// Over the pieces, without the continuations.
+    /// Tree over the pieces, without the continuations.
     tree: BoxTree,
     knots: Vec<RailKnot>,
 }
@@ -71,7 +68,7 @@ impl EdgePath {
         &self.knots
     }
 
-    /// First place of a piece that is entered forward, else its last [m].
+    /// Place [m] at which a piece is entered: its first one if it is entered forward, else its last one.
     pub(super) fn place_at_knot(&self, piece: usize, forward: bool) -> f64 {
         self.pieces.get(piece).map_or(0.0, |piece| piece.range[usize::from(!forward)])
     }
@@ -114,8 +111,9 @@ impl EdgePath {
         RailPlace::new(foot, arc_length)
     }
 
-    /// The foot of a point on all of the path, and where its piece starts [m]. Beyond a corner that is the
-    /// corner itself, unless it is so near that rounding would say in which direction the point lies.
+    /// The foot of a point on the whole path, and the arc length at which its piece starts [m]. The foot of a point
+    /// beyond a corner is the corner itself, unless the point is so near that rounding would decide the direction to
+    /// it.
     fn nearest_foot(&self, point: DVec2) -> (Foot, f64) {
         let index = self.nearest_piece(point);
         let piece = &self.pieces[index];
@@ -130,7 +128,8 @@ impl EdgePath {
         (foot, piece.start)
     }
 
-    /// The piece nearest to a point; a continuation if that is where the point lies beyond the nearest end.
+    /// Index of the piece nearest to a point: a continuation, if the nearest place is an end and the point lies beyond
+    /// it.
     #[inline]
     fn nearest_piece(&self, point: DVec2) -> usize {
         let rays = usize::from(!self.closed);
@@ -157,9 +156,9 @@ impl EdgePath {
         best
     }
 
-    /// Follows the path from the hint to where the point lies on it. What has gone round more than half of an
-    /// arc since the hint seems to have gone the other way: if that leads off the path, it is looked for on
-    /// all of it.
+    /// Follows the path from the hint to the place of the point on it: piece and place in it [m]. A point that has gone
+    /// round more than half of a circle since the hint seems to have gone the other way: if that leads off the path,
+    /// the whole path is searched.
     fn follow(&self, point: DVec2, hint: &RailHint) -> (usize, f64) {
         let (piece, along) = self.walk(point, hint);
         let off = self.off(piece, point);
@@ -173,7 +172,7 @@ impl EdgePath {
         (nearest, self.pieces[nearest].along(point, self.near_middle(nearest)))
     }
 
-    /// Distance [m] of a point from a piece, continued.
+    /// Distance [m] of a point from the whole line or circle of a piece.
     fn off(&self, piece: usize, point: DVec2) -> f64 {
         self.pieces[piece].foot(piece, point).gap.abs()
     }
@@ -191,7 +190,7 @@ impl EdgePath {
                 break;
             }
             if step == -last_step {
-                // Of an arc it may have gone round more than half of.
+                // Without a corner, the point may have gone round more than half of an arc's circle: its place stays.
                 if self.is_corner(piece, step > 0) {
                     along = along.clamp(first, last);
                 }
@@ -205,7 +204,7 @@ impl EdgePath {
         (piece, along)
     }
 
-    /// The piece after or before; the ranges of continuations see to it that none is asked for beyond them.
+    /// Index of the piece after or before. The infinite ranges of continuations keep the walk from going beyond them.
     fn neighbor(&self, piece: usize, forward: bool) -> usize {
         let count = self.pieces.len();
         if forward { (piece + 1) % count } else { (piece + count - 1) % count }
@@ -227,7 +226,8 @@ impl EdgePath {
     }
 }
 
-/// The foot at a corner of the path, of a point that lies off it in no direction of its pieces.
+/// The foot, at a corner of the path, of a point that has no foot on either piece: the normal lies along the line to
+/// the point, on the side of the corner's normal.
 fn from_corner(corner: &Foot, point: DVec2) -> Foot {
     let offset = point - corner.point;
     let side = if corner.normal.dot(offset) < 0.0 { -1.0 } else { 1.0 };
@@ -245,7 +245,7 @@ fn build_edges(start: DVec2, specs: &[EdgeSpec]) -> Result<Vec<Edge>, RailError>
     let mut from = start;
     let mut edges = Vec::with_capacity(specs.len());
     for (index, spec) in specs.iter().enumerate() {
-        let returns = (spec.to() - start).length() <= FIT * size;
+        let returns = (spec.to() - start).length() <= EdgeSpec::FIT * size;
         let to = if index == last && returns { start } else { spec.to() };
         edges.push(build_edge(index, from, to, spec, size)?);
         from = to;
@@ -266,29 +266,21 @@ fn path_size(start: DVec2, specs: &[EdgeSpec]) -> f64 {
 }
 
 fn build_edge(index: usize, from: DVec2, to: DVec2, spec: &EdgeSpec, size: f64) -> Result<Edge, RailError> {
-    let straight = || {
-        let line = Line::new(from, to).map_err(|source| RailError::Line { edge: index, source })?;
-        Ok(Edge::Line(line))
-    };
-    let arc = match *spec {
-        EdgeSpec::Line { .. } => return straight(),
-        EdgeSpec::Bulge { bulge, .. } if bulge.abs() < FLATTEST_BULGE => return straight(),
-        EdgeSpec::Arc { center, clockwise, .. } if (to - from).length() <= FIT * size => {
-            Arc::circle(center, from, clockwise)
+    let fit_tol = EdgeSpec::FIT * size;
+    let edge = match *spec {
+        EdgeSpec::Arc { center, clockwise, .. } if (to - from).length() <= fit_tol => {
+            Arc::circle(center, from, clockwise).map(Edge::Arc).map_err(EdgeError::from)
         }
-        EdgeSpec::Arc { center, clockwise, .. } => Arc::between(from, to, center, clockwise, FIT * size),
-        EdgeSpec::Bulge { bulge, .. } => {
-            // On the bisector, (1 - bulge^2) / (4 bulge) chords to the left of the chord.
-            let chord = to - from;
-            let center = from + 0.5 * chord + chord.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
-            Arc::between(from, to, center, bulge < 0.0, f64::INFINITY)
-        }
+        _ => spec.edge_between(from, to, fit_tol),
     };
-    arc.map(Edge::Arc).map_err(|source| RailError::Arc { edge: index, source })
+    edge.map_err(|error| match error {
+        EdgeError::Line(source) => RailError::Line { edge: index, source },
+        EdgeError::Arc(source) => RailError::Arc { edge: index, source },
+    })
 }
 
-/// The joints of pieces, also where nothing jumps: who stays on one must be told of the next. Pieces and edges differ by
-/// the continuations of an open path.
+/// The joints of pieces, also those without any jump: a hint that stays on a piece must be moved to the next. An open
+/// path has two pieces more than edges, its continuations.
 fn find_knots(pieces: &[EdgePiece], edges: &[Edge], closed: bool) -> Vec<RailKnot> {
     let count = pieces.len();
     let directions = |piece: usize| -> [DVec2; 2] {

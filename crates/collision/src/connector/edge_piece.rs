@@ -5,7 +5,7 @@ use glam::DVec2;
 use halfgap_geometry::{Arc, DirectionRange, Edge};
 use std::f64::consts::TAU;
 
-/// A piece; places along it are measured from its first point [m].
+/// A piece of a path; places along it are measured from its first point [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EdgePiece {
     curve: PieceCurve,
@@ -54,12 +54,12 @@ impl EdgePiece {
         }
     }
 
-    /// Place half-way along it [m].
+    /// Place half-way along the piece [m].
     pub(super) fn half_way(&self) -> f64 {
         0.5 * (self.range[0] + self.range[1])
     }
 
-    /// Squared distance [m^2] of a point.
+    /// Squared distance [m^2] of a point from the piece.
     #[inline]
     pub(super) fn distance_sq(&self, point: DVec2) -> f64 {
         match &self.curve {
@@ -78,8 +78,8 @@ impl EdgePiece {
         }
     }
 
-    /// Place along the piece's line or circle that is nearest to a point; of its laps, that nearest to the
-    /// place `near`.
+    /// Place [m] along the piece's line or circle that is nearest to a point; on a circle, in the lap nearest to the
+    /// place `near` [m].
     pub(super) fn along(&self, point: DVec2, near: f64) -> f64 {
         match &self.curve {
             PieceCurve::Straight { from, direction } => direction.dot(point - *from),

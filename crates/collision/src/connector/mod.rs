@@ -1,12 +1,12 @@
-//! Connectors: what ties two bodies, or a body and the world, together.
+//! Connectors, which tie two bodies, or a body and the world, together.
 //!
 //! Every connector is one or two rows, each a gap whose target is 0 (see `row`). Pin, slot, rod and rail are bilateral;
 //! a rope and a rail stop only keep their gap from closing. Body a is the primary one, body b the normal one; the force
 //! on a acts along the row's normal.
 //!
-//! `rail` has the rows of rails, on paths made of lines and arcs (`edge_path`, of pieces as in `edge_piece`)
-//! or on a `spline` of `cubic` pieces (with `spline_nearest` and `spline_length`); `box_tree` finds which
-//! piece is near. `align` is what a scene does before its start, `rope` tells when a rope goes taut.
+//! `rail` has the rows of rails, on paths made of lines and arcs (`edge_path`, of pieces as in `edge_piece`) or on a
+//! `spline` of `cubic` pieces (with `spline_nearest` and `spline_length`); `box_tree` finds the piece nearest to a
+//! point. `align` moves bodies to satisfy a connector before a start, `rope` finds the time at which a rope goes taut.
 
 mod align;
 mod box_tree;
@@ -35,7 +35,7 @@ use glam::DVec2;
 use row::Ends;
 use std::sync::Arc;
 
-/// By how much the length of a unit vector may be off: rounding.
+/// Largest deviation of the length of a unit vector from 1 [-]: rounding.
 const UNIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Index of a connector in its world.
@@ -43,7 +43,7 @@ const UNIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 pub struct ConnectorId(pub u32);
 
 impl ConnectorId {
-    /// The index as a number to look up with.
+    /// The index as a `usize`, for lists of connectors.
     #[must_use]
     #[inline]
     pub fn index(self) -> usize {
@@ -54,94 +54,95 @@ impl ConnectorId {
 /// An end of a connector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// The body; [`BodyId::WORLD`] for the background.
+    /// Id of the body; [`BodyId::WORLD`] for the background.
     pub body: BodyId,
-    /// The point [m] in body coordinates about the centre of mass; in world coordinates for the background.
+    /// Point [m] in body coordinates about the centre of mass; in world coordinates for the background.
     pub point: DVec2,
 }
 
-/// What carries the direction of a slot.
+/// Frame in which the direction of a slot is fixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SlotFrame {
-    /// It turns with body a.
+    /// The direction turns with body a.
     A,
-    /// It turns with body b.
+    /// The direction turns with body b.
     B,
-    /// It is fixed in the world.
+    /// The direction is fixed in the world.
     #[default]
     World,
 }
 
-/// What a connector does.
+/// Kind of a connector, with its points and numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConnectorKind {
     /// Keeps two points together.
     Pin {
-        /// One point.
+        /// Point of body a.
         a: Anchor,
-        /// The other point.
+        /// Point of body b.
         b: Anchor,
     },
     /// Keeps two points together along one direction.
     Slot {
-        /// One point.
+        /// Point of body a.
         a: Anchor,
-        /// The other point.
+        /// Point of body b.
         b: Anchor,
-        /// The direction, a unit vector in its frame.
+        /// Direction along which the points stay together, a unit vector in `frame`.
         normal: DVec2,
-        /// The frame of the direction.
+        /// Frame of the direction.
         frame: SlotFrame,
     },
     /// Keeps two points exactly a length apart.
     Rod {
-        /// One point.
+        /// Point of body a.
         a: Anchor,
-        /// The other point.
+        /// Point of body b.
         b: Anchor,
-        /// The length [m].
+        /// Length [m].
         length: f64,
     },
     /// Keeps two points at most a length apart.
     Rope {
-        /// One point.
+        /// Point of body a.
         a: Anchor,
-        /// The other point.
+        /// Point of body b.
         b: Anchor,
-        /// The length [m].
+        /// Length [m].
         length: f64,
     },
     /// Keeps a point on a path that is fixed in the world.
     Rail {
-        /// The point.
+        /// Point of body a.
         a: Anchor,
-        /// The path.
+        /// Path in world coordinates.
         path: Arc<RailPath>,
     },
-    /// Ends a rail.
+    /// Keeps a point on one side of a place of a rail, at which the rail ends.
     RailStop {
-        /// The point that is on the rail.
+        /// Point of body a that is on the rail.
         a: Anchor,
-        /// The path of the rail.
+        /// Path of the rail.
         path: Arc<RailPath>,
-        /// Where the rail ends: arc length from its first point [m].
+        /// Arc length [m] from the path's first point at which the rail ends.
         at: f64,
-        /// The rail ends above that arc length, else below it.
+        /// True if the rail ends above `at`, so that the point stays at or below it; false for the other way round.
         upper: bool,
     },
 }
 
-/// A connector.
+/// A connector of two bodies, or of a body and the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connector {
-    /// What it does.
+    /// Kind of the connector, with its points and numbers.
     pub kind: ConnectorKind,
-    /// Share of the closing speed with which an impact in it ends, 0 to 1.
+    /// Coefficient of restitution [-], 0 to 1: the fraction of the closing speed that remains after an impact in the
+    /// connector.
     pub elasticity: f64,
 }
 
 impl Connector {
-    /// A connector with checked numbers; the normal of a slot is made a unit vector.
+    /// Builds a connector with checked numbers; the normal of a slot is made a unit vector.
     ///
     /// # Errors
     /// Ends on the same body, or a number out of its range.
@@ -158,10 +159,10 @@ impl Connector {
         connector.check().map(|()| connector)
     }
 
-    /// Checks a connector that was not made by [`new`](Self::new), or changed since.
+    /// Checks a connector that was not made by [`new`](Self::new), or was changed since.
     ///
     /// # Errors
-    /// As of [`new`](Self::new); here the normal of a slot must be a unit vector.
+    /// The errors of [`new`](Self::new); also a normal of a slot that is not a unit vector.
     pub fn check(&self) -> Result<(), ConnectorError> {
         if !(0.0..=1.0).contains(&self.elasticity) {
             return Err(ConnectorError::BadElasticity(self.elasticity));
@@ -186,7 +187,7 @@ impl Connector {
                 if fine { Ok(()) } else { Err(ConnectorError::BadNormal(normal.x, normal.y)) }
             }
             ConnectorKind::RailStop { at, path, .. } => {
-                // The length is a sum, and so is where a stop is at its end.
+                // The length is a sum that is rounded, and so is the arc length of a stop at the path's end.
                 let length = path.length();
                 let fine = (0.0..=(1.0 + SAME_PLACE) * length).contains(at);
                 if fine { Ok(()) } else { Err(ConnectorError::BadStop { at: *at, length }) }
@@ -195,7 +196,7 @@ impl Connector {
         }
     }
 
-    /// The points it ties together: `a`, and `b` where there is one.
+    /// The points that the connector ties together: `a`, and `b` if there is one (not for rails and their stops).
     #[must_use]
     pub fn anchors(&self) -> (&Anchor, Option<&Anchor>) {
         match &self.kind {
@@ -207,34 +208,34 @@ impl Connector {
         }
     }
 
-    /// The primary and the normal body; the latter is the background for rails.
+    /// Ids of the primary body a and of the normal body b; the latter is the background for rails and their stops.
     #[must_use]
     pub fn bodies(&self) -> [BodyId; 2] {
         let (a, b) = self.anchors();
         [a.body, b.map_or(BodyId::WORLD, |b| b.body)]
     }
 
-    /// How many rows it has.
+    /// Number of rows: 2 for a pin, else 1.
     #[must_use]
     #[inline]
     pub fn row_count(&self) -> usize {
         if matches!(self.kind, ConnectorKind::Pin { .. }) { 2 } else { 1 }
     }
 
-    /// True if its gaps may neither close nor open.
+    /// True if the gaps of the connector may neither close nor open: for all kinds but ropes and rail stops.
     #[must_use]
     #[inline]
     pub fn is_bilateral(&self) -> bool {
         !matches!(self.kind, ConnectorKind::Rope { .. } | ConnectorKind::RailStop { .. })
     }
 
-    /// True for the end of some rail.
+    /// True for a rail stop, of whichever rail.
     #[must_use]
     pub fn is_stop(&self) -> bool {
         matches!(self.kind, ConnectorKind::RailStop { .. })
     }
 
-    /// True for the end of a given rail: of the same point, and on the same path.
+    /// True for a stop of the given rail: of the same point, and on the same path.
     #[must_use]
     pub fn is_stop_of(&self, rail: &Self) -> bool {
         match (&self.kind, &rail.kind) {
@@ -245,7 +246,7 @@ impl Connector {
         }
     }
 
-    /// The rail's path, if it has one.
+    /// The path of a rail or of a rail stop; `None` for other connectors.
     #[must_use]
     pub fn path(&self) -> Option<&Arc<RailPath>> {
         match &self.kind {
@@ -254,14 +255,15 @@ impl Connector {
         }
     }
 
-    /// Measures a row (pin: 0 along x, 1 along y) for given bodies a and b; the background is [`Moving::BACKGROUND`].
+    /// Measures a row (pin: 0 along x, 1 along y; else 0) for given bodies a and b; the background is
+    /// [`Moving::BACKGROUND`].
     #[must_use]
     #[inline]
     pub fn measure(&self, row: usize, a: &Moving, b: &Moving) -> ConnectorSample {
         self.measure_near(row, a, b, None)
     }
 
-    /// Both rows of a pin at once, which have most of their terms in common; `None` for other connectors.
+    /// Measures both rows of a pin at once, which share most of their terms; `None` for other connectors.
     #[must_use]
     #[inline(always)]
     pub fn measure_pin(&self, a: &Moving, b: &Moving) -> Option<[ConnectorSample; 2]> {
@@ -272,9 +274,10 @@ impl Connector {
         Some([ends.along(off.x, DVec2::X, 0.0), ends.along(off.y, DVec2::Y, 0.0)])
     }
 
-    /// As [`Connector::measure`]; rails look for the nearest point near `hint`, or stay on its piece.
+    /// Measures a row as [`Connector::measure`] does, where rails and their stops search the nearest point near `hint`,
+    /// or on its piece if the hint stays there.
     ///
-    /// A rail that crosses or nears itself needs the hint, and with it the search is quicker.
+    /// A rail that crosses or nears itself needs the hint, and the search is quicker with it.
     #[must_use]
     #[inline]
     pub fn measure_near(
@@ -309,7 +312,7 @@ impl Connector {
         }
     }
 
-    /// True if its normal never turns.
+    /// True if the normals of the rows never turn.
     #[must_use]
     pub(crate) fn has_fixed_normal(&self) -> bool {
         match &self.kind {
@@ -335,19 +338,19 @@ impl Connector {
             ConnectorKind::Rod { length, .. } => [POINT, Some(*length)],
             ConnectorKind::Rope { length, .. } => [POINT, Some(-length)],
             ConnectorKind::Rail { path, .. } => {
-                // The left of the path is its outside: a turn to the left is hollow.
+                // The left of the path is its outside: a path that turns to the left is concave.
                 let curvature = path.foot(sample.point_b, None).curvature;
                 [POINT, (curvature != 0.0).then(|| -1.0 / curvature)]
             }
         }
     }
 
-    /// How far off it is [m]: the gap of a bilateral connector, of a pin the distance of its points; by how
-    /// much the others are beyond their limit.
+    /// Violation of the connector [m], not negative: the size of a bilateral connector's gap (of a pin, the distance of
+    /// its points); for the others, the distance beyond their limit.
     ///
-    /// `hint` is where a rail or a stop has seen its point last, as in [`Connector::measure_near`]. A rail's
-    /// point that has been seen may be on any continuation of the path; otherwise, as at a start, only where
-    /// the nearest place is an end.
+    /// `hint` is the place at which a rail or a stop last found its point, as in [`Connector::measure_near`]. With a
+    /// hint, a rail's point may be on any continuation of the path; without one, as at a start, only where the nearest
+    /// place is an end.
     #[must_use]
     pub fn error(&self, a: &Moving, b: &Moving, hint: Option<&RailHint>) -> f64 {
         if let (ConnectorKind::Rail { a: on_a, path }, Some(_)) = (&self.kind, hint) {
@@ -361,7 +364,8 @@ impl Connector {
     }
 }
 
-/// The row of a slot: on the body that carries the direction, the foot of the other body's point. The world carries its own.
+/// The row of a slot. On the body that carries the direction, the force acts at the foot of the other body's point; a
+/// direction of the world is carried by an end on the background, if there is one.
 #[inline]
 fn slot_row(anchors: [&Anchor; 2], [a, b]: [&Moving; 2], normal: DVec2, frame: SlotFrame) -> ConnectorSample {
     let [on_a, on_b] = [a.pose.point_to_world(anchors[0].point), b.pose.point_to_world(anchors[1].point)];

@@ -9,10 +9,10 @@ use super::spline::Spline;
 use glam::DVec2;
 use halfgap_geometry::{Aabb, EdgeSpec};
 
-/// Arc lengths that differ by no more than this part of the path's are those of one place.
+/// Difference of arc lengths up to which they belong to one place, as a fraction of the path's length [-].
 pub(super) const SAME_PLACE: f64 = 1e-12;
 
-/// The path of a rail.
+/// The path of a rail, fixed in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RailPath {
     curve: Curve,
@@ -24,11 +24,11 @@ enum Curve {
     Spline(Spline),
 }
 
-/// A place on a path: the nearest to some point, or the one at some arc length.
+/// A place on a path: the one nearest to a point, or the one at an arc length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RailPlace {
     foot: Foot,
-    /// Arc length from the path's first point [m]; negative or more than the path's length beyond its ends.
+    /// Arc length [m] from the path's first point; beyond the ends, negative or more than the path's length.
     pub arc_length: f64,
 }
 
@@ -37,31 +37,31 @@ pub struct RailPlace {
 pub(super) struct Foot {
     /// Index of the piece.
     pub(super) piece: u32,
-    /// Place in the piece [m]: of a spline, as its cubics measure it.
+    /// Place in the piece [m]; on a spline, the parameter of its cubic.
     pub(super) parameter: f64,
     /// The point of the path [m].
     pub(super) point: DVec2,
     /// Unit vector of travel.
     pub(super) tangent: DVec2,
-    /// Unit vector to the left of it.
+    /// Unit vector to the left of the tangent.
     pub(super) normal: DVec2,
     /// Curvature [1/m], positive to the left.
     pub(super) curvature: f64,
-    /// Its derivative by the arc length [1/m^2].
+    /// Derivative of the curvature by the arc length [1/m^2].
     pub(super) curvature_rate: f64,
-    /// How far the point lies to the left of the path [m].
+    /// Signed distance [m] of the query point from the path, positive to the left.
     pub(super) gap: f64,
 }
 
-/// Where on a path to look for the nearest point.
+/// Place on a path near which to search the nearest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RailHint {
     pub(super) piece: u32,
     pub(super) parameter: f64,
     pub(super) stays: bool,
-    /// The row's normal points to the right of the path, not to the left.
+    /// True if the row's normal points to the right of the path, not to the left.
     pub(super) faces_right: bool,
-    /// How far before a stop the point was [m]: tells laps of a closed path apart.
+    /// Arc length [m] that the point last had left before a stop: tells laps of a closed path apart.
     pub(super) left: Option<f64>,
 }
 
@@ -70,31 +70,32 @@ pub struct RailHint {
 pub struct RailKnot {
     /// Arc length from the path's first point [m].
     pub arc_length: f64,
-    /// Index of the piece before it.
+    /// Index of the piece before the joint.
     pub before: u32,
-    /// Index of the piece after it.
+    /// Index of the piece after the joint.
     pub after: u32,
-    /// By how much the direction of travel turns there [rad], positive to the left: 0 where the joint is smooth.
+    /// Turn [rad] of the direction of travel at the joint, positive to the left; 0 for a smooth joint.
     pub turn: f64,
-    /// Curvature of the two pieces [1/m], positive to the left.
+    /// Curvatures of the pieces before and after the joint [1/m], positive to the left.
     pub curvatures: [f64; 2],
 }
 
 /// A joint of a path through points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SplineJoint {
-    /// Where it is [m].
+    /// Point of the joint [m].
     pub point: DVec2,
-    /// Unit vector along the path, as a velocity points.
+    /// Unit vector along the path, in the direction in which the joint is approached.
     pub tangent: DVec2,
-    /// Length of the piece up to it [m], as the points' distances measure it.
+    /// Width in the parameter [m] of the piece up to the joint: the distance of the two points that the piece joins.
     pub width: f64,
-    /// By how much the third derivative of the path by its parameter, nearly its length, jumps there [1/m^2].
+    /// Size [1/m^2] of the jump, at the joint, of the third derivative of the path by its parameter, which is nearly
+    /// its length.
     pub jump: f64,
 }
 
 impl RailPath {
-    /// The path of lines and arcs that starts at a point [m]; closed if it ends there.
+    /// Builds the path of lines and arcs that starts at a point [m]; it is closed if it ends there.
     ///
     /// End points and arc radii may be off by 1e-6 of the path's size and are then made exact. An arc that
     /// ends where it starts is a full circle.
@@ -105,7 +106,8 @@ impl RailPath {
         Ok(Self { curve: Curve::Edges(EdgePath::new(start, edges)?) })
     }
 
-    /// The cubic spline through points [m], with their distances as parameter: periodic if `closed`, else natural.
+    /// Builds the cubic spline through points [m], with their distances as parameter: periodic if `closed`, else
+    /// natural.
     ///
     /// A closed spline runs from the last point to the first; the first may be repeated at the end.
     ///
@@ -115,7 +117,7 @@ impl RailPath {
         Ok(Self { curve: Curve::Spline(Spline::new(points, closed)?) })
     }
 
-    /// Length [m], without what lies beyond the ends.
+    /// Length [m] of the path, without the continuations beyond open ends.
     #[must_use]
     pub fn length(&self) -> f64 {
         match &self.curve {
@@ -124,7 +126,7 @@ impl RailPath {
         }
     }
 
-    /// True if it ends where it starts and goes on.
+    /// True if the path ends at its start and goes on from there.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         match &self.curve {
@@ -133,7 +135,7 @@ impl RailPath {
         }
     }
 
-    /// A box around it, without what lies beyond the ends.
+    /// A box [m] around the path, without the continuations beyond open ends.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         match &self.curve {
@@ -142,13 +144,14 @@ impl RailPath {
         }
     }
 
-    /// True for a curve through points, whose third derivatives jump at each of them.
+    /// True for a spline through points, whose third derivative jumps at each of them.
     #[must_use]
     pub fn is_spline(&self) -> bool {
         matches!(self.curve, Curve::Spline(_))
     }
 
-    /// The joints of lines and arcs, and of an open path with its continuations, by arc length; a spline has none.
+    /// The joints of lines and arcs, and of an open path with its continuations, in the order of arc lengths; none for
+    /// a spline.
     #[must_use]
     pub fn knots(&self) -> &[RailKnot] {
         match &self.curve {
@@ -157,8 +160,8 @@ impl RailPath {
         }
     }
 
-    /// The next joint of a spline along a velocity [m/s], from the place of a hint. One that is all but
-    /// reached counts as passed. `None` beyond an open end, and on a path of edges.
+    /// The next joint of a spline along a velocity [m/s], from the place of a hint. A joint that is all but
+    /// reached counts as passed. `None` if there is no joint before an open end, and on a path of edges.
     #[must_use]
     pub fn joint_ahead(&self, hint: &RailHint, velocity: DVec2) -> Option<SplineJoint> {
         match &self.curve {
@@ -167,7 +170,7 @@ impl RailPath {
         }
     }
 
-    /// The hint to look from a knot forward, or backward, along the piece that comes next.
+    /// The hint to search from a knot forward or backward, along the piece that comes next.
     #[must_use]
     pub fn hint_past(&self, knot: &RailKnot, forward: bool) -> RailHint {
         let piece = if forward { knot.after } else { knot.before };
@@ -179,8 +182,7 @@ impl RailPath {
     }
 
     /// The two sides of a corner, before and after a knot: hints to stay on its pieces, whose rows face into the
-    /// angle between them. A point in the corner is where both gaps are zero; on either piece the gap to the
-    /// other is positive.
+    /// angle between them. Both gaps are zero at the corner; on either piece the gap to the other is positive.
     #[must_use]
     pub fn corner_sides(&self, knot: &RailKnot) -> [RailHint; 2] {
         [false, true].map(|forward| RailHint {
@@ -189,7 +191,7 @@ impl RailPath {
         })
     }
 
-    /// The sides of the corner that lies within a distance [m] of a point; `None` if there is none so near.
+    /// The two sides of a corner that lies within a distance [m] of a point; `None` if there is none so near.
     #[must_use]
     pub fn corner_at(&self, point: DVec2, within: f64) -> Option<[RailHint; 2]> {
         let is_near = |knot: &RailKnot| self.place_at(knot.arc_length).point().distance(point) <= within;
@@ -197,7 +199,7 @@ impl RailPath {
         corners.find(|knot| is_near(knot)).map(|knot| self.corner_sides(knot))
     }
 
-    /// True if the piece of a hint ends in a corner, forward or backward, that lies at an arc length [m], but for rounding.
+    /// True if the piece of a hint ends, forward or backward, in a corner at the given arc length [m], to rounding.
     #[must_use]
     pub fn ends_in_corner(&self, hint: &RailHint, forward: bool, arc_length: f64) -> bool {
         let is_there = |knot: &RailKnot| {
@@ -209,8 +211,9 @@ impl RailPath {
         self.knots().iter().any(|knot| knot.turn != 0.0 && ends(knot) && is_there(knot))
     }
 
-    /// The place nearest to a point [m]: of the whole path without a hint, else the first found along the path from the
-    /// hint, or on the hint's piece if it stays there. Beyond an open end, that on the straight continuation.
+    /// The place nearest to a point [m]: on the whole path without a hint, else the first one found along the path from
+    /// the hint, or the one on the hint's piece if the hint stays there. Beyond an open end it lies on the straight
+    /// continuation.
     #[must_use]
     pub fn nearest(&self, point: DVec2, hint: Option<&RailHint>) -> RailPlace {
         match &self.curve {
@@ -222,7 +225,8 @@ impl RailPath {
         }
     }
 
-    /// The hint to look near the place that [`RailPath::nearest`] finds, for less than that.
+    /// The hint to search near the place that [`RailPath::nearest`] finds, at less cost: arc lengths on splines are not
+    /// computed.
     #[must_use]
     pub fn hint_near(&self, point: DVec2, hint: Option<&RailHint>) -> RailHint {
         match &self.curve {
@@ -231,8 +235,8 @@ impl RailPath {
         }
     }
 
-    /// The place at an arc length [m]: beyond the ends of an open path on its continuation, on a closed one
-    /// in another lap.
+    /// The place at an arc length [m]: beyond the ends of an open path on its continuations, of a closed path in
+    /// another lap.
     #[must_use]
     pub fn place_at(&self, arc_length: f64) -> RailPlace {
         match &self.curve {
@@ -311,13 +315,13 @@ impl RailPlace {
         self.foot.curvature_rate
     }
 
-    /// How far the point lies to the left of the path [m].
+    /// Signed distance [m] of the query point from the path, positive to the left; 0 for a place at an arc length.
     #[must_use]
     pub fn gap(&self) -> f64 {
         self.foot.gap
     }
 
-    /// A hint to look near this place.
+    /// A hint to search near this place.
     #[must_use]
     pub fn hint(&self) -> RailHint {
         self.foot.hint()
@@ -332,34 +336,35 @@ impl Foot {
 }
 
 impl RailHint {
-    /// The hint to stay on the piece, continued as the circle or straight line that it is, although another
-    /// may be nearer: so that nothing jumps before an event at the joint is handled. On a spline, where
-    /// nothing jumps, it is as before.
+    /// The hint to stay on the piece, continued as the circle or straight line that it is, although another piece
+    /// may be nearer: no gap then jumps before an event at the joint is handled. It has no effect on a spline, where
+    /// nothing jumps.
     #[must_use]
     pub fn staying(self) -> Self {
         Self { stays: true, ..self }
     }
 
-    /// The same place, for a stop before which the point was so far [m]: on a closed path it is what it is nearest to
-    /// then, a lap more or less. `None` if that is not known: the point then is before the stop, or just at it.
+    /// The hint for a stop before which the point last had the arc length `left` [m] left: on a closed path, of the
+    /// gaps that differ by laps, the one nearest to it is measured. `None` if it is not known: the point then is before
+    /// the stop, or just at it.
     #[must_use]
     pub fn with_left(self, left: Option<f64>) -> Self {
         Self { left, ..self }
     }
 
-    /// True if it stays on the piece.
+    /// True if the hint stays on its piece.
     #[must_use]
     pub fn is_staying(&self) -> bool {
         self.stays
     }
 
-    /// How far before a stop the point was [m], if that is known.
+    /// Arc length [m] that the point last had left before a stop, if it is known.
     #[must_use]
     pub fn left(&self) -> Option<f64> {
         self.left
     }
 
-    /// The same place, where the row of a rail faces left again, as everywhere but in a corner.
+    /// The hint with the row of a rail facing left again, as everywhere but in a corner.
     #[must_use]
     pub fn facing_left(self) -> Self {
         Self { faces_right: false, ..self }

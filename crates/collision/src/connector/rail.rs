@@ -11,11 +11,11 @@ use super::row::{ConnectorSample, Ends};
 use crate::motion::Moving;
 use glam::DVec2;
 
-/// On a closed rail a point that is no farther beyond a stop than this part of a lap is just at it, where nobody knows from
-/// which side it came.
+/// Distance beyond a stop of a closed rail up to which a point counts as just at it, as a fraction of a lap [-]; used
+/// if the side that it came from is not known.
 const AT_STOP: f64 = 1e-9;
 
-/// The row across the path, positive to the left of it, or where the hint faces.
+/// The row across the path, its gap positive to the left, or to the right if the hint faces there.
 #[inline]
 pub(super) fn rail_row(
     point: DVec2,
@@ -35,7 +35,7 @@ pub(super) fn rail_row(
     ends.row(foot.gap, foot.normal, foot.tangent * -turn, gamma)
 }
 
-/// The row along the path: `sign` is +1 if the rail ends below the arc length `at` [m], -1 if above.
+/// The row along the path: `sign` is +1 if the rail ends below the arc length `at` [m], -1 if above it.
 pub(super) fn stop_row(
     point: DVec2,
     body: &Moving,
@@ -57,13 +57,14 @@ pub(super) fn stop_row(
     let near = hint.and_then(RailHint::left);
     let gap = distance_to_stop(path, place.arc_length, (at, sign), near);
     let mut row = ends.row(gap, normal, normal_rate, gamma);
-    // Beside the rail its foot moves faster or slower than the point itself.
+    // The foot of a point beside the rail moves faster or slower than the point itself.
     row.kinematics.rate = sign * along;
     row.kinematics.jacobian = row.kinematics.jacobian.map(|entry| entry * stretch);
     row
 }
 
-/// Arc length [m] left before the stop; on a closed path nearest to what it was before.
+/// Arc length [m] left before the stop, negative beyond it; on a closed path, in the lap nearest to the last one,
+/// `near`.
 fn distance_to_stop(path: &RailPath, arc_length: f64, (at, sign): (f64, f64), near: Option<f64>) -> f64 {
     let left = sign * (arc_length - at);
     if !path.is_closed() {

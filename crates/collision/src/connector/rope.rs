@@ -1,8 +1,8 @@
-//! When does a slack rope go taut?
+//! The time at which a slack rope goes taut.
 //!
-//! A rope is the inside of a circle: the point of body a within a hollow of the rope's length about the point
-//! of body b. So its gap is that of a vertex in a concave arc, with target 0, and the closed forms and the
-//! march of feature pairs serve. At the centre of the circle the gap has no normal; the march bounds
+//! A rope keeps the point of body a inside a circle of the rope's length about the point
+//! of body b. Its gap is therefore that of a vertex in a concave arc, with target 0, and the closed forms and the
+//! march of feature pairs apply. At the centre of the circle the gap has no normal; the march bounds
 //! length^2 - |d|^2 there instead.
 
 use crate::closed::quadratic;
@@ -23,17 +23,17 @@ pub struct Rope {
     pub length: f64,
 }
 
-/// What a search for a rope's going taut found.
+/// Result of a search for the time at which a rope goes taut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RopeSearch {
     /// The rope goes taut at this time [s]: its length is reached, and would be exceeded.
     Taut(f64),
-    /// Proof that it does not before this time [s].
+    /// Proof that the rope does not go taut before this time [s].
     NoneBefore(f64),
 }
 
-/// Goes on with a search, over [`from`, `span`) [s], from a time before which the rope is known not to go
-/// taut; bodies are given as motion and the offset [s] in it at which the search's time is 0.
+/// Searches [`from`, `span`) [s] for the time at which a rope goes taut, which must not be before `from`. Bodies are
+/// given as a motion and the offset [s] in it at time 0 of the search.
 ///
 /// A rope at its length that slackens does not count until it comes back. May pause before `span`, with proof
 /// for the part it has searched; every call makes progress.
@@ -48,7 +48,7 @@ pub fn rope_contact<A: Motion, B: Motion>(
 ) -> RopeSearch {
     let end = round(rope.point_a, 0.0);
     let hollow = round(rope.point_b, -rope.length);
-    // However far it is overstretched, it is the same rope: nothing lies behind.
+    // No rope lies behind, however far it is overstretched.
     let pair = Pair {
         kind: PairKind::Inner,
         feature_a: &end,
@@ -72,7 +72,7 @@ pub fn rope_contact<A: Motion, B: Motion>(
         let wanted = length
             .unwrap_or_else(|| first_length(rope, &Window::new(motion_a, motion_b, offsets, start, span)));
         let stop = span.min(start + wanted);
-        // A window shorter than the clock resolves: let it be one tick.
+        // A window shorter than the resolution of the clock is made one tick long.
         let stop = if stop > start { stop } else { start.next_up() };
         let window = Window::new(motion_a, motion_b, offsets, start, stop);
         match window.march(&pair, start, stop, settings.march_steps.max(1)) {
@@ -101,7 +101,7 @@ fn by_closed_form<A: Motion, B: Motion>(
     Some(time.map_or(RopeSearch::NoneBefore(span), RopeSearch::Taut))
 }
 
-/// A first window in which the ends move by about half of the rope's length.
+/// Length [s] of a first window, in which the ends move by at most half of the rope's length.
 fn first_length<A: Motion, B: Motion>(rope: &Rope, whole: &Window<'_, A, B>) -> f64 {
     let turning = whole.spin_a.speed * rope.point_a.length() + whole.spin_b.speed * rope.point_b.length();
     let speed = whole.speed + turning;

@@ -1,4 +1,4 @@
-//! What a connector's row knows at one moment: gap, normal, Jacobian and gamma.
+//! The rows of connectors at one moment: gap, normal, Jacobian and gamma.
 //!
 //! With arms U1, U2 from the centres of mass to the two points, u their relative velocity and
 //! p = n.(-wA^2 U1 + wB^2 U2):
@@ -15,13 +15,13 @@ use glam::DVec2;
 /// One row of a connector at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConnectorSample {
-    /// How far off the row is [m]; its target is 0.
+    /// Gap of the row [m], whose target is 0.
     pub gap: f64,
     /// Unit vector of the world along which body b pushes body a.
     pub normal: DVec2,
-    /// Where the force on body a acts [m].
+    /// Point at which the force on body a acts [m].
     pub point_a: DVec2,
-    /// Where the force on body b acts [m].
+    /// Point at which the force on body b acts [m].
     pub point_b: DVec2,
     /// Rate, Jacobian over (vA, wA, vB, wB), and the acceleration of the gap that velocities alone cause.
     pub kinematics: GapKinematics,
@@ -57,7 +57,7 @@ impl Ends {
         [n.x, n.y, self.arms[0].perp_dot(n), -n.x, -n.y, -self.arms[1].perp_dot(n)]
     }
 
-    /// The row whose rate is n.velocity, given what else its normal does.
+    /// The row whose rate is n.velocity, given its gap, the rate of its normal and gamma.
     #[inline]
     pub(super) fn row(&self, gap: f64, normal: DVec2, normal_rate: DVec2, gamma: f64) -> ConnectorSample {
         ConnectorSample {
@@ -83,8 +83,8 @@ impl Ends {
         self.row(gap, normal, across * turn, gamma)
     }
 
-    /// The row between two centres; `sign` is +1 if it measures how much farther than `length` [m] they are
-    /// apart, -1 if how much nearer. Where they coincide every normal is right, and +x is taken.
+    /// The row between two centres. Its gap is the excess of their distance over `length` [m] if `sign` is +1, the
+    /// shortfall if it is -1. If the centres coincide, every normal is right, and +x is taken.
     #[inline]
     pub(super) fn between(&self, length: f64, sign: f64) -> ConnectorSample {
         let d = self.points[0] - self.points[1];

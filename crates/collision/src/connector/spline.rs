@@ -14,22 +14,23 @@ use super::path::SplineJoint;
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
-/// Points closer than this part of the spline's size are one.
+/// Distance up to which points count as one, as a fraction of the size of all of them [-].
 const COINCIDENT: f64 = 1e-9;
-/// A span of a spline turns by about this at most [rad].
+/// Largest turn of a span of a spline [rad], approximately.
 const SPAN_TURN: f64 = 0.25;
-/// Where the speed by the parameter, mostly about 1, falls below this, the spline has a cusp.
+/// Speed by the parameter [-], mostly about 1, below which the spline has a cusp.
 const SLOWEST: f64 = 1e-3;
-/// Most spans of a piece: a piece that is nowhere slower than `SLOWEST` rarely needs as many.
+/// Largest number of spans of a piece: one that needs more is refused as a cusp, but a piece that is nowhere slower
+/// than [`SLOWEST`] rarely needs as many.
 const MOST_SPANS: f64 = 256.0;
-/// A joint nearer than this part of the piece up to it counts as passed.
+/// Distance to a joint up to which it counts as passed, as a fraction of the width of the piece up to it [-].
 const PASSED: f64 = 1.0 / 128.0;
 
-/// The spline.
+/// A cubic spline.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Spline {
     pub(super) pieces: Vec<Cubic>,
-    /// Equal parts of the pieces that turn little, in order.
+    /// Equal parts of the pieces, each of which turns little, in order.
     pub(super) spans: Vec<Span>,
     /// Index of the first span of every piece.
     pub(super) first_span: Vec<usize>,
@@ -38,13 +39,13 @@ pub(super) struct Spline {
     pub(super) tree: BoxTree,
 }
 
-/// A part of a piece.
+/// A part of a piece that turns little.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     pub(super) piece: usize,
-    /// Parameters at its ends.
+    /// Parameters at the ends of the span [m].
     pub(super) range: [f64; 2],
-    /// Arc length of the spline at its start [m].
+    /// Arc length of the spline at the start of the span [m].
     pub(super) start: f64,
 }
 
@@ -69,7 +70,7 @@ impl Spline {
         self.tree.bounds()
     }
 
-    /// The curve at a parameter of a piece, straight beyond the ends of an open spline.
+    /// The curve about a parameter of a piece, straight beyond the piece's ends as an open spline is.
     #[inline]
     pub(super) fn jet(&self, piece: usize, u: f64) -> Jet {
         let cubic = &self.pieces[piece];
@@ -80,7 +81,7 @@ impl Spline {
         cubic.jet(end).straight_on(u - end)
     }
 
-    /// The next joint along a velocity; the ends of an open spline are none, since it goes on straight.
+    /// The next joint along a velocity. The ends of an open spline are not joints, since it goes on straight.
     pub(super) fn joint_ahead(&self, (piece, u): (usize, f64), velocity: DVec2) -> Option<SplineJoint> {
         let cubic = self.pieces.get(piece)?;
         let forward = self.jet(piece, u).slope.dot(velocity) >= 0.0;
@@ -93,7 +94,7 @@ impl Spline {
         Some(SplineJoint { point: at.point, tangent, width: here.width, jump })
     }
 
-    /// The piece after another, or before it.
+    /// Index of the piece after another, or before it; `None` beyond an open end.
     fn beside(&self, piece: usize, forward: bool) -> Option<usize> {
         let count = self.pieces.len();
         let next = if forward { piece + 1 } else { piece + count - 1 };
@@ -118,7 +119,7 @@ impl Spline {
     }
 }
 
-/// In how many parts, a power of two, the piece turns little; `None` if it has a cusp.
+/// Number of equal parts, a power of two, each of which turns little; `None` if the piece has a cusp.
 fn span_count(cubic: &Cubic) -> Option<u32> {
     let mut count = 1u32;
     loop {
@@ -144,7 +145,7 @@ fn span_count(cubic: &Cubic) -> Option<u32> {
     }
 }
 
-/// A box around a span: its chord, and by how much a curve can leave it.
+/// A box around a span: its chord, grown by the distance [m] that the curve can leave it.
 fn span_box(cubic: &Cubic, [from, to]: [f64; 2]) -> Aabb {
     let rise = cubic.largest_second(from, to) * (to - from) * (to - from) / 8.0;
     Aabb::around(cubic.point(from)).including(cubic.point(to)).grown(rise)
@@ -212,7 +213,8 @@ fn closed_seconds(widths: &[f64], slopes: &[DVec2]) -> Vec<DVec2> {
     let before = |i: usize| (i + count - 1) % count;
     let mut diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (widths[before(i)] + widths[i])).collect();
     let mut seconds: Vec<DVec2> = (0..count).map(|i| (slopes[i] - slopes[before(i)]) * 6.0).collect();
-    // The two corner entries are a matrix of rank one, corner (1, .., 1)(1, .., 1)^T, more on the diagonal.
+    // The two corner entries belong to a matrix of rank one, corner (1, 0, .., 0, 1)(1, 0, .., 0, 1)^T, whose diagonal
+    // entries are subtracted first.
     let corner = widths[count - 1];
     diagonal[0] -= corner;
     diagonal[count - 1] -= corner;
@@ -224,7 +226,7 @@ fn closed_seconds(widths: &[f64], slopes: &[DVec2]) -> Vec<DVec2> {
     seconds.iter().zip(&unit).map(|(&second, &unit)| second - unit * share).collect()
 }
 
-/// Solves a symmetric tridiagonal system in place.
+/// Solves a symmetric tridiagonal system with the entries `beside` the diagonal, in place of its right side.
 fn solve_tridiagonal(diagonal: &[f64], beside: &[f64], right: &mut [DVec2]) {
     let mut pivots = diagonal.to_vec();
     for i in 1..diagonal.len() {

@@ -8,20 +8,20 @@ use super::cubic::Cubic;
 use super::path::RailPlace;
 use super::spline::Spline;
 
-/// Positive nodes and their weights on [-1, 1].
+/// Positive nodes and their weights of the Gauss-Legendre rule with eight points on [-1, 1].
 const NODES: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_3),
 ];
-/// A step below this part of a span is the last of Newton's: the next would be rounding.
+/// Step of Newton's method up to which it is the last, as a fraction of a span's width [-]: the next would be rounding.
 const SETTLED: f64 = 1e-8;
-/// Most steps of Newton's method: it starts within a span, along which the speed hardly changes.
+/// Largest number of steps of Newton's method: it starts within a span, along which the speed hardly changes.
 const MOST_STEPS: u32 = 16;
 
 impl Spline {
-    /// Sums up the arc lengths of the spans.
+    /// Sets the arc lengths at which the spans start, and the total length.
     pub(super) fn measure_length(&mut self) {
         let mut length = 0.0;
         for span in &mut self.spans {
@@ -48,7 +48,7 @@ impl Spline {
         span.start + arc_length(cubic, span.range[0], u)
     }
 
-    /// The place at an arc length [m].
+    /// The place at an arc length [m], of a closed spline in any lap.
     pub(super) fn place_at(&self, arc_length: f64) -> RailPlace {
         let arc_length = if self.closed { arc_length.rem_euclid(self.length) } else { arc_length };
         let (piece, u) = self.parameter_at(arc_length);

@@ -4,7 +4,7 @@
 //! a hint steps of Newton's method, carried to the order of 4, find the root of F. Without one, spans are
 //! searched from near to far: a curve leaves its chord by at most |Q''| w^2/8 over a width w, which rules out
 //! most; where |Q'|^2 > |E| |Q''| on all of a span the distance has one minimum there, found by Newton's
-//! method in a bracket; what allows neither is split. From the best of these it goes on as from a hint.
+//! method in a bracket; a span that allows neither is split. The search goes on from the best minimum as from a hint.
 
 use super::cubic::Cubic;
 use super::edge_path::NEARER;
@@ -12,18 +12,20 @@ use super::path::{Foot, RailHint};
 use super::spline::Spline;
 use glam::DVec2;
 
-/// A step below this part of a span is the last: what it misses is of the order of its fourth power.
+/// Step up to which it is the last, as a fraction of a span's width [-]: its error is of the order of its fourth power.
 const SETTLED: f64 = 1e-4;
-/// The same for a step over a joint, where the curve goes on as another cubic or straight.
+/// Step over a joint, where the curve goes on as another cubic or straight, up to which it is the last, as a fraction
+/// of a span's width [-].
 const SETTLED_BEYOND: f64 = 1e-8;
-/// A bracketed search ends with a step below this part of a span: enough to tell minima apart and to start
-/// Newton's method.
+/// Step up to which it is the last of a bracketed search, as a fraction of the searched part's width [-]: enough to
+/// tell minima apart and to start Newton's method.
 const NEAR: f64 = 1e-5;
-/// Steps of Newton's method from a hint before the whole spline is searched: from nearby it takes two.
+/// Number of steps of Newton's method from a hint before the whole spline is searched: from nearby it takes two.
 const STEPS_FROM_HINT: u32 = 12;
-/// Most steps of the bracketed method: by bisection alone it takes 17.
+/// Largest number of steps of the bracketed method: by bisection alone it takes 17.
 const BRACKETED_STEPS: u32 = 32;
-/// How often a span is halved: only a point near a centre of curvature, equally far from much of it, needs as many.
+/// Largest number of halvings of a span: only a point near a centre of curvature, equally far from much of the span,
+/// needs as many.
 const MOST_HALVINGS: u32 = 12;
 
 /// The nearest point so far.
@@ -34,7 +36,7 @@ struct Best {
     distance_sq: f64,
 }
 
-/// A part of a piece with its end points.
+/// A part of a piece with its end points and the number of halvings that led to it.
 #[derive(Clone, Copy)]
 struct Part {
     range: [f64; 2],
@@ -50,8 +52,8 @@ impl Spline {
             .unwrap_or_else(|| self.foot_of_seen(point))
     }
 
-    /// The foot of a point that was seen elsewhere on the curve, and may have left it by an open end: on a
-    /// straight continuation, if that is nearer by far.
+    /// The foot of a point that was last found elsewhere on the curve, and may have left it by an open end: on a
+    /// straight continuation, if that is much nearer ([`NEARER`]), else on the curve.
     fn foot_of_seen(&self, point: DVec2) -> Foot {
         let last = self.pieces.len() - 1;
         let on_curve = self.foot_of_all(point);
@@ -68,7 +70,8 @@ impl Spline {
             .unwrap_or(on_curve)
     }
 
-    /// The foot found from another place; `None` if the distance is not convex there, or if it is far away.
+    /// The foot found by Newton's method from another place; `None` if the distance is not convex on the way, or if it
+    /// takes more than [`STEPS_FROM_HINT`] steps.
     fn foot_from(&self, point: DVec2, (piece, mut u): (usize, f64)) -> Option<Foot> {
         let mut piece = piece.min(self.pieces.len() - 1);
         for _ in 0..STEPS_FROM_HINT {
@@ -92,14 +95,14 @@ impl Spline {
         None
     }
 
-    /// Width of the spans of a piece in its parameter.
+    /// Width [m] of the spans of a piece in its parameter.
     #[inline]
     fn span_width(&self, piece: usize) -> f64 {
         self.spans[self.first_span[piece]].range[1]
     }
 
-    /// The parameter in the piece in which it lies or, beyond the ends of an open spline, in the last one
-    /// before; `None` if that is more than a lap away.
+    /// The piece in which a parameter, counted from the start of another piece, lies, and the parameter there; beyond
+    /// the ends of an open spline, that of the piece at the end. `None` if it is more than a lap away.
     #[inline]
     fn carried(&self, mut piece: usize, mut u: f64) -> Option<(usize, f64)> {
         let last = self.pieces.len() - 1;
@@ -127,7 +130,7 @@ impl Spline {
             search_part(cubic, span.piece, point, Part { range: span.range, ends, halvings: 0 }, &mut best);
             best.distance_sq
         });
-        // Distances tell the place only to half of the digits, and not beyond an open end.
+        // Distances determine the place only to half of its digits, and not beyond an open end.
         let Best { piece, u, .. } = best;
         self.foot_from(point, (piece, u)).unwrap_or_else(|| self.jet(piece, u).foot(piece, u, point))
     }
@@ -142,7 +145,7 @@ fn search_part(cubic: &Cubic, piece: usize, point: DVec2, part: Part, best: &mut
     if at_least * at_least >= best.distance_sq {
         return;
     }
-    // From the middle of the part the speed changes by half of this.
+    // Largest change of the speed over the part; from its middle to an end it is half of this.
     let change = second * width;
     let middle = cubic.jet(0.5 * (from + to));
     let speed = middle.slope.length();
@@ -165,7 +168,7 @@ fn search_part(cubic: &Cubic, piece: usize, point: DVec2, part: Part, best: &mut
     }
 }
 
-/// The nearest parameter in a range in which the distance has one minimum.
+/// The parameter nearest to a point, in a range in which the distance has one minimum.
 fn nearest_in_bracket(cubic: &Cubic, point: DVec2, [mut low, mut high]: [f64; 2]) -> f64 {
     let width = high - low;
     let slope_at = |u: f64| {

@@ -1,29 +1,28 @@
-//! Which rows depend on earlier ones, where the difference of squares does not tell, and which of them share
-//! what they hold.
+//! Rows that depend on earlier ones where the difference of squares cannot tell, and rows that share their load.
 //!
-//! What is left of a row between a light and a heavy body is little, in the measure of the masses, once other
-//! rows hold the light one: no more than the part of the heavy one. It holds that one all the same. So what
-//! is left is looked at body by body, too, against what all rows of the combination do to it.
+//! Once other rows hold the light body, little is left of the square of a row between a light and a heavy body: the
+//! share of the heavy one. The row holds the heavy body all the same. The remainder is therefore also compared body by
+//! body with the motions that all rows of the combination give the body.
 
 use super::{HeldRows, NONE};
 
-/// What the squares of soft rows are raised by, in parts of themselves: far more than the rounding of what
-/// depends, far less than what does not.
+/// Fraction of itself by which the square A_ii of a soft row is raised: far more than the rounding of a dependent row's
+/// remainder, far less than the remainder of an independent row.
 const SOFTNESS: f64 = 1e-6;
-/// A row depends on another that makes up more than this part of its square.
+/// Fraction of a dependent row's square: the row depends on the rows whose parts in it have squares above this.
 const SHARE: f64 = 1e-12;
 
 impl HeldRows {
-    /// From now on the given rows, of those that the last [`factorize`](Self::factorize) has found to depend
-    /// on each other, share what they hold together instead of one of them taking all: none counts as
-    /// dependent, and their forces are nearly the least that do, weighed by the squares of the rows. The
-    /// others stay as stiff as they are: between a heavy and a light body a row has far less left of its
-    /// square than what shares may lack.
+    /// Lets rows share their load from the next [`factorize`](Self::factorize) on: those that the last one found to
+    /// depend on each other, and for which `may_share` (called with the index of a row) is true. None of these then
+    /// counts as dependent, and their forces are nearly those of least norm, weighted by the squares of the rows. All
+    /// other rows keep their stiffness: between a heavy and a light body, earlier rows may leave a far smaller fraction
+    /// of a row's square than the 1e-6 by which soft rows are raised.
     ///
-    /// Their squares are raised a little, and what forces then lack is made good step by step. So which rows
-    /// depend on which may change on the way without a jump, and a motion that departs from what they agree
-    /// on by rounding has no forces that come from their disagreement alone. One that departs by more than
-    /// some 1e-7 of a length has: who is farther off moves the bodies onto the rows first.
+    /// The squares of these rows are raised by 1e-6 of themselves, and [`solve`](Self::solve) makes up for the missing
+    /// force by refinement. Forces therefore do not jump when the dependence among these rows changes along a motion,
+    /// and a motion that violates the rows by rounding causes no forces from their disagreement alone. A violation by
+    /// more than about 1e-7 of a length does: callers farther off must move the bodies onto the rows first.
     pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
         for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
             *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
@@ -31,20 +30,21 @@ impl HeldRows {
         self.is_soft = self.raise.iter().any(|&raise| raise > 0.0);
     }
 
-    /// Whether any rows share what they hold.
+    /// Whether any rows share their load by [`soften`](Self::soften).
     #[must_use]
     pub fn is_soft(&self) -> bool {
         self.is_soft
     }
 
-    /// Whether a row depends on others, by the last [`factorize`](Self::factorize).
+    /// Whether the row with index `row` depends on others by the last [`factorize`](Self::factorize), and so takes no
+    /// force.
     #[must_use]
     pub fn is_dependent(&self, row: usize) -> bool {
         let place = self.order.rows.iter().position(|&other| other as usize == row);
         place.is_some_and(|place| !self.factor.has_pivot(place))
     }
 
-    /// Notes which rows one depends on, whose rest has just been measured: those that make up more than rounding of it.
+    /// Notes the rows on which one depends whose rest has just been measured: those whose part in it exceeds rounding.
     pub(super) fn note_shares(&mut self, place: usize, diagonal: f64) {
         self.shares[place] = true;
         for k in 0..place {
@@ -52,9 +52,9 @@ impl HeldRows {
         }
     }
 
-    /// The least part of its square that a row kept in the last [`factorize`](Self::factorize) once earlier
-    /// ones were held, so many rows left aside that kept even less; 1 if there are no more. Rows of loops
-    /// depend on each other for a moment where it comes to nothing.
+    /// Returns the fraction of its square that a row kept in the last [`factorize`](Self::factorize) once earlier ones
+    /// were held: the least of all rows after the `aside` rows that kept even less. 1 if there are no more rows. Where
+    /// it falls to 0, rows of loops depend on each other for a moment.
     #[must_use]
     pub fn kept_beyond(&mut self, aside: usize) -> f64 {
         if aside >= self.len() {
@@ -65,9 +65,9 @@ impl HeldRows {
         *self.work.select_nth_unstable_by(aside, f64::total_cmp).1
     }
 
-    /// The part of a row's square that earlier rows leave, from the row itself: |Ĵ_i - sum over k of x_k
-    /// Ĵ_k|², and what squares are raised by times x_k². That has the rounding of the difference, squared,
-    /// where the difference of squares has that of the squares, times what earlier small pivots make of it.
+    /// The remainder of a row's square that earlier rows leave, computed from the row itself: |Ĵ_i - sum over k of x_k
+    /// Ĵ_k|², plus the raises of the squares times x_k². Its rounding is that of the difference, squared; the
+    /// difference of squares has the rounding of the squares, enlarged by earlier small pivots.
     pub(super) fn measure_rest(&mut self, place: usize) -> f64 {
         let first = self.factor.first(place);
         self.work[..first].fill(0.0);
@@ -92,8 +92,9 @@ impl HeldRows {
         rest + raised.map(|(k, raise)| self.work[k] * self.work[k] * raise * self.square(k)).sum::<f64>()
     }
 
-    /// True if what [`measure_rest`](Self::measure_rest) has left of a row moves any body by more than the
-    /// part up to which rows are dependent, of what the rows of the combination do to it.
+    /// True if the rest of a row, just found by [`measure_rest`](Self::measure_rest), moves some body by more than
+    /// rounding: its squared motion exceeds `dependence` times the sum of those that the rows of the combination give
+    /// the body.
     pub(super) fn moves_by_itself(&mut self, place: usize) -> bool {
         self.gross.clear();
         self.gross.resize(self.motion.len(), 0.0);
@@ -106,7 +107,7 @@ impl HeldRows {
         bodies.any(|(motion, gross)| square(motion) > self.dependence * gross)
     }
 
-    /// Adds what a multiple of a row of Ĵ does to each body to the sums of squares.
+    /// Adds the squared motion of each body by a multiple of a row of Ĵ to `gross`.
     fn add_gross(&mut self, place: usize, share: f64) {
         let sides = self.bodies[place].iter().zip(&self.jacobian[place]);
         for (&body, row) in sides.filter(|(body, _)| **body != NONE) {
@@ -121,7 +122,7 @@ mod tests {
     use super::*;
     use crate::problem::InverseInertia;
 
-    /// Two rows that pin a body, or two at one place, at arms of both.
+    /// The two rows of a pin between two bodies at the given arms; the second may be immovable.
     fn pin(arm: [f64; 2], other: [f64; 2]) -> [[f64; 6]; 2] {
         [[1.0, 0.0, -arm[1], -1.0, 0.0, other[1]], [0.0, 1.0, arm[0], 0.0, -1.0, -other[0]]]
     }
@@ -159,7 +160,8 @@ mod tests {
             held.solve(&offset, &mut force);
             let mut change = [[0.0, -9.81, 0.0]; 2];
             held.respond(&force, &mut change);
-            // The pins of a massless bar and of what hangs from it: the lower one goes along the bar at no rate.
+            // The light body is nearly a massless bar from which the heavy one hangs: the rows of the lower pin keep a
+            // rate of zero.
             let rate = |row: &[f64; 6]| (0..6).map(|k| row[k] * change[k / 3][k % 3]).sum::<f64>();
             assert!(rows[2..].iter().all(|row| rate(row).abs() < 1e-3), "{heavy:e}: {change:?}");
         }

@@ -1,7 +1,7 @@
-//! The factor of A = L D Lᵀ, in tiles of four rows and four columns, from the first tile with an entry on.
-//! Whole tiles need no care at the ends of rows, and four rows at a time do not wait for each other: rows of
-//! contacts are so short that both cost more than the products. What A is and which of its rows have a pivot
-//! is the parent's.
+//! The factor of A = L D Lᵀ, in tiles of four rows and four columns, each row of tiles from its first tile with an
+//! entry on. Whole tiles need no special cases at the ends of rows, and four rows at a time do not wait for each
+//! other's results; rows of contacts are so short that either would cost more than the products. The parent module
+//! forms A and decides which rows have a pivot.
 
 /// Rows and columns of a tile.
 const SIDE: usize = 4;
@@ -17,13 +17,14 @@ pub(super) struct Factor {
     lead: Vec<usize>,
     /// Where each row of tiles begins in `tiles`; it ends with the one on the diagonal.
     begin: Vec<usize>,
-    /// Those of A, until their row is eliminated; then of L, zero on and above the diagonal.
+    /// Tiles of A until their row is eliminated, then of L, zero on and above the diagonal.
     tiles: Vec<Tile>,
     /// 1/D; 0 for rows without a pivot, and beyond the last.
     inverse_pivot: Vec<Lanes>,
     /// L D of the row of tiles that is being eliminated, left of the diagonal.
     scaled: Vec<Tile>,
-    /// Squares of the rows that are being eliminated that earlier rows of tiles account for.
+    /// For each row of the tile that is being eliminated, the part of its square that earlier rows of tiles account
+    /// for.
     square: Lanes,
     /// L⁻¹ b, and x as far as it is known.
     forward: Vec<Lanes>,
@@ -31,7 +32,7 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// Makes room for rows whose first entries are in these columns.
+    /// Lays out the tiles for rows whose first entries are in these columns.
     pub(super) fn lay_out(&mut self, first: impl Iterator<Item = usize>) {
         self.lead.clear();
         for (place, first) in first.enumerate() {
@@ -56,7 +57,7 @@ impl Factor {
         }
     }
 
-    /// Where an entry of a row lies that is within the tiles.
+    /// Position of an entry within the tiles.
     pub(super) fn position(&self, place: usize, column: usize) -> usize {
         let block = place / SIDE;
         let tile = self.begin[block] + column / SIDE - self.lead[block];
@@ -80,12 +81,12 @@ impl Factor {
         self.tiles.fill(Tile::default());
     }
 
-    /// The entries of A below its diagonal, by their positions, until their rows are eliminated.
+    /// The entries of A below its diagonal by [`position`](Self::position), valid until their rows are eliminated.
     pub(super) fn entries_mut(&mut self) -> &mut [f64] {
         self.tiles.as_flattened_mut().as_flattened_mut()
     }
 
-    /// Eliminates a row, in the order of rows. Returns the part of its square that earlier rows account for.
+    /// Eliminates a row; rows must come in order. Returns the part of its square that earlier rows account for.
     pub(super) fn eliminate(&mut self, place: usize) -> f64 {
         let (block, lane) = (place / SIDE, place % SIDE);
         if lane == 0 {
@@ -120,7 +121,8 @@ impl Factor {
         self.inverse_pivot[place / SIDE][place % SIDE] != 0.0
     }
 
-    /// Eliminates a row of tiles up to the one on the diagonal, which is left as earlier tiles leave it.
+    /// Eliminates a row of tiles up to the one on the diagonal, from which the products of the earlier tiles are
+    /// subtracted.
     fn eliminate_left(&mut self, block: usize) {
         let lead = self.lead[block];
         let (before, own) = self.tiles.split_at_mut(self.begin[block]);
@@ -159,7 +161,8 @@ impl Factor {
         }
     }
 
-    /// Solves L D Lᵀ x = b, where `right` tells b by place, and is zero beyond the last row. `take` is told x.
+    /// Solves L D Lᵀ x = b. `right` returns b by place, zero beyond the last row; `take` is called with each place and
+    /// its x.
     pub(super) fn solve(&mut self, right: impl Fn(usize) -> f64, mut take: impl FnMut(usize, f64)) {
         let (y, x) = (&mut self.forward, &mut self.solution);
         for (block, &lead) in self.lead.iter().enumerate() {
@@ -241,7 +244,7 @@ mod tests {
             let first = first_columns(count);
             let mut factor = Factor::default();
             factor.lay_out(first.iter().copied());
-            // Once more, over what the first time has left.
+            // The second time over the entries that the first has left.
             for _ in 0..2 {
                 factor.clear();
                 for (row, &first_of_row) in first.iter().enumerate() {

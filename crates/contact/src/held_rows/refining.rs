@@ -1,38 +1,40 @@
-//! What the raised squares of soft rows leave lacking in their forces is made good here, and what rounding of
-//! the factor does where little is left of a row. Which rows are soft, and the factor, are the parent's.
+//! Refinement of forces: of those of soft rows, which the raised squares leave too small, and of those that suffer from
+//! rounding of the factor where little is left of a row. The parent module decides which rows are soft, and owns the
+//! factor.
 
 use super::{HeldRows, NONE};
 use crate::skyline::dot;
 
-/// Cap on the steps that make good what soft rows lack.
+/// Cap on the refinement steps for soft rows.
 const MOST_REFINEMENTS: usize = 40;
-/// Forces that do less than this part of what softness makes of them do nothing: rows disagree.
+/// A direction p of forces moves nothing, and is one in which rows disagree, if pᵀ A p is at most this fraction of pᵀ R
+/// p, R the raise of the squares.
 const NULL: f64 = 1e-7;
-/// They end where so many in a row have gained nothing: have left more than this part of what was left at
-/// best, both by the largest rate and by the raised factor. The rates may grow on the way: of a light disc on
-/// a long arm most of a row's square is its turning, and what is left of that is small long before what is
-/// left of the rest.
+/// Number of refinement steps without a gain in succession that ends the refinement.
 const IDLE: u32 = 2;
+/// Fraction of the least residual so far: a step gains if it leaves less, as the largest rate or in the norm of the
+/// raised factor. The largest rate alone may grow on the way: most of the square of a row of a light disc on a long arm
+/// is the turning of the disc, whose residual is small long before that of the rest.
 const WORTHWHILE: f64 = 0.5;
 
-/// Buffers of a refinement, by row.
+/// Buffers of a refinement, one number per row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Refining {
-    /// What forces leave of each row's equation.
+    /// Residual A f + b of the forces.
     residual: Vec<f64>,
-    /// What they lack, by the raised factor.
+    /// Correction of the forces by the raised factor: -(A + R)⁻¹ times the residual.
     lacking: Vec<f64>,
     direction: Vec<f64>,
     /// A times the direction.
     product: Vec<f64>,
-    /// The forces that leave least.
+    /// The forces with the least residual so far.
     best: Vec<f64>,
 }
 
 impl HeldRows {
-    /// Makes good what soft rows lack, by conjugate gradients: the raised factor differs from A in few
-    /// directions, and each takes about a step. What rows that depend on each other disagree in cannot be
-    /// made good: the best forces are kept.
+    /// Refines the forces by conjugate gradients, preconditioned by the raised factor. It differs from A in few
+    /// directions, each of which takes about a step. A disagreement of rows that depend on each other cannot be
+    /// removed; the forces with the least residual are kept.
     pub(super) fn refine(&mut self, offset: &[f64], force: &mut [f64], refining: &mut Refining) {
         let Refining { residual, lacking, direction, product, best } = refining;
         for buffer in [&mut *residual, lacking, direction, product, best] {
@@ -58,7 +60,8 @@ impl HeldRows {
             let square = dot(direction, product);
             let does_little = square <= NULL * self.softness_of(direction);
             if does_little {
-                // Along what rows disagree in, forces would grow without end: what is lacking beside that is made good.
+                // Along a direction in which rows disagree forces would grow without bound; a plain correction is made
+                // instead.
                 direction.copy_from_slice(lacking);
             }
             let step = if does_little { 1.0 } else { descent / square };
@@ -75,7 +78,7 @@ impl HeldRows {
         force.copy_from_slice(best);
     }
 
-    /// Corrects forces by what they leave of the equations, once.
+    /// Makes one step of iterative refinement.
     pub(super) fn correct(&mut self, offset: &[f64], force: &mut [f64], refining: &mut Refining) {
         let Refining { residual, lacking, .. } = refining;
         for buffer in [&mut *residual, lacking] {
@@ -87,7 +90,7 @@ impl HeldRows {
         force.iter_mut().zip(&*lacking).for_each(|(force, lacking)| *force += lacking);
     }
 
-    /// What the raised squares of soft rows make of some forces: f R f.
+    /// f R f, R the raise of the squares of soft rows.
     fn softness_of(&self, force: &[f64]) -> f64 {
         let soft = self.raise.iter().enumerate().filter(|(_, raise)| **raise > 0.0);
         let part = |(place, raise): (usize, &f64)| {
@@ -120,7 +123,7 @@ impl HeldRows {
     }
 }
 
-/// The largest size of a number.
+/// The largest absolute value.
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
@@ -132,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_light_body_passes_on_what_a_heavy_one_weighs_to_rounding() {
-        // A light body on two contacts, and a heavy one on it, by all that rounding may make of their arms.
+        // A light body on two contacts and a heavy one on it, with several roundings of their arms.
         let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 6.0 / mass };
         let sides = [[Some(0), None], [Some(0), None], [Some(1), Some(0)], [Some(1), Some(0)]];
         for heavy in [1e5, 1e6, 1e9] {
@@ -158,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_light_disc_on_two_long_arms_is_held_to_rounding() {
-        // Nearly all of each row's square is the turning of the disc; what softness adds is more than all the rest.
+        // Nearly all of each row's square is the turning of the disc; the raise by softness exceeds all the rest.
         let (block, disc) = (
             InverseInertia { inverse_mass: 0.505, inverse_moment: 2.448 },
             InverseInertia { inverse_mass: 0.748, inverse_moment: 394_127.0 },

@@ -1,18 +1,21 @@
-//! Rows that can be spared: where unilateral rows depend on each other, forces may be moved among them, without
-//! a change of what they do to the bodies, until so many have none that the others are independent.
+//! Rows that can be spared: where unilateral rows depend on each other, forces can be moved among them, without a
+//! change of the motion of the bodies, until the rows that still have a force are independent.
 
 use super::HeldRows;
 use crate::exchanges::{Party, first_to_vanish};
 use crate::problem::pushing;
 
 impl HeldRows {
-    /// Lists rows that can be spared, of those that depend on others by the last
-    /// [`factorize`](Self::factorize): forces, given by row, that are not negative where `may_pull` is false,
-    /// are moved along what they leave open until a row has none, for one dependent row after the other. What
-    /// they do to the bodies stays as it is. None is listed if no row depends on others that may not pull.
+    /// Lists in `spared` unilateral rows that can be left out without a change of the motion of the bodies.
     ///
-    /// Without these rows, and others as long as there are any, the forces are those that
-    /// [`solve`](Self::solve) finds: with them, it leaves out some whose loss may have others pull.
+    /// Rows for which `may_pull` is true are bilateral. For each unilateral row that depends on others by the last
+    /// [`factorize`](Self::factorize), `force` \[N\] (one per row, not negative on unilateral rows) is changed along
+    /// the null direction of these rows until a unilateral row has no force; that row is listed. M⁻¹ Jᵀ f stays the
+    /// same. The list is empty if no unilateral row depends on others, and may be incomplete otherwise: callers
+    /// factorize the rows that are left and repeat until it is empty.
+    ///
+    /// When no dependent rows are left, [`solve`](Self::solve) finds these same forces. As long as there are some, it
+    /// gives other rows no force, without which contacts may have to pull.
     ///
     /// # Panics
     ///
@@ -53,7 +56,7 @@ impl HeldRows {
         Party { row: place, force: force[self.row_at(place)], share, square: self.square(place) }
     }
 
-    /// Moves force from a dependent row to those that it is the sum of.
+    /// Moves force from a dependent row to the rows of which it is a combination.
     fn move_forces(&self, place: usize, moved: f64, force: &mut [f64], may_pull: impl Fn(usize) -> bool) {
         let shares = self.work[..place].iter().copied().enumerate();
         for (k, share) in shares.chain([(place, -1.0)]).filter(|(_, share)| *share != 0.0) {
@@ -94,7 +97,7 @@ mod tests {
             (held, dependent)
         }
 
-        /// What forces do to the planks.
+        /// Accelerations of the planks under the forces.
         fn change(&self, force: &[f64]) -> Vec<[f64; 3]> {
             let mut change = vec![[0.0; 3]; self.inertia.len()];
             self.held().0.respond(force, &mut change);
@@ -112,8 +115,8 @@ mod tests {
         }
     }
 
-    /// Spares rows until none depends on others; returns what is left, with the forces, and how often all was
-    /// eliminated.
+    /// Spares rows until none depends on others. Returns the pile of the rows left, their forces, and the number of
+    /// factorizations.
     fn spare_all(mut pile: Pile, mut force: Vec<f64>) -> (Pile, Vec<f64>, usize) {
         let mut eliminations = 1;
         let mut spared = Vec::new();

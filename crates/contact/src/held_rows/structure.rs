@@ -1,4 +1,4 @@
-//! Which rows share which bodies, in what order they are eliminated, and where their factor lies: all that
+//! The structure of held rows: the rows that share a body, the order of elimination, and the layout of the factor. It
 //! does not change while the same rows are held.
 
 use super::{HeldRows, NONE};
@@ -7,15 +7,16 @@ use crate::problem::InverseInertia;
 /// An earlier row on a common body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shared {
-    /// The side of that row that has the body, counted row by row.
+    /// The side of that row that has the body: twice its place, plus 1 for the normal side.
     pub(super) side: u32,
-    /// Where the product of the rows lies in the factor.
+    /// Position of the product of the two rows in the factor.
     pub(super) position: u32,
 }
 
 impl HeldRows {
-    /// Other bodies and rows: which two bodies (index into `inertia`; None: immovable) each row acts on.
-    /// Orders the rows for small fill.
+    /// Replaces all bodies and rows. `inertia` has the inverse masses of the bodies, `rows` the primary and normal body
+    /// of each row: an index into `inertia`, or `None` for an immovable one. Orders the rows for small fill; no row is
+    /// soft afterwards. [`factorize`](Self::factorize) must follow.
     ///
     /// # Panics
     ///
@@ -86,7 +87,7 @@ impl HeldRows {
         }
     }
 
-    /// Finds the tiles of the factor, and where in them the products of rows are.
+    /// Lays out the tiles of the factor, and finds the positions of the products of rows in them.
     fn lay_out(&mut self) {
         let of_row = |place: usize| self.shared_start[2 * place]..self.shared_start[2 * place + 2];
         let place_of = |shared: &Shared| shared.side as usize / 2;
@@ -101,7 +102,7 @@ impl HeldRows {
     }
 }
 
-/// The bodies of a row that can move, each once.
+/// The bodies of a row, `NONE` for an immovable one.
 fn movable(inertia: &[InverseInertia], sides: [Option<u32>; 2]) -> [u32; 2] {
     sides.map(|side| match side {
         Some(body) if inertia[body as usize].inverse_mass > 0.0 => body,
@@ -110,7 +111,7 @@ fn movable(inertia: &[InverseInertia], sides: [Option<u32>; 2]) -> [u32; 2] {
     })
 }
 
-/// Roots of the inverse masses on both sides, 0 on an immovable one.
+/// Roots of the inverse masses of both sides, 0 on an immovable one.
 fn roots(inertia: &[InverseInertia], sides: [u32; 2]) -> [[f64; 3]; 2] {
     sides.map(|body| {
         let rest = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };

@@ -1,10 +1,11 @@
 //! The Delassus matrix A = J M^-1 J^T (n, n) [1/kg] of an impact's rows, row by row.
 //!
-//! Only rows that share a movable body have an entry: in a pile each row has a few, however many rows there are.
+//! Only rows that share a movable body have an entry, so that each row of a pile has a few, however many rows there
+//! are.
 
 use crate::row::CollisionRow;
 
-/// Stands for a body that nothing moves.
+/// In place of an immovable body.
 const NONE: u32 = u32::MAX;
 
 /// Entries of A, each row's in ascending order of column.
@@ -12,7 +13,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Couplings {
     /// Where each row's entries begin in `entries`, and where the last row's end.
     start: Vec<usize>,
-    /// Column and value.
+    /// Column and value [1/kg].
     entries: Vec<(u32, f64)>,
     diagonal: Vec<f64>,
     /// The movable bodies of each row.
@@ -56,19 +57,19 @@ impl Couplings {
         self.of_bodies.dedup();
     }
 
-    /// The rows that an impulse along this one moves, with the change of their rates per impulse.
+    /// The rows whose rates an impulse along `row` changes, with the change per impulse [1/kg].
     pub(super) fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.entries[self.start[row]..self.start[row + 1]]
             .iter()
             .map(|&(other, value)| (other as usize, value))
     }
 
-    /// Change of a row's own rate per impulse; 0 if neither of its bodies can move.
+    /// Change of a row's own rate per impulse [1/kg]; 0 if neither of its bodies can move.
     pub(super) fn diagonal(&self, row: usize) -> f64 {
         self.diagonal[row]
     }
 
-    /// Change of a row's rate per impulse along another.
+    /// Change of a row's rate per impulse along another row [1/kg].
     pub(super) fn between(&self, row: usize, other: usize) -> f64 {
         self.row(row).find(|&(column, _)| column == other).map_or(0.0, |(_, value)| value)
     }

@@ -1,25 +1,25 @@
 //! The complementarity problem of a few rows, solved directly.
 //!
-//! Rounds of a serial law solve a few rows that close on the same bodies, thousands of times in a heap: all
-//! are closed, and mostly that is the answer. Otherwise all wrong rows are exchanged at once, as long as that
-//! leaves fewer of them (Portugal, Júdice and Vicente 1994). A row that nearly depends on those before it is
-//! not held, as long as these hold it too. What that does not end is left to `many_rows`.
+//! A heap takes thousands of rounds of a few rows each that close on the same bodies. First all rows are closed, which
+//! mostly is the answer. Otherwise all wrong rows are exchanged at once while that leaves fewer of them wrong
+//! (Portugal, Júdice and Vicente 1994; see `start`). A row that nearly depends on those before it gets no force, as
+//! long as these hold it too. Problems that do not end so are left to `many_rows`.
 
 use crate::settings::{Settings, WELL};
 
-/// Up to so many rows are few.
+/// Largest number of rows that are solved directly.
 pub(super) const FEW: usize = 8;
 
-/// Rounding of an acceleration, in parts of its terms.
+/// Rounding of a rate, as a fraction of the scale plus the sum of its absolute terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Residual, in units of the scale, up to which an answer is taken.
+/// Largest residual of an accepted answer, in units of the scale max |b/s|.
 const ACCEPTED: f64 = 1e-14;
 
-/// Times in a row that as many rows may be wrong as before, or more.
+/// Number of exchanges in succession that may leave as many rows wrong as the best before, or more.
 const TRIES: usize = 2;
 
-/// Some rows: their matrix [1/kg], what their rates lack to their targets [m/s], and which of them are bilateral.
+/// A few rows: their matrix A [1/kg], their offsets b [m/s] (rates less targets), and one flag each for bilateral rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FewRows {
     pub(super) count: usize,
@@ -28,18 +28,18 @@ pub(super) struct FewRows {
     pub(super) bilateral: [bool; FEW],
 }
 
-/// Impulses of some rows.
+/// Impulses of a few rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FewImpulses {
     /// In the order of the rows [N s].
     pub(super) impulses: [f64; FEW],
-    /// What they leave, in units of the root of a row's square [sqrt(kg) m/s].
+    /// Largest violation that they leave, as a scaled rate: divided by sqrt(A_ii) [sqrt(kg) m/s].
     pub(super) left: f64,
 }
 
 impl FewRows {
-    /// The impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None`
-    /// where that is not found at once. Gives the rows another scale.
+    /// Finds the impulses f with A f + b >= 0, f >= 0, f.(A f + b) = 0, and A f + b = 0 on bilateral rows; `None` if
+    /// the exchanges do not end at them. Scales the rows in place.
     pub(super) fn solve(&mut self) -> Option<FewImpulses> {
         let length = self.scale()?;
         let scale = self.offset[..self.count].iter().fold(0.0f64, |most, b| most.max(b.abs()));
@@ -82,7 +82,8 @@ impl FewRows {
         }
     }
 
-    /// Gives all rows a square of 1, and tells the roots of what they had; `None` if one has none.
+    /// Scales all rows to a square A_ii of 1. Returns the former sqrt(A_ii) [1/sqrt(kg)]; `None` if one is not
+    /// positive.
     fn scale(&mut self) -> Option<[f64; FEW]> {
         let length: [f64; FEW] =
             std::array::from_fn(|row| if row < self.count { self.matrix[row][row].sqrt() } else { 1.0 });
@@ -98,8 +99,8 @@ impl FewRows {
         Some(length)
     }
 
-    /// The forces that hold the closed rows, 0 on the others, and which are held: those that do not nearly
-    /// depend on others.
+    /// The forces that hold the closed rows, 0 on the others, and one flag per row that is held. Closed rows that
+    /// nearly depend on earlier ones are not held.
     fn hold(&self, closed: &[bool; FEW]) -> ([f64; FEW], [bool; FEW]) {
         let mut rows = [0; FEW];
         let mut count = 0;
@@ -161,8 +162,8 @@ mod tests {
         let landing: [&[f64]; 3] = [&[2.0, 1.0, 0.0], &[1.0, 1.0, 1.0], &[0.0, 1.0, 2.0]];
         let found = few(&landing, &[-1.0, -1.0, -1.0]).solve().expect("they agree");
         assert_eq!(found.impulses[..3].iter().sum::<f64>(), 1.0);
-        // The middle is slower than the ends: held with one of these it drives the other in, and another
-        // choice is to be made.
+        // The middle row is slower than the ends: held with one of these it drives the other to close, and another
+        // choice is needed.
         assert_eq!(few(&landing, &[-1.0, -0.5, -1.0]).solve(), None);
     }
 

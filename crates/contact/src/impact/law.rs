@@ -1,4 +1,4 @@
-//! The impact laws, and what all of them share.
+//! The impact laws, and the steps that all of them share.
 
 use super::many_rows::NEARLY;
 use super::patience::{Patience, QUIET, RICOCHET};
@@ -8,105 +8,120 @@ use super::{Impact, NOISE};
 use crate::check::Residuals;
 use crate::row::CollisionRow;
 
-/// Which rows are solved together, and what happens after.
+/// Rule by which the rows of an impact are solved together or one after another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactLaw {
-    /// All rows that close or rest in one problem, with all connectors, again while it leaves some closing.
+    /// All rows that close or rest in one problem, with all connectors; repeated while rows still close.
     Simultaneous,
-    /// Together those that close on the same bodies, with all connectors that they reach through movable bodies; one
-    /// after another otherwise.
+    /// One group of rows after another: the row that closes fastest with the others that close on its movable bodies,
+    /// and all connectors that these reach through movable bodies.
     #[default]
     Hybrid,
-    /// One row at a time, connectors too. The only law in which a connector's elasticity acts. A pin is two
-    /// rows along the axes of the world, and what comes out may depend on these.
+    /// One row at a time, connectors too. The only law in which the elasticity of a connector acts. A pin is two rows
+    /// along the axes of the world, and the result may depend on the directions of these axes.
     SerialSeparate,
     /// One row at a time, with all connectors that it reaches through movable bodies.
     SerialGrouped,
-    /// As `SerialSeparate`, then all rows together without elasticity.
+    /// `SerialSeparate`, then all rows together without elasticity.
     SerialSeparateLastpass,
-    /// As `SerialGrouped`, then all rows together without elasticity.
+    /// `SerialGrouped`, then all rows together without elasticity.
     SerialGroupedLastpass,
 }
 
-/// In which order the serial laws take the rows.
+/// Order in which the laws that solve rows one after another select the next row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactOrder {
-    /// The one that closes fastest first; of several that do, but for a part of 1e-9, the last in the list.
-    /// Which of them is arbitrary, but fixed: rounding does not decide it, and equal runs are equal.
+    /// The row that closes fastest first (a bilateral row counts with the size of its rate). Among rows within 1e-9 of
+    /// the fastest, relative to it, the last in the list. That choice is arbitrary but fixed: rounding does not decide
+    /// it, and equal runs are equal.
     #[default]
     Fastest,
-    /// A random order from a seed, the same for the same seed.
+    /// A random order from a seed; the same seed gives the same order.
     Seeded(u64),
 }
 
-/// Why an impact could not be resolved.
+/// An impact that could not be resolved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
-    /// A row has numbers that no row can have.
+    /// The numbers of a row are not those of a constraint between two bodies.
     #[error("row {row}: {rule}")]
     BadRow {
         /// Index of the row.
         row: usize,
-        /// What its numbers must be.
+        /// The rule that the numbers break.
         rule: &'static str,
     },
-    /// A closing row moves nothing.
+    /// A row closes, but neither of its bodies can move.
     #[error("row {row} closes at {closing} m/s, but neither of its bodies can move")]
     Immovable {
         /// Index of the row.
         row: usize,
-        /// Closing speed [m/s]; of a bilateral row its rate without sign.
+        /// Closing speed [m/s], or size of the rate of a bilateral row.
         closing: f64,
     },
-    /// No impulses whatever keep all rows from closing, as of a body between jaws that nothing stops.
+    /// No impulses keep all rows from closing: for example a body between jaws that nothing stops.
     #[error(
         "row {row} cannot be kept from closing: the rows that hold it contradict it by {contradiction} m/s"
     )]
     Infeasible {
-        /// Index of the row at which it showed.
+        /// Index of the row at which the contradiction showed.
         row: usize,
-        /// Least change of rates [m/s] that would make it possible.
+        /// Size [m/s] of the least change of rates that would remove the contradiction.
         contradiction: f64,
     },
     /// The solver found no impulses that pass its check.
     #[error("no impulses of {rows} rows pass the check: {residuals}")]
     Unsolved {
-        /// How many rows were solved together.
+        /// Number of rows that were solved together.
         rows: usize,
         /// Residuals of the last impulses.
         residuals: Residuals,
     },
-    /// A row still closes, or a bilateral one moves, after all that was tried.
+    /// A row still closes, or a bilateral one has a rate, after all attempts.
     #[error("row {row} is left at a rate of {rate} m/s, beyond the bound of {bound} m/s")]
     Unfinished {
         /// Index of the row.
         row: usize,
-        /// Its rate [m/s].
+        /// Its rate [m/s], negative when closing.
         rate: f64,
         /// Greatest rate [m/s] that may be left.
         bound: f64,
     },
 }
 
-/// Part of a bound on rates that is rounding of the bound itself. What a solve leaves of a rate, times the
-/// row's scale and the problem's scale, is the rate again but for four products and quotients and a root,
+impl ImpactError {
+    /// Index of the row that the error is about; `None` if it is about all of them.
+    #[must_use]
+    pub fn row(&self) -> Option<usize> {
+        match *self {
+            Self::BadRow { row, .. }
+            | Self::Immovable { row, .. }
+            | Self::Infeasible { row, .. }
+            | Self::Unfinished { row, .. } => Some(row),
+            Self::Unsolved { .. } => None,
+        }
+    }
+}
+
+/// Rounding of a bound on rates, as a fraction of the bound. The bound is a residual of the solver, which is a rate
+/// divided by the scales of row and problem, multiplied by these scales again: four products and quotients and a root,
 /// each wrong by half a unit in the last place.
 const ROUNDING_OF_BOUND: f64 = 4.0 * f64::EPSILON;
 
-/// Passes without elasticity that may follow a law to bring rows to rest: each but the first removes what the
-/// one before left by rounding, or by nearly dependent rows.
+/// Number of passes without elasticity that may follow a law to bring rows to rest. Each pass after the first removes
+/// the violations that the one before left by rounding or by nearly dependent rows.
 const FINAL_PASSES: usize = 4;
 
 impl ImpactLaw {
-    /// Finds the impulses of an impact. `impact_index` says how many came before it in its run: each of them
-    /// draws numbers of its own where the order is [`Seeded`](ImpactOrder::Seeded).
+    /// Finds the impulses of an impact. `impact_index` is the number of impacts before it in its run; with the order
+    /// [`Seeded`](ImpactOrder::Seeded), each impact draws its own random numbers.
     ///
-    /// After it no unilateral row closes faster than [`Impact::bound`], and no bilateral row has a greater rate.
+    /// Afterwards no unilateral row closes faster than [`Impact::bound`], and the rate of no bilateral row is larger.
     ///
     /// # Errors
-    /// [`ImpactError`] names the row that has numbers out of range, that moves nothing, or that no impulses
-    /// can keep from closing.
+    /// [`ImpactError`], mostly with the row whose numbers are invalid, that closes between immovable bodies, or that no
+    /// impulses can keep from closing.
     pub fn resolve(
         self,
         impact: &mut Impact,
@@ -115,7 +130,7 @@ impl ImpactLaw {
     ) -> Result<(), ImpactError> {
         let small = impact.begin()?;
         if impact.rows.len() == 1 {
-            // The most common impact by far: no law changes it, and it needs no buffers.
+            // The most common impact by far: all laws treat it alike, and it needs no buffers.
             impact.solve_single();
             return Ok(());
         }
@@ -133,7 +148,7 @@ impl ImpactLaw {
         }
         match self.grouping() {
             None => {
-                // What rests has been brought to rest by others, to so much.
+                // Rows at rest were brought to rest by earlier solves, which leave them rates up to this.
                 let rest = small.max(quiet.min(NEARLY * impact.fastest));
                 impact.solve_all(rest, &mut patience)?;
             }
@@ -145,7 +160,7 @@ impl ImpactLaw {
         impact.finish(small)
     }
 
-    /// Which rows are solved together, if not all.
+    /// The rows that join a focus; `None` if all rows are solved together.
     fn grouping(self) -> Option<Grouping> {
         match self {
             ImpactLaw::Simultaneous => None,
@@ -157,21 +172,22 @@ impl ImpactLaw {
 }
 
 impl Impact {
-    /// Stops all rows at once, without elasticity: the nearest motion that none of them forbids. Ends storms of events.
+    /// Resolves all rows together without elasticity: the bodies get the admissible motion that is nearest to their own
+    /// in the energy norm. Ends storms of events.
     ///
     /// # Errors
-    /// As for [`ImpactLaw::resolve`].
+    /// Those of [`ImpactLaw::resolve`].
     pub fn resolve_inelastic(&mut self) -> Result<(), ImpactError> {
         let small = self.begin()?;
         self.solve_all_inelastic(small)?;
         self.finish(small)
     }
 
-    /// As [`resolve_inelastic`](Self::resolve_inelastic), for what may as well be left: rows that take many
-    /// pivots are given up.
+    /// Does as [`resolve_inelastic`](Self::resolve_inelastic), but gives up on problems that take more than about one
+    /// pivot per row. For impacts that the caller can leave unresolved.
     ///
     /// # Errors
-    /// As for [`ImpactLaw::resolve`].
+    /// Those of [`ImpactLaw::resolve`]; [`ImpactError::Unsolved`] also when the pivots run out.
     pub fn try_inelastic(&mut self) -> Result<(), ImpactError> {
         self.is_trial = true;
         let outcome = self.resolve_inelastic();
@@ -179,7 +195,8 @@ impl Impact {
         outcome
     }
 
-    /// Mass of the lightest body by that of the heaviest, as rows feel them that rebound; 1 where connectors take part.
+    /// Ratio [-] of the least to the greatest mass of a body, as seen along the rows that rebound; 1 if there are
+    /// connectors.
     fn lightness(&self) -> f64 {
         if self.has_connectors {
             return 1.0;
@@ -190,12 +207,12 @@ impl Impact {
         if most > 0.0 { least / most } else { 1.0 }
     }
 
-    /// Speed [m/s] below which no row rebounds.
+    /// Speed [m/s] below which no row rebounds: the least `velocity_tol`.
     fn slow_speed(&self) -> f64 {
         self.rows.iter().map(|row| row.velocity_tol).fold(f64::INFINITY, f64::min)
     }
 
-    /// Finds which rates are rounding, and whether a row is violated that moves nothing.
+    /// Checks the rows, and returns the rate [m/s] up to which a row counts as done.
     fn begin(&mut self) -> Result<f64, ImpactError> {
         if let Some((row, rule)) = self.find_bad_row() {
             return Err(ImpactError::BadRow { row, rule });
@@ -210,7 +227,7 @@ impl Impact {
         }
     }
 
-    /// The first row with numbers that no row can have, and what they must be.
+    /// The first row with invalid numbers, and the rule that they break.
     fn find_bad_row(&self) -> Option<(usize, &'static str)> {
         let rule = |row: &CollisionRow| {
             let sum = row.rate + row.velocity_tol + row.response.iter().sum::<f64>();
@@ -228,7 +245,7 @@ impl Impact {
         self.rows.iter().enumerate().find_map(|(index, row)| Some((index, rule(row)?)))
     }
 
-    /// The only row: if it is bilateral it comes to rest.
+    /// Solves an impact of one row: a contact rebounds, a connector comes to rest.
     fn solve_single(&mut self) {
         if self.violation(0) > 0.0 && self.can_move(0) {
             self.aim_at_rebounds(&[0]);
@@ -236,15 +253,15 @@ impl Impact {
         }
     }
 
-    /// Slack [m/s] of a comparison of a rate with a bound on it that the solver's residual may have given:
-    /// rounding of the bound, and of the terms of the rate, which `apply` adds up in another order than the
-    /// solver. Below the least normal number rounding is no longer a part of what is rounded, and a bound
-    /// that is a part of such a rate is 0.
+    /// Slack [m/s] for comparing a rate with a bound that may come from the solver's residual: the rounding of the
+    /// bound, and that of the terms of the rate, which `apply` adds up in another order than the solver. The least
+    /// normal number covers rates below it, where rounding is not relative and a bound that is a fraction of the rate
+    /// is 0.
     fn rounding_of_rates(&self, bound: f64) -> f64 {
         f64::MIN_POSITIVE + ROUNDING_OF_BOUND * bound + NOISE * self.largest_change
     }
 
-    /// Stops what still closes, without elasticity.
+    /// Stops the rows that are still violated, without elasticity, and sets the bound.
     fn finish(&mut self, small: f64) -> Result<(), ImpactError> {
         for _ in 0..FINAL_PASSES {
             if !self.is_any_violated(small) {
@@ -263,7 +280,7 @@ impl Impact {
         self.unfinished().map_or(Ok(()), Err)
     }
 
-    /// The row that is violated most, if by more than may be left.
+    /// The error of the row with the greatest violation, if that exceeds the greatest that may be left.
     fn unfinished(&self) -> Option<ImpactError> {
         let row = (0..self.rows.len()).max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)))?;
         let bound = self.rest(NEARLY * self.fastest);
@@ -278,7 +295,7 @@ mod tests {
     use crate::problem::InverseInertia;
     use halfgap_collision::BodyId;
 
-    /// Ends an impact of a row that nothing moves and that closes, where rates up to `noise` [m/s] are rounding.
+    /// Ends an impact of a closing row between immovable bodies, where rates up to `noise` [m/s] are rounding.
     fn finish_at(closing: f64, noise: f64, largest_change: f64) -> Result<(), ImpactError> {
         let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, 0.0];
@@ -325,7 +342,7 @@ mod tests {
             finish_at((1.0 + 1e-14) * bound, bound, 0.0),
             Err(ImpactError::Unfinished { row: 0, .. })
         ));
-        // The least number there is, in an impact so weak that all parts of its speed are 0.
+        // The least positive number, in an impact so weak that all fractions of its speed are 0.
         assert_eq!(finish_at(f64::from_bits(1), 0.0, 0.0), Ok(()));
         assert!(finish_at(2.1 * NOISE, NOISE, 1.0).is_err());
     }

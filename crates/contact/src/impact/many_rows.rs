@@ -1,4 +1,4 @@
-//! More rows than there are closed forms for, by the dual active-set method.
+//! Problems of more than two rows: a few directly, others by the dual active-set method.
 
 use super::Impact;
 use super::couplings::Couplings;
@@ -13,40 +13,40 @@ use crate::solution::Solution;
 use crate::start::Start;
 use crate::warm::WarmStart;
 
-/// Part of a row's `velocity_tol` that dependent rows may contradict each other by, beside the part of the
-/// impact's fastest rate that the solver allows: rates of nothing but rounding do, if the impact is weak
-/// beside the speeds of its bodies, or when ricochets have become weak.
+/// Fraction of a row's `velocity_tol` up to which dependent rows may contradict each other, in addition to the fraction
+/// of the impact's fastest rate that the solver allows. Rates that are only rounding contradict each other if the
+/// impact is weak compared with the speeds of its bodies, or when ricochets have become weak.
 const CONTRADICTION: f64 = 1e-3;
 
-/// Part of the impact's fastest rate by which nearly dependent rows may seem to contradict each other,
-/// through rounding of A: the least part of a row that the solver tells from none is a root of
-/// `Settings::dependence`.
+/// Fraction of the impact's fastest rate up to which nearly dependent rows may seem to contradict each other by
+/// rounding of A. It is about the root of `Settings::dependence`, the least independent part of a row that the solver
+/// tells from none.
 pub(super) const NEARLY: f64 = 1e-5;
 
-/// Growth beyond which no impulses are accepted. A body that is wedged between others a million million times
-/// heavier takes impulses that would make it that much faster than it gets, as does one that lies between
-/// blocks of which some lean by a few 1e-5; what their rounding leaves, a fiftieth of it at this growth, the
-/// next pass makes good.
+/// Growth [-] from which impulses are not accepted by their backward residual. A body that is wedged between others
+/// 1e12 times heavier takes impulses that alone would make it 1e12 times faster than it gets, and so does one that lies
+/// between blocks of which some lean by a few 1e-5. The rounding of such impulses, a fiftieth of the speed at this
+/// growth, is corrected by the next pass.
 const GREATEST_GROWTH: f64 = 1e14;
 
-/// What the diagonal of A is raised by, in parts of itself, where the rows are too nearly dependent to be
-/// solved as given: first just beyond what the solver takes for dependent (`Settings::dependence`), then
-/// more.
+/// Fractions of itself by which the diagonal of A is raised in turn, where the rows are too nearly dependent to be
+/// solved as given: first just more than `Settings::dependence`, up to which the solver takes rows for dependent.
 const RAISES: [f64; 2] = [1e-10, 1e-6];
 
-/// Cap on the pivots of a trial, per row.
+/// Cap on the pivots of a trial, per row of the problem plus 5.
 const TRIAL_PIVOTS: usize = 1;
 
+/// Place of a row that is not in the problem.
 const OUTSIDE: u32 = u32::MAX;
 
-/// What is known of rows, by their places in the impact, before they are solved.
+/// Knowledge of the rows before a solve, by their index in the impact.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Beginning<'a> {
-    /// Nothing.
+    /// Nothing is known.
     Unknown,
-    /// Which are likely to carry an impulse.
+    /// Whether each row is likely to carry an impulse.
     Likely(&'a [bool]),
-    /// About which impulses [N s] they carry; 0 where nothing is known.
+    /// Approximate impulse of each row [N s]; 0 where nothing is known.
     Carried(&'a [f64]),
 }
 
@@ -54,14 +54,14 @@ pub(super) enum Beginning<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct ManyRows {
     solver: DualActiveSet,
-    /// `inconsistency` and `pivots_per_row` of the solver when nothing asks for more, or less.
+    /// The default `inconsistency` and `pivots_per_row` of the solver, which each problem adapts.
     inconsistency: f64,
     pivots_per_row: usize,
     problem: Problem,
     solution: Solution,
     /// Place of each row of the impact in the problem, or `OUTSIDE`.
     place: Vec<u32>,
-    /// What is known of the rows of the problem, if anything is.
+    /// Guess of the closed rows or forces of the problem, used if `is_guessed`.
     guess: WarmStart,
     is_guessed: bool,
     /// max |b/s|, the unit in which the solver measures contradictions.
@@ -112,8 +112,8 @@ impl ManyRows {
         }
     }
 
-    /// Raises the diagonal of A by a part of it, so that there is one answer whatever the rows. It lacks that
-    /// part of what it should do to the rates, which the next round makes good, and it takes no less energy.
+    /// Raises the diagonal of A by a fraction of itself, so that any rows have exactly one answer. Its impulses change
+    /// the rates by too little, by that fraction, which the next round corrects; they take out no less energy.
     fn raise(&mut self, part: f64) {
         let Matrix::Symmetric(matrix) = &mut self.problem.matrix else { return };
         for row in 0..matrix.rows() {
@@ -127,7 +127,7 @@ impl ManyRows {
 }
 
 impl ManyRows {
-    /// Takes what is known of the rows of a set.
+    /// Takes over the knowledge of the rows of a set.
     fn begin_with(&mut self, set: &[usize], begin: Beginning<'_>) {
         self.is_guessed = !matches!(begin, Beginning::Unknown);
         match begin {
@@ -139,7 +139,7 @@ impl ManyRows {
         }
     }
 
-    /// Solves with the diagonal raised by as little as will do; nothing if none does.
+    /// Solves with the diagonal raised by the first of [`RAISES`] that leads to an answer; `None` if neither does.
     fn solve_raised(&mut self) -> Option<()> {
         RAISES.iter().find_map(|&part| {
             self.raise(part);
@@ -147,12 +147,12 @@ impl ManyRows {
         })
     }
 
-    /// Solves as given, with impulses as large as it takes: as of a body that slides into a wedge.
+    /// Solves the rows as given, with impulses as large as necessary, as for a body that slides into a wedge.
     fn solve_strictly(&mut self) -> Result<(), SolveError> {
         self.solver.run_strictly(&self.problem, Start::Nothing, &mut self.solution)
     }
 
-    /// Solves as given, but for contradictions that are small.
+    /// Solves the rows with modest impulses; small contradictions are settled by least squares.
     fn solve(&mut self) -> Result<(), SolveError> {
         let start = if self.is_guessed { Start::Earlier(&self.guess) } else { Start::Nothing };
         self.solver.run_modestly(&self.problem, start, &mut self.solution)
@@ -172,7 +172,7 @@ impl Impact {
         outcome
     }
 
-    /// Solves a few rows directly and applies the impulses; false if they are not that simple.
+    /// Solves a few rows directly and applies the impulses; false if the direct method does not end.
     fn solve_few(&mut self, set: &[usize]) -> bool {
         let mut few = FewRows { count: set.len(), ..FewRows::default() };
         for (place, &row) in set.iter().enumerate() {
@@ -216,7 +216,7 @@ impl Impact {
                 many.solve_raised().ok_or(error)?;
             }
         }
-        // What the solver leaves, rounding or contradictions, is not to be taken for motion.
+        // Rates that the solver leaves by rounding or contradictions must not count as motion.
         let left = many.solution.residuals.natural * many.scale;
         for (place, &row) in set.iter().enumerate() {
             let impulse = many.solution.force[place];
@@ -228,7 +228,8 @@ impl Impact {
         Ok(())
     }
 
-    /// Whether all that is wanted is so little that it may be rounding of the bodies' speeds. Then it is left.
+    /// Whether all wanted changes of rates are so small that they may be rounding of the bodies' speeds; they then
+    /// count as rounding.
     fn is_weak(&mut self, set: &[usize]) -> bool {
         let wanted = |&row: &usize| (self.rates[row] - self.scratch.targets[row]).abs();
         let largest = set.iter().map(wanted).fold(0.0, f64::max);
@@ -248,7 +249,8 @@ impl Impact {
         ImpactError::Unsolved { rows: set.len(), residuals: many.solution.residuals }
     }
 
-    /// Loads what each row lacks to its target, and by how much rows may contradict each other.
+    /// Loads the offset of each row (its rate less its target), and sets the largest contradiction that the solver
+    /// settles.
     fn load_rates(&self, many: &mut ManyRows, set: &[usize]) {
         many.problem.offset.clear();
         many.problem.bilateral.clear();
@@ -267,7 +269,7 @@ impl Impact {
         many.solver.settings.pivots_per_row = if self.is_trial { TRIAL_PIVOTS } else { many.pivots_per_row };
     }
 
-    /// s = sqrt(A_ii) [1/sqrt(kg)] of a row, by which the solver measures it.
+    /// Scale s = sqrt(A_ii) [1/sqrt(kg)] of a row; the solver works with rates divided by it.
     pub(super) fn length(&self, row: usize) -> f64 {
         self.couplings.diagonal(row).sqrt()
     }
@@ -315,8 +317,7 @@ mod tests {
 
     #[test]
     fn a_body_on_two_rails_that_lead_into_the_floor_at_a_millionth_stops() -> Result<(), ImpactError> {
-        // The rails are parallel to the floor but for 1e-6: the body goes along them at 7 m/s and comes down
-        // at 1e-5 m/s.
+        // The rails are parallel to the floor up to 1e-6: the body goes along them at 7 m/s and comes down at 1e-5 m/s.
         let (body, fixed) = (
             InverseInertia { inverse_mass: 0.46, inverse_moment: 25.0 },
             InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 },
@@ -342,8 +343,8 @@ mod tests {
 
     #[test]
     fn what_resists_small_impulses_is_held_by_large_ones() -> Result<(), ImpactError> {
-        // A light body on two rails that are parallel but for 1e-4 is pinned by long arms to a heavy one and
-        // to another, which hits the heavy one and touches a third.
+        // A light body on two rails that are parallel up to 1e-4 is pinned by long arms to a heavy one and to another,
+        // which hits the heavy one and touches a third.
         let inertias = [
             (1.966_996_099_768_953_3, 199_516.372),
             (0.345_544_057_994_402_8, 1.450_1),
@@ -394,9 +395,8 @@ mod tests {
 
     #[test]
     fn pins_in_line_with_an_impact_do_not_pull_each_other_apart() -> Result<(), ImpactError> {
-        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the
-        // pins nearly depend on each other: what the fourth seems to have left of its square is rounding, but
-        // far more of it than usual.
+        // Two blocks pinned together twice bounce between a block and a wall. The first three rows of the pins nearly
+        // depend on each other: the remainder of the fourth row's square is rounding, but far larger than usual.
         let inertias = [(6.9e-4, 0.0138), (13.597459369453698, 81.58475621672218), (0.21, 1.24), (0.0, 0.0)];
         let row = |bodies: [u32; 2], [x, y]: [f64; 2], turns: [f64; 2], rate, elasticity| {
             let inertia = bodies.map(|body| {

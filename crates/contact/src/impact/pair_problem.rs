@@ -1,20 +1,20 @@
 //! The complementarity problem of one or two rows, in closed form.
 //!
 //! A f + b >= 0, f >= 0, f.(A f + b) = 0: for two rows there are four cases of which rows carry a force, and for a
-//! positive semidefinite A one of them fits; a bilateral row always carries one. Dependent rows (a seam between two
-//! blocks) share what one of them needs.
+//! positive semidefinite A one of them fits; a bilateral row always carries one. Of two dependent rows (a seam between
+//! two blocks) one carries the force for both.
 
-/// Two rows are dependent when the determinant of their matrix is below this part of the product of its diagonal: what
-/// remains of it is rounding.
+/// Fraction of the product of the diagonal of a 2 x 2 matrix: a determinant below it is rounding, and the two rows are
+/// dependent.
 const DEPENDENT: f64 = 64.0 * f64::EPSILON;
 
-/// The force of one row that moves with `a` per force and closes with `b`.
+/// The force f of one row with a f + b = 0; 0 if the row is unilateral and b is not negative.
 pub(super) fn solve_one(a: f64, b: f64, bilateral: bool) -> f64 {
     if b < 0.0 || (bilateral && b != 0.0) { -b / a } else { 0.0 }
 }
 
-/// The forces of two rows; `a` is the symmetric matrix [a00, a01, a11]. None if the rows depend on each other and may
-/// contradict each other.
+/// The forces of two rows with the symmetric matrix [a00, a01, a11] and offsets [b0, b1]. `None` if the rows depend on
+/// each other and may contradict each other.
 pub(super) fn solve_two(
     [a00, a01, a11]: [f64; 3],
     [b0, b1]: [f64; 2],
@@ -32,7 +32,7 @@ pub(super) fn solve_two(
         if first_pushes && second_pushes {
             return Some(both);
         }
-        // Of the two cases left the one fits whose other row is not driven to close.
+        // In the two cases left one row carries a force; the case fits in which the other row is not driven to close.
         let second_after = b1 + a01 * only_first;
         let first_alone = bilateral[0] || (!bilateral[1] && second_after >= 0.0 && only_first > 0.0);
         return Some(if first_alone { [only_first, 0.0] } else { [0.0, only_second] });
@@ -40,7 +40,7 @@ pub(super) fn solve_two(
     if a01 < 0.0 || bilateral[0] || bilateral[1] {
         return None;
     }
-    // Dependent rows: the one that closes more, in its own measure, decides for both.
+    // Dependent rows: the one with the larger scaled force decides for both.
     let first_decides = only_first * a00.sqrt() >= only_second * a11.sqrt();
     Some(if first_decides { [only_first, 0.0] } else { [0.0, only_second] })
 }

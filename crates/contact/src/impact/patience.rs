@@ -1,50 +1,51 @@
-//! When ricochets end.
+//! The end of ricochets: the violation that counts grows with the number of rows solved.
 //!
-//! Each round of a law lets some rows rebound and may drive others together. In general the rates fall fast,
-//! but not in a tight chain: elastic bodies between two walls pass an impulse to and fro for ever. So what
-//! counts as closing grows in stages, each of so many rows solved, from a rounding of the impact's speed to
-//! all of it; what then still closes is stopped without elasticity. The energy lost by that is of the order
-//! of the square of what counted last. After the first rows only speeds at which elasticity acts count: to
-//! stop what is slower takes one problem, not a row after another.
+//! Each round of a law lets some rows rebound and may drive others together. Mostly the rates fall fast, but in a tight
+//! chain they do not: elastic bodies between two walls pass an impulse to and fro for ever. So the speed that counts as
+//! closing grows in stages, each of a number of rows solved, from a rounding of the impact's speed to all of it. Rows
+//! that then still close are stopped without elasticity, which loses an energy of the order of the square of the last
+//! speed that counted. After the first rows only speeds at which elasticity acts count: one problem stops all slower
+//! rows, instead of one row after another.
 //!
-//! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi /
-//! atan(sqrt(m / M)) small blows, which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic
-//! Dynamics 8, 2003, 375-394); a line of n light ones takes some n times as many. The first stage lasts as
-//! long, for each row. Where connectors take part it does not: they may pass impulses round for ever.
+//! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi / atan(sqrt(m / M))
+//! small blows, which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003, 375-394); a
+//! line of n light ones takes about n times as many. The first stage lasts that many blows for each row, but not in
+//! impacts with connectors, which may pass impulses round for ever.
 //!
-//! A body between two walls that all but face each other, at an angle a, is turned back by pi / a blows,
-//! whatever it weighs: a die that jams in its slot. Few contacts are given as many as an angle of a few
-//! degrees takes, connectors or not.
+//! A body between two walls at a small angle a is turned back by pi / a blows, whatever its mass: a die that jams in
+//! its slot. Impacts of a few contacts are given as many blows as an angle of a few degrees takes, with connectors or
+//! without.
 
-/// Part of the impact's fastest rate below which a row is done.
+/// Fraction of the impact's fastest rate: rows with a violation up to it are done.
 pub(super) const RICOCHET: f64 = 1e-12;
-/// Part of `velocity_tol`, the speed below which elasticity does not act, at which a ricochet is over.
+/// Fraction of `velocity_tol`, the speed up to which elasticity does not act: a ricochet is over at this speed.
 pub(super) const QUIET: f64 = 1e-3;
-/// Rows solved before slow rows are left to the end.
+/// Number of rows solved before rows slower than `velocity_tol` are left to the end.
 const FIRST_ROWS: usize = 20;
-/// Rows solved in one stage, per row of the impact, at least.
+/// Number of rows solved in one stage, per row of the impact; the first stage may take more.
 const ROWS_PER_STAGE: usize = 20;
-/// Blows by which a light body turns a heavy one round, times the root of the ratio of their masses, at most:
+/// Largest number of blows by which a light body turns a heavy one round, times the root of the ratio of their masses:
 /// pi/atan(x) <= 4/x.
 const BLOWS: f64 = 4.0;
-/// The most of them, however light a body is: those of masses as 1 to 1e9.
+/// Cap on the number of blows, however light a body is: that of a mass ratio of about 1e9.
 const MOST_BLOWS: f64 = 1e5;
-/// Contacts that rebound are few up to this number, and may take so many blows then.
+/// Largest number of rebounding contacts that count as few.
 const FEW_CONTACTS: usize = 4;
+/// Number of blows per row that an impact of few rebounding contacts may take in the first stage.
 const BLOWS_OF_FEW: usize = 200;
-/// Factor of what counts as closing, from one stage to the next.
+/// Factor by which the speed that counts as closing grows from one stage to the next.
 const RAISE: f64 = 10.0;
-/// Number of stages: the last leaves nothing that is less than the impact itself.
+/// Number of stages: after the last, the speed that counts has grown to that of the impact itself.
 const STAGES: usize = 12;
 
-/// What counts as closing, and for how long.
+/// The rate that counts as closing, and the number of rows that may still be solved.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patience {
     /// Rate [m/s] up to which a row is done.
     small: f64,
-    /// Speed [m/s] below which no row rebounds, while it does not count.
+    /// Speed [m/s] below which no row rebounds; `None` once only faster rows count.
     slow: Option<f64>,
-    /// Rows solved in the first stage, and in each other.
+    /// Number of rows solved in the first stage, and in each later one.
     first_stage: usize,
     per_stage: usize,
     left: usize,
@@ -52,9 +53,8 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// For an impact of `rows` rows, `contacts` of which may rebound, in which rates up to `small` are done,
-    /// and no row rebounds that is slower than `slow`. The lightest body has a mass of `lightness` times that
-    /// of the heaviest.
+    /// Patience for an impact of `rows` rows, `contacts` of which may rebound. Rates up to `small` [m/s] are done, and
+    /// no row slower than `slow` [m/s] rebounds. The lightest body has `lightness` times the mass of the heaviest.
     pub(super) fn new([rows, contacts]: [usize; 2], lightness: f64, small: f64, slow: f64) -> Self {
         let of_masses = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
         let of_angles = if (1..=FEW_CONTACTS).contains(&contacts) { BLOWS_OF_FEW } else { 0 };
@@ -68,7 +68,7 @@ impl Patience {
         self.small
     }
 
-    /// Counts rows that were solved; false when it is time to give in.
+    /// Counts solved rows; returns false once the last stage is over.
     pub(super) fn spend(&mut self, rows: usize) -> bool {
         self.left = self.left.saturating_sub(rows);
         if self.left > 0 {

@@ -1,29 +1,30 @@
 //! Rows solved one after another, until none closes.
 //!
-//! Each round takes one row as the focus, alone or with others, and lets it rebound: one that closes, or a
-//! bilateral one whose rate is not zero.
+//! Each round takes one violated row as the focus (one that closes, or a bilateral one whose rate is not zero) and lets
+//! it rebound, alone or with the rows that join it.
 
 use super::Impact;
 use super::law::ImpactError;
 use super::patience::Patience;
 use super::shuffle::Shuffle;
 
-/// Which rows join the focus.
+/// The rows that are solved together with the focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Grouping {
-    /// None.
+    /// No others.
     One,
-    /// All connectors that it reaches through movable bodies.
+    /// All connectors that the focus reaches through movable bodies.
     Connectors,
-    /// Those that close and share a movable body with it, and all connectors that these reach.
+    /// The rows that close and share a movable body with the focus, and all connectors that these and the focus reach.
     Closing,
 }
 
-/// Rows that close as fast as the fastest but for this part of it are one: rounding does not decide between them.
+/// Fraction of the greatest violation: rows within it of the fastest tie with it, so that rounding does not decide
+/// between them.
 const TIE: f64 = 1e-9;
 
 impl Impact {
-    /// Rounds until no row is violated, or patience ends.
+    /// Solves focus after focus until no row is violated or the patience ends.
     pub(super) fn solve_serially(
         &mut self,
         grouping: Grouping,
@@ -44,7 +45,8 @@ impl Impact {
         Ok(())
     }
 
-    /// The row to solve next: the fastest, the last of several, or a random one of those that are violated.
+    /// The next focus among the violated rows: the fastest, the last of several that tie, or a random one if there is a
+    /// `shuffle`.
     fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
         let rest = self.rest(small);
         match shuffle {
@@ -62,8 +64,8 @@ impl Impact {
         }
     }
 
-    /// The rate that a row solved alone is to have [m/s]. The elasticity of a connector acts only here: solved with
-    /// others it could add energy to them.
+    /// Target rate [m/s] of a row that is solved alone. The elasticity of a connector acts only here: in a problem with
+    /// other rows it could add energy to them.
     fn rebound_alone(&self, row: usize) -> f64 {
         let row_data = &self.rows[row];
         let violation = self.violation(row);
@@ -74,7 +76,7 @@ impl Impact {
         }
     }
 
-    /// Solves a focus with the rows that join it, and says how many they are.
+    /// Solves a focus together with the rows that join it. Returns the number of rows.
     fn solve_around(&mut self, focus: usize, grouping: Grouping, small: f64) -> Result<usize, ImpactError> {
         let mut set = std::mem::take(&mut self.scratch.set);
         set.clear();
@@ -92,7 +94,7 @@ impl Impact {
         outcome.map(|()| count)
     }
 
-    /// Adds the bilateral rows that a set reaches through movable bodies and one another.
+    /// Adds the bilateral rows that a set reaches through movable bodies, directly or through other bilateral rows.
     fn add_connectors(&mut self, set: &mut Vec<usize>) {
         if !self.has_connectors {
             return;

@@ -16,7 +16,7 @@ impl Shuffle {
 
     /// A number from 0 to `count` - 1; `count` is not 0.
     pub(super) fn below(&mut self, count: usize) -> usize {
-        // The high half of a product is uniform to 2^-64 times the count.
+        // The high half of the product is uniform up to 2^-64 times the count.
         let wide = u128::from(self.next()) * count as u128;
         (wide >> 64) as usize
     }

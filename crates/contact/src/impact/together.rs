@@ -7,14 +7,15 @@ use super::pair_problem::{solve_one, solve_two};
 use super::patience::Patience;
 use crate::row::CollisionRow;
 
-/// Impulses that gain more than this part of all that they turn over are none: a rebound gains nothing but rounding.
+/// Fraction of the sum of the absolute works of the impulses: impulses whose net work exceeds it drive the bodies, as a
+/// rebound gains nothing but rounding.
 const GAIN: f64 = 1e-3;
 
 impl Impact {
-    /// Makes the bilateral rows fit, alone and without elasticity, if one does not.
+    /// Brings the bilateral rows to rest, alone and without elasticity, if one of them is violated.
     ///
-    /// After that impulses of a problem in which they are held do no work along them; a rate left in one could add
-    /// energy where the elasticity of a contact drives it on.
+    /// Later problems hold them, and their impulses then do no work along them. A rate left in one could add energy
+    /// where the elasticity of a contact drives it on.
     pub(super) fn settle_connectors(&mut self, small: f64) -> Result<(), ImpactError> {
         if !(0..self.rows.len()).any(|row| self.rows[row].bilateral && self.is_violated(row, small)) {
             return Ok(());
@@ -28,13 +29,14 @@ impl Impact {
         outcome
     }
 
-    /// Problems of all rows: each that closes is to rebound, bilateral ones are held, and so are those at rest,
-    /// that open at rates [m/s] up to `rest`: what holds them leaves them some rate of either sign.
+    /// Solves problems of all rows until none is violated or the patience ends. Rows that close are to rebound.
+    /// Bilateral rows are held, and so are rows at rest, which count as such up to an opening rate of `rest` [m/s]: a
+    /// row that was held has some rate of either sign.
     ///
-    /// A row that opens stays out, even if the impulses turn it round: to hold it would add energy. If it
-    /// then closes, it is solved in the next round, with all others that do. Where rows all but depend on
-    /// each other, and no impulses hold them all, those found may drive the bodies instead: such a round is
-    /// taken back, and what closes is left to be stopped.
+    /// A row that opens stays out of the problem, even if the impulses turn it round, because holding it would add
+    /// energy. If it then closes, the next round solves it with all others that close. Where rows nearly depend on each
+    /// other and no impulses hold them all, the impulses found may drive the bodies instead. Such a round is taken
+    /// back, and the closing rows are left to be stopped without elasticity.
     pub(super) fn solve_all(&mut self, rest: f64, patience: &mut Patience) -> Result<(), ImpactError> {
         let mut set = std::mem::take(&mut self.scratch.set);
         let mut outcome = Ok(());
@@ -56,8 +58,7 @@ impl Impact {
         outcome
     }
 
-    /// True if the impulses since the rates and impulses that were put aside have done work, more than
-    /// rounding makes of them.
+    /// True if the impulses since the saved rates and impulses have done net work on the bodies beyond rounding.
     fn has_gained(&self) -> bool {
         let before = self.scratch.impulses.iter().zip(&self.scratch.rates);
         let rows = before.zip(self.impulses.iter().zip(&self.rates));
@@ -70,11 +71,11 @@ impl Impact {
         work > GAIN * size
     }
 
-    /// One problem without elasticity of the rows that close, rest, or open slowly; as long as others are
-    /// driven to close, with these too. Without elasticity it is the nearest admissible motion that is found,
-    /// and no row need stay out: the fewer are left to be driven, the fewer problems there are. The first
-    /// begins with what rows were unloaded by, each other with the rows that carried impulses in the one
-    /// before.
+    /// Solves one problem without elasticity of the rows that close, rest, or open slowly, and again with the rows that
+    /// it drives to close, until it drives none. Without elasticity the answer is the nearest admissible motion, so
+    /// that no row need stay out; with slowly opening rows in the first problem, fewer are left to be driven, and fewer
+    /// problems follow. The first problem starts from the impulses that rows were unloaded by, if any, each later one
+    /// from the rows that carried impulses in the one before.
     pub(super) fn solve_all_inelastic(&mut self, small: f64) -> Result<(), ImpactError> {
         self.aim_at_rest();
         self.scratch.rates.clone_from(&self.rates);
@@ -99,7 +100,7 @@ impl Impact {
             self.impulses.clone_from(&self.scratch.impulses);
             begin = Beginning::Likely(&likely);
         };
-        // What is left after the first problem is little, and has nothing to do with what was carried.
+        // The violations after the first problem are small and unrelated to the impulses that were carried.
         carried.clear();
         self.scratch.carried = carried;
         self.scratch.set = set;
@@ -107,8 +108,8 @@ impl Impact {
         outcome
     }
 
-    /// Lists the rows that close or rest, flags these, and lists those that open no faster than one of them
-    /// closes, in the measure of the solver, so that they have no say in the scale of the problem.
+    /// Lists the rows that close or rest, with a flag each, and the rows that open no faster than the fastest of them
+    /// closes, in the scaled rates of the solver: these do not change the scale of the problem.
     fn list_slow(&self, set: &mut Vec<usize>, likely: &mut Vec<bool>, small: f64) {
         let rest = self.rest(small);
         let movable = || (0..self.rows.len()).filter(|&row| self.can_move(row));
@@ -119,8 +120,8 @@ impl Impact {
         set.extend(movable().filter(|&row| likely[row] || self.rates[row] <= fastest * self.length(row)));
     }
 
-    /// Adds the rows that close now and are not in an ascending set, and flags them and those that have just
-    /// got an impulse.
+    /// Adds the rows that close now and are not in the ascending `set`. Flags them, and the rows that got an impulse in
+    /// the last problem.
     fn add_driven(&self, set: &mut Vec<usize>, likely: &mut [bool], small: f64) {
         let count = set.len();
         for (row, likely) in likely.iter_mut().enumerate() {
@@ -132,13 +133,13 @@ impl Impact {
         }
     }
 
-    /// As [`solve_together`](Self::solve_together), of many rows with the likely ones to begin with.
+    /// Does as [`solve_together`](Self::solve_together); more than two rows start from `begin`.
     fn solve_beginning_with(&mut self, set: &[usize], begin: Beginning<'_>) -> Result<(), ImpactError> {
         if set.len() > 2 { self.solve_many(set, begin) } else { self.solve_together(set) }
     }
 
-    /// Lists the rows that close or open no faster than `rest` [m/s], the bilateral ones, and those that were
-    /// held and have not opened in earnest.
+    /// Lists the bilateral rows, the rows that close or open no faster than `rest` [m/s], and the rows that were held
+    /// before the impact and open no faster than their `velocity_tol`.
     fn list_held(&self, set: &mut Vec<usize>, rest: f64) {
         let limit = self.rest(rest);
         let is_slow =
@@ -151,10 +152,10 @@ impl Impact {
         set.extend((0..self.rows.len()).filter(is_held));
     }
 
-    /// Solves the rows of an ascending set together, each that closes to rebound.
+    /// Solves the rows of an ascending set together; those that close are to rebound.
     ///
-    /// Rows that hardly open are held as if they rested. Where others depend on them and leave no room to
-    /// rebound into, as in a wedge, all are stopped.
+    /// Rows that hardly open are held as if at rest. Where rows depend on each other such that they cannot all rebound,
+    /// as in a wedge, all are stopped instead.
     pub(super) fn rebound_together(&mut self, set: &[usize]) -> Result<(), ImpactError> {
         self.aim_at_rebounds(set);
         self.solve_together(set).or_else(|_| {
@@ -163,7 +164,7 @@ impl Impact {
         })
     }
 
-    /// Sets the target of each row of a set to its rebound from the rate that it has now; bilateral rows are to rest.
+    /// Sets the target rate of each row of a set to its rebound from the present rate; that of a bilateral row is 0.
     pub(super) fn aim_at_rebounds(&mut self, set: &[usize]) {
         self.scratch.targets.resize(self.rows.len(), 0.0);
         for &index in set {
@@ -173,13 +174,13 @@ impl Impact {
         }
     }
 
-    /// Sets each row's target to rest.
+    /// Sets the target rate of each row to 0.
     pub(super) fn aim_at_rest(&mut self) {
         self.scratch.targets.clear();
         self.scratch.targets.resize(self.rows.len(), 0.0);
     }
 
-    /// Solves one row to reach a rate, and applies the impulse.
+    /// Solves one row to reach the rate `target` [m/s], and applies the impulse.
     pub(super) fn solve_alone(&mut self, row: usize, target: f64) {
         let b = self.rates[row] - target;
         let impulse = solve_one(self.couplings.diagonal(row), b, self.rows[row].bilateral);
@@ -231,7 +232,7 @@ mod tests {
             CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate, 0.0, 1e-3, false)
         };
         let mut impact = Impact::new();
-        // A trial has time for as much.
+        // A trial has enough pivots for this.
         for resolve in [Impact::resolve_inelastic, Impact::try_inelastic] {
             impact.set_rows((0..8).map(|place| row(place, if place == 0 { -1.0 } else { 1e-3 })));
             resolve(&mut impact)?;
@@ -243,7 +244,7 @@ mod tests {
 
     #[test]
     fn what_was_held_is_struck_with_the_rest_though_it_opens_by_rounding() -> Result<(), ImpactError> {
-        // A disc strikes another, which a third lies against.
+        // A disc strikes another one, against which a third lies.
         let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
         let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
         let row = |place: u32, rate| {
@@ -261,7 +262,7 @@ mod tests {
             at_rest.iter().zip(opening).all(|(rest, opening)| (rest - opening).abs() < 1e-6),
             "{opening:?}"
         );
-        // What opens in earnest, or was not held, is driven together later, and parts.
+        // A row that opens faster than `velocity_tol`, or was not held, is driven to close later, and opens.
         assert!(strike(1e-5, true)?[1] > 0.5 && strike(1e-7, false)?[1] > 0.5);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The impulses of an event, and their report.
 
 use super::region::Region;
-use crate::rigid::error::AdvanceError;
+use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::limits::bounces::closes_fast;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
@@ -215,5 +215,6 @@ fn impact_error(region: &Region, time: Time, source: ImpactError) -> AdvanceErro
     let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();
     bodies.sort_unstable();
     bodies.dedup();
-    AdvanceError::Impact { time: time.seconds(), bodies, source }
+    let record = source.row().and_then(|row| region.records.get(row));
+    AdvanceError::Impact { time: time.seconds(), bodies, between: record.map(Between::of), source }
 }

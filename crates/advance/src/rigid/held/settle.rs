@@ -6,7 +6,7 @@
 //! others.
 
 use super::settling::{SMALL_CONTRADICTION, Settling};
-use crate::rigid::error::AdvanceError;
+use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::event::cause::{Cause, EventWork};
 use crate::rigid::event::jams::JAM;
 use crate::rigid::event::region::{Region, Touch};
@@ -385,7 +385,14 @@ impl RigidSystem {
             settling.candidates.iter().flat_map(|&index| region.records[index].bodies()).collect();
         bodies.sort_unstable();
         bodies.dedup();
-        AdvanceError::Contacts { time: time.seconds(), bodies, source: Box::new(source) }
+        let row = source.row().and_then(|row| settling.candidates.get(row));
+        AdvanceError::Contacts {
+            time: time.seconds(),
+            bodies,
+            between: row.map(|&index| Between::of(&region.records[index])),
+            problem: Box::new(settling.problem.clone()),
+            source: Box::new(source),
+        }
     }
 
     /// What the motion of groups is computed from.
