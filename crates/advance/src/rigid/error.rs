@@ -56,7 +56,7 @@ pub enum AdvanceError {
         bodies: Vec<BodyId>,
         /// The two bodies of the row that the error names; `None` if it names none.
         between: Option<Between>,
-        /// The problem that was solved last: accelerations [m/s^2] of the rows by their forces [N].
+        /// The problem that the solver was given last: accelerations [m/s^2] of the rows by their forces [N].
         problem: Box<Problem>,
         /// Error of the solver.
         source: Box<SolveError>,

@@ -4,7 +4,8 @@
 //! shows where the function may dip below zero in between, however briefly, and is followed by samples there. The
 //! bracket is closed by inverse parabolas where they are sure to serve, else by bisection: some functions have a kink
 //! where they fall (T. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear
-//! function without using derivatives", Advances in Engineering Software 28, 1997).
+//! function without using derivatives", Advances in Engineering Software 28,
+//! 1997).
 
 /// Number of samples along a segment: both ends and three places between, equally far apart.
 pub(crate) const NODES: usize = 5;
