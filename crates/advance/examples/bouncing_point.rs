@@ -7,16 +7,19 @@
 use halfgap_advance::{EventDriven, EventQueue, SourceId, Time, advance_until};
 use std::convert::Infallible;
 
+/// Acceleration of the point [m/s^2], downwards.
 const GRAVITY: f64 = 9.81;
-/// Speed of the table [m/s], up and down by turns, and how long each lasts [s].
+/// Speed of the table [m/s], up and down by turns.
 const TABLE_SPEED: f64 = 0.4;
+/// Time [s] for which the table goes in one direction.
 const TABLE_HALF_PERIOD: f64 = 0.25;
+/// Speed after a bounce as a fraction of that before it [-].
 const ELASTICITY: f64 = 0.8;
 
 const BOUNCE: SourceId = SourceId(0);
 const TURN: SourceId = SourceId(1);
 
-/// Something that moves along a vertical line: a parabola since some time.
+/// Motion along a vertical line: a parabola from some time on.
 #[derive(Clone, Copy)]
 struct Segment {
     start: Time,
@@ -70,7 +73,7 @@ impl PointOnTable {
     }
 }
 
-/// What is told of an event.
+/// Report of an event.
 enum Told {
     Bounce { closing: f64, leaving: f64 },
     Turn,

@@ -13,26 +13,30 @@ use halfgap_advance::ode::{Method, Ode, Point, SegmentPolynomial, Stepper};
 use halfgap_advance::{EventDriven, EventQueue, SourceId, Time, advance_until};
 use std::convert::Infallible;
 
-/// Belt speed [m/s], spring per mass [1/s^2], gravity [m/s^2].
+/// Speed of the belt [m/s].
 const BELT_SPEED: f64 = 0.1;
+/// Stiffness of the spring per mass of the block [1/s^2].
 const STIFFNESS: f64 = 40.0;
+/// Acceleration of gravity [m/s^2].
 const GRAVITY: f64 = 9.81;
-/// Friction coefficients at rest and when sliding fast, and the speed [m/s] over which it falls (Stribeck 1902).
+/// Friction coefficient at rest [-].
 const STATIC_FRICTION: f64 = 0.4;
+/// Friction coefficient when sliding fast [-].
 const SLIDING_FRICTION: f64 = 0.2;
+/// Speed [m/s] over which the coefficient falls from one to the other (Stribeck 1902).
 const STRIBECK_SPEED: f64 = 0.1;
-/// Just acceptable error of a step, in place [m] and velocity [m/s].
+/// Just acceptable errors of a step, in position [m] and velocity [m/s].
 const ERROR_SCALES: [f64; 2] = [1e-10, 1e-10];
 /// Length of the first step of a slip [s].
 const FIRST_STEP: f64 = 1e-3;
-/// Parts in which a step is looked through for a catch.
+/// Number of parts in which a step is searched for a catch.
 const LOOKS: u32 = 16;
 
 const SLIPS: SourceId = SourceId(0);
 const STEP_ENDS: SourceId = SourceId(1);
 const CAUGHT: SourceId = SourceId(2);
 
-/// The block while it slips backwards over the belt: state is place and velocity.
+/// The block while it slips backwards over the belt: its state is position and velocity.
 struct Slipping;
 
 impl Ode for Slipping {
@@ -53,12 +57,12 @@ struct Block {
     /// State at the start of the segment.
     state: [f64; 2],
     start: Time,
-    /// Motion of place and velocity along a step, while it slips.
+    /// Position and velocity along a step, while it slips.
     step: [SegmentPolynomial; 2],
     next_step: f64,
 }
 
-/// What is told of an event: that it slips, or is caught, at some place [m].
+/// Report of an event: the block slips, or is caught, at some position [m].
 enum Told {
     Slips(f64),
     Caught(f64),
@@ -110,7 +114,8 @@ impl Block {
         Ok(())
     }
 
-    /// When the velocity, on the step, comes up to that of the belt: bracketed, then halved down to rounding.
+    /// Offset [s] on the step at which the velocity comes up to that of the belt: bracketed, then halved down to
+    /// rounding.
     fn find_catch(&self, length: f64) -> Option<f64> {
         let slower = |offset: f64| self.step[1].value_at(offset) < BELT_SPEED;
         let at = |look: u32| length * f64::from(look) / f64::from(LOOKS);
@@ -147,7 +152,7 @@ impl EventDriven for Block {
             self.stick(now, place);
             return Ok(Some((now, Told::Caught(place))));
         }
-        // The end of a step is nobody's business but ours.
+        // Callers need not know of the end of a step.
         self.slip(now, [place, velocity])?;
         Ok(None)
     }

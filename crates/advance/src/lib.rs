@@ -1,11 +1,12 @@
-//! Event-driven advance: which event is next, and what is handled in which order?
+//! Event-driven advance: predicts events, handles them in order of time, and integrates motions in between.
 //!
-//! *Invariant*: this crate knows no force laws and no scene files; without the feature `rigid` (on by default) it does
-//! not even know bodies, and depends on nothing but an error macro and libm.
+//! *Invariant*: this crate knows the `ForceLaw` trait, uniform acceleration and linear damping, but no other law, and
+//! no scene files; without the feature `rigid` (on by default) it does not even know bodies, and depends on nothing but
+//! an error macro and libm.
 //!
-//! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in
-//! an [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as
-//! its caller wants. Outputs are read from segments and change nothing.
+//! A system proposes motions that can be evaluated at any time (segments) and keeps its predicted events in an
+//! [`EventQueue`]; [`advance_until`] handles them in order of their [`Time`], [`advance_while`] as long as its caller
+//! wants. Outputs are read from segments and change nothing.
 //!
 //! ```
 //! use halfgap_advance::{EventDriven, EventQueue, SourceId, Time, advance_until};
@@ -39,13 +40,13 @@
 //!
 //! # Code map
 //!
-//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait and the loop; [`ode`]
-//! integrates motions that have no closed form; `rigid` implements the trait for rigid bodies: free flight in
-//! closed form, contacts, connectors and forces between bodies by integrated groups, impacts and all changes
-//! of contact as events.
+//! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait of event-driven systems and the
+//! loop over it; [`ode`] integrates motions that have no closed form; `rigid` implements the trait for rigid bodies:
+//! free flight in closed form, groups coupled by contacts, connectors and force laws by an integrator, impacts and all
+//! changes of contact as events.
 //!
-//! The examples `bouncing_point` (closed form) and `stick_slip` (integrated) are systems that need nothing
-//! but this crate without its features.
+//! The examples `bouncing_point` (closed form) and `stick_slip` (integrated) are systems that need this crate alone,
+//! without its features.
 
 #![forbid(unsafe_code)]
 

@@ -1,49 +1,50 @@
-//! The event queue: at most one predicted event a source, the earliest first.
+//! The event queue: at most one predicted event per source, the earliest first.
 //!
-//! A heap of four children a node that knows where each source's entry lies, so that a prediction that an
-//! event made worthless is replaced in place and nothing stale ever comes out. Equal times come in the order
-//! of their sources, so that runs repeat to the bit. Compare M. Bannerman et al., "Stable algorithm for event
-//! detection in event-driven particle dynamics", arXiv 1211.6718, and the queues they cite.
+//! A heap with four children per node that knows where each source's entry lies: a prediction that an event has made
+//! void is replaced in place, and no stale one ever comes out. Equal times come in the order of their sources, so that
+//! runs repeat to the bit. Compare M. Bannerman et al., "Stable algorithm for event detection in event-driven particle
+//! dynamics", arXiv 1211.6718, and the queues they cite.
 
 use crate::time::Time;
 
-/// Index of whatever predicts events: a pair, a body, a force law. Indices had better be small: the queue
-/// keeps a place for each up to the largest.
+/// Index of a source of events, such as a pair, a body or a force law. Keep indices small: the queue holds a slot for
+/// each up to the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// An entry of the queue.
+/// An entry of the queue: the predicted event of one source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Scheduled {
-    /// When.
+    /// Time of the event.
     pub time: Time,
-    /// Whose event.
+    /// Source of the event.
     pub source: SourceId,
 }
 
+/// Place of a source that has no event.
 const ABSENT: u32 = u32::MAX;
-/// Children of a node of the heap.
+/// Number of children of a node of the heap.
 const CHILDREN: usize = 4;
-/// Slots before the root, so that the children of a node fill one family.
+/// Number of slots before the root, so that the children of a node fill one family.
 const BEFORE_ROOT: usize = CHILDREN - 1;
 
-/// What an entry is ordered by first: the first number of its time. The rest of the time decides between
-/// equal ones, and is kept elsewhere.
+/// The part of an entry that mostly decides its order: the first number [s] of its time. Between equal ones the rest of
+/// the time decides, which is kept in `sources`, and then the source.
 #[derive(Clone, Copy, Debug)]
 struct Key {
     seconds: f64,
     source: u32,
 }
 
-/// Where there is no entry: later than all.
+/// Content of an empty slot: later than every entry.
 const NOTHING: Key = Key { seconds: f64::INFINITY, source: ABSENT };
 
-/// The children of a node, in one line of the cache: a heap of many sources costs as much as the lines it touches.
+/// The children of a node, in one cache line: a heap of many sources costs as much as the lines it touches.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Family([Key; CHILDREN]);
 
-/// The predicted events of all sources.
+/// Queue of predicted events, at most one per source.
 #[derive(Clone, Debug, Default)]
 pub struct EventQueue {
     families: Vec<Family>,
@@ -52,17 +53,17 @@ pub struct EventQueue {
     sources: Vec<Source>,
 }
 
-/// What is known of a source, in one place.
+/// Place and rest of the time of one source's event.
 #[derive(Clone, Copy, Debug)]
 struct Source {
-    /// Place of its entry in the heap.
+    /// Place of its entry in the heap, or `ABSENT`.
     place: u32,
-    /// What the first number of its time leaves.
+    /// Second number [s] of its time.
     rest: f64,
 }
 
 impl Source {
-    /// Without an event.
+    /// A source that has no event.
     const IDLE: Self = Self { place: ABSENT, rest: 0.0 };
 }
 
@@ -73,7 +74,7 @@ impl EventQueue {
         Self::default()
     }
 
-    /// How many sources have an event.
+    /// Number of sources that have an event.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
@@ -85,20 +86,20 @@ impl EventQueue {
         self.len == 0
     }
 
-    /// The earliest event.
+    /// The earliest event; among equal times that of the least source. `None` if no source has an event.
     #[must_use]
     pub fn first(&self) -> Option<Scheduled> {
         let key = (self.len > 0).then(|| self.key(0))?;
         Some(Scheduled { time: self.time(key), source: SourceId(key.source) })
     }
 
-    /// When the source's event is predicted, if it has one.
+    /// Predicted time of the source's event; `None` if it has none.
     #[must_use]
     pub fn time_of(&self, source: SourceId) -> Option<Time> {
         Some(self.time(self.key(self.place_of(source)?)))
     }
 
-    /// Predicts the source's event for `time`, in place of any earlier prediction.
+    /// Sets the source's event to `time`, in place of any earlier prediction.
     pub fn set(&mut self, source: SourceId, time: Time) {
         let index = source.0 as usize;
         if index >= self.sources.len() {
@@ -117,7 +118,7 @@ impl EventQueue {
         if is_earlier { self.rise(place, key) } else { self.sink(place, key) }
     }
 
-    /// Takes the source's event away, if it has one.
+    /// Removes the source's event, if it has one.
     pub fn clear(&mut self, source: SourceId) {
         let Some(place) = self.place_of(source) else { return };
         self.sources[source.0 as usize].place = ABSENT;
@@ -138,7 +139,7 @@ impl EventQueue {
         Time::from_parts(key.seconds, self.sources[key.source as usize].rest)
     }
 
-    /// Makes room for one more entry, and says at which place.
+    /// Makes room for one more entry and returns its place.
     fn grow(&mut self) -> usize {
         let place = self.len;
         self.len += 1;
@@ -165,7 +166,7 @@ impl EventQueue {
         if a.seconds == b.seconds { self.breaks_tie(a, b) } else { a.seconds < b.seconds }
     }
 
-    /// The same of times whose first numbers are equal, which is rare.
+    /// True if `a` is earlier than `b`, given equal first numbers of their times, which is rare.
     #[cold]
     fn breaks_tie(&self, a: Key, b: Key) -> bool {
         let of = |key: Key| {
@@ -175,7 +176,7 @@ impl EventQueue {
         rest_a < rest_b || (rest_a == rest_b && source_a < source_b)
     }
 
-    /// Puts an entry at a place, or as far towards the root as it is earlier than what lies there.
+    /// Puts an entry at a place and moves it towards the root past all later ones.
     fn rise(&mut self, mut place: usize, key: Key) {
         while place > 0 {
             let parent = (place - 1) / CHILDREN;
@@ -189,7 +190,7 @@ impl EventQueue {
         self.put(place, key);
     }
 
-    /// Puts an entry at a place, or as far from the root as what lies there is earlier.
+    /// Puts an entry at a place and moves it away from the root past all earlier ones.
     fn sink(&mut self, mut place: usize, key: Key) {
         while let Some((child, least)) = self.earliest_child(place) {
             if !self.is_before(least, key) {
@@ -201,7 +202,7 @@ impl EventQueue {
         self.put(place, key);
     }
 
-    /// The earliest child of a place and where it lies, if there is a family.
+    /// Place and key of the earliest child of a place; `None` if the place has no family of children.
     #[inline]
     fn earliest_child(&self, place: usize) -> Option<(usize, Key)> {
         let Family(family) = self.families.get(place + 1)?;
@@ -224,7 +225,7 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
-    /// Less than the first number of a time of some seconds can tell [s].
+    /// Time [s] too short for the first number of a time of some seconds to resolve.
     const LITTLE: f64 = 1e-20;
 
     fn time((seconds, rest): (u8, u8)) -> Time {

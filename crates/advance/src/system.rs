@@ -1,33 +1,34 @@
-//! What a system must be able to do to be advanced event by event, and the loop that does it.
+//! The trait of systems that are advanced event by event, and the loop that advances them.
 
 use crate::time::Time;
 use std::ops::ControlFlow;
 
 /// A system that predicts its events and handles them one by one.
 pub trait EventDriven {
-    /// What is told of a handled event.
+    /// Report of a handled event, passed to the caller of the loop.
     type Report;
-    /// Why an event could not be handled.
+    /// Error of an event that cannot be handled.
     type Error;
 
     /// Time of the earliest event; `None` if nothing will ever happen.
     fn next_event(&self) -> Option<Time>;
 
-    /// Handles the earliest event; `None` if it was of no interest to anyone outside.
+    /// Handles the earliest event and returns its report; `None` if callers need not know of it.
     ///
     /// # Errors
     /// The event cannot be handled; the system stays at the time of the event.
     fn handle_next(&mut self) -> Result<Option<Self::Report>, Self::Error>;
 
-    /// All events up to some time have been handled, and somebody will look: what was put off must be there
-    /// now. So it must be, too, after each event that is told of.
+    /// Called after all events up to the target, before the caller reads the state: finish deferred work here. Reported
+    /// events must leave it finished too.
     fn arrive(&mut self) {}
 }
 
-/// Handles all events up to and including `until`, in order, telling `on_report` of each; none if `until` is no number.
+/// Handles all events up to and including `until`, in order, and calls `on_report` with the report of each. A NaN makes
+/// [`Time::NEVER`], with which the loop ends only when no event is left.
 ///
 /// # Errors
-/// The first event that cannot be handled; what was told before stands.
+/// The first event that cannot be handled; events reported before it stay handled.
 pub fn advance_until<S: EventDriven>(
     system: &mut S,
     until: Time,
@@ -40,11 +41,12 @@ pub fn advance_until<S: EventDriven>(
     outcome.map(|_| ())
 }
 
-/// The same, but no further than the first event of which `on_report` says [`ControlFlow::Break`]. Those that
-/// come after it, be it at the same time, are handled by the next advance, just as if it had not stopped.
+/// Handles events up to and including `until`, in order, but none after the first report to which `on_report` answers
+/// [`ControlFlow::Break`]. The next advance handles the events that follow, also those of the same time, as if the loop
+/// had not stopped.
 ///
 /// # Errors
-/// As [`advance_until`].
+/// The first event that cannot be handled; events reported before it stay handled.
 pub fn advance_while<S: EventDriven>(
     system: &mut S,
     until: Time,

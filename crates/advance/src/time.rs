@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::fmt;
 
-/// A time [s] as a number and the rest that it cannot hold; compared exactly. What is not a number, as of 0/0, is
+/// A time [s], held as the unevaluated sum of two numbers and compared exactly. A NaN, as of 0/0, becomes
 /// [`NEVER`](Self::NEVER).
 ///
 /// Adding a step is exact to about 1e-32 of the time, so that an event a million seconds into a run is as sharp as one
@@ -20,32 +20,32 @@ impl Time {
     /// Later than any event.
     pub const NEVER: Time = Time { seconds: f64::INFINITY, rest: 0.0 };
 
-    /// The time nearest to a number of seconds: exactly that.
+    /// The time of a number of seconds, exactly; [`NEVER`](Self::NEVER) for NaN.
     #[must_use]
     pub fn from_seconds(seconds: f64) -> Self {
         if seconds.is_nan() { Self::NEVER } else { Self { seconds, rest: 0.0 } }
     }
 
-    /// Both numbers; the first alone decides between times whose first differ.
+    /// Both numbers of the sum [s]. The first alone orders times in which it differs.
     #[inline]
     pub(crate) fn parts(self) -> (f64, f64) {
         (self.seconds, self.rest)
     }
 
-    /// The time of these numbers.
+    /// The time of two numbers [s] from [`Self::parts`].
     #[inline]
     pub(crate) fn from_parts(seconds: f64, rest: f64) -> Self {
         Self { seconds, rest }
     }
 
-    /// The time as one number [s].
+    /// The time as one number [s], rounded.
     #[must_use]
     #[inline]
     pub fn seconds(self) -> f64 {
         self.seconds
     }
 
-    /// The time some seconds later.
+    /// The time `step` seconds later; earlier for a negative step.
     #[must_use]
     #[inline]
     pub fn plus(self, step: f64) -> Self {
@@ -55,7 +55,7 @@ impl Time {
         }
         let step_part = sum - self.seconds;
         let error = (self.seconds - (sum - step_part)) + (step - step_part);
-        // Renormalise, so that the comparison below may look at the first number first.
+        // Renormalise, so that comparisons may look at the first number first.
         let rest = self.rest + error;
         let seconds = sum + rest;
         Self { seconds, rest: rest - (seconds - sum) }
@@ -78,7 +78,7 @@ impl Time {
     #[must_use]
     #[inline]
     pub fn min(self, other: Time) -> Time {
-        // Which it is can seldom be foretold: no branch.
+        // A branch would be mispredicted often: there is none.
         [self, other][usize::from(other < self)]
     }
 

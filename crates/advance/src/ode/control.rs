@@ -1,21 +1,21 @@
-//! How long the next step may be.
+//! Control of the step length.
 
 use super::method::Method;
 
-/// The next step aims at this part of the length at which the error would be what is asked for.
+/// Length that the next step aims at, as a fraction of that at which its error would be just acceptable.
 const SAFETY: f64 = 0.9;
-/// Steps whose error is up to this many times what is asked for are kept. Steps aim at less than half of what
-/// is asked for and miss it by chance: what such a miss adds to all errors is not worth a whole step.
+/// Largest error norm of a step that is kept. Steps aim at less than half of the acceptable error and miss it by
+/// chance: what such a miss adds to all errors is not worth a whole step.
 const KEPT: f64 = 1.5;
-/// A step shrinks to this part at most, since the estimate says little about much shorter steps.
+/// Least factor of a step to the next: the estimate says little about much shorter steps.
 const SMALLEST_FACTOR: f64 = 0.2;
-/// A step grows by this factor at most, since the estimate says little about much longer steps.
+/// Largest factor of a step to the next: the estimate says little about much longer steps.
 const LARGEST_FACTOR: f64 = 6.0;
 
-/// After error norms below this a step grows by the largest factor, whatever the order: (0.9/6)^8 is 2.6e-7.
+/// Error norm below which a step grows by the largest factor, whatever the order: (0.9/6)^8 is 2.6e-7.
 const NO_ERROR: f64 = 1e-7;
 
-/// Error norms below this tell nothing about a trend.
+/// Error norm below which errors tell nothing about a trend.
 const TELLING_ERROR: f64 = 1e-2;
 
 /// A step that was accepted.
@@ -23,21 +23,21 @@ const TELLING_ERROR: f64 = 1e-2;
 pub struct Accepted {
     /// Its length [s].
     pub length: f64,
-    /// Its error norm.
+    /// Its error norm [-], as of [`Stepper::error_norm`](super::Stepper::error_norm): 1 is just acceptable.
     pub error: f64,
 }
 
-/// True if a step with such an error norm is kept, rather than made again.
+/// True if a step of this error norm is kept, rather than repeated.
 #[must_use]
 pub fn is_kept(error_norm: f64) -> bool {
     error_norm <= KEPT
 }
 
 impl Method {
-    /// Factor from an accepted step to the next, after an error norm.
+    /// Factor from the length of a step to that of the next, by the step's error norm.
     ///
-    /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short.
-    /// Methods with fixed steps answer 1; a norm that is not finite asks for the smallest factor.
+    /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short. Methods
+    /// with fixed steps return 1; a norm that is not finite asks for the smallest factor.
     #[must_use]
     pub fn step_factor(self, error_norm: f64) -> f64 {
         let Some(order) = self.error_order() else { return 1.0 };
@@ -51,11 +51,11 @@ impl Method {
         factor.clamp(SMALLEST_FACTOR, LARGEST_FACTOR)
     }
 
-    /// Factor from an accepted step to the next where the one before may be known, too: it foresees that an error which
-    /// grew from step to step goes on to grow.
+    /// Factor from the length of an accepted step to that of the next. With the accepted step before it, it foresees
+    /// that an error which grew from step to step goes on to grow.
     ///
-    /// Source: Gustafsson's predictive controller as in Hairer and Wanner, "Solving Ordinary Differential
-    /// Equations II", IV.8, (8.25).
+    /// Source: Gustafsson's predictive controller as in Hairer and Wanner, "Solving Ordinary Differential Equations
+    /// II", IV.8, (8.25).
     #[must_use]
     pub fn factor_after(self, step: Accepted, before: Option<Accepted>) -> f64 {
         let plain = self.step_factor(step.error);
@@ -65,16 +65,15 @@ impl Method {
         (plain * trend).clamp(SMALLEST_FACTOR, plain)
     }
 
-    /// Factor for the step after one that was not accepted, or after one that was accepted only on another try: it does
-    /// not grow.
+    /// Factor from the length of a rejected step, or of one that was accepted only on another try, to that of the next:
+    /// at most 1.
     #[must_use]
     pub fn step_factor_after_rejection(self, error_norm: f64) -> f64 {
         self.step_factor(error_norm).min(1.0)
     }
 }
 
-/// A root of a number: of the degrees that are asked for most by square roots, which are faster and the same
-/// everywhere.
+/// Root of a number. The most frequent degrees take square roots, which are faster and the same everywhere.
 fn root(value: f64, degree: u32) -> f64 {
     match degree {
         8 => value.sqrt().sqrt().sqrt(),

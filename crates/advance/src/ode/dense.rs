@@ -9,7 +9,7 @@ use super::polynomial::{NESTED, SegmentPolynomial};
 use super::{Ode, Point};
 use std::ops::Range;
 
-/// Coefficients `c2`, `c3`, `c4` of the form.
+/// Number of the coefficients `c2`, `c3`, `c4` of the form.
 const HERMITE: usize = 3;
 
 /// The sums for `c5` to `c8` of the components of one lane.

@@ -19,7 +19,8 @@ pub(super) const DOP853: Tableau = Tableau {
     swing: Some(SWING),
 };
 
-/// Of what decays steadily, with its rate times the step from here up to 7. The error estimate all but vanishes at 5.7.
+/// Swing by a part that decays steadily, with its rate times the step from 5 up to 7. The error estimate all but
+/// vanishes at 5.7.
 const SWING: Swing = Swing { from: 5.0, by: 5.6 };
 
 const STAGES: [Stage; 11] = [

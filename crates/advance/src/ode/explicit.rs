@@ -3,29 +3,30 @@
 use super::tableau::{Stage, Tableau, Term};
 use super::{Ode, Point, StiffnessEstimate};
 
-/// Components that are handled together. The last lane is padded with numbers that nobody reads.
+/// Components that are handled together. The last lane is padded with numbers that are never read.
 pub(super) type Lane = [f64; WIDTH];
 
-/// Components in a lane.
+/// Number of components in a lane.
 pub(super) const WIDTH: usize = 4;
 
-/// HNW II.10: how much of the estimate of order 3 stands beside that of order 5 in the error of DOP853.
+/// Weight of the error estimate of order 3 beside that of order 5 in DOP853, HNW II.10.
 const THIRD_ORDER_SHARE: f64 = 0.01;
 
-/// What an explicit method knows of its last step.
+/// An explicit method, with its last step.
 #[derive(Clone, Debug)]
 pub(super) struct Explicit {
     pub(super) tableau: &'static Tableau,
-    /// Components of the state.
+    /// Number of components of the state.
     pub(super) size: usize,
-    /// Lanes of a state.
+    /// Number of lanes of a state.
     pub(super) lanes: usize,
-    /// Start [s] and length [s] of the last step.
+    /// Offset [s] of the start of the last step.
     pub(super) offset: f64,
+    /// Length [s] of the last step.
     pub(super) length: f64,
     /// State at the start of the step.
     pub(super) start: Vec<Lane>,
-    /// The state at which rates are asked for.
+    /// State at which rates are asked for.
     trial: Vec<Lane>,
     /// Rates, a row of lanes per place of the tableau.
     pub(super) rates: Vec<Lane>,
@@ -200,7 +201,7 @@ pub(super) fn weighted_sum(rates: &[Lane], lanes: usize, lane: usize, terms: &[T
     sum
 }
 
-/// Mean of the squares of numbers measured by their scales.
+/// Mean of the squares of numbers, each divided by its scale.
 pub(super) fn mean_square(numbers: &[f64], scales: &[f64]) -> f64 {
     let squares = numbers.iter().zip(scales).map(|(number, scale)| (number / scale) * (number / scale));
     squares.sum::<f64>() / scales.len() as f64

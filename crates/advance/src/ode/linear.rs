@@ -1,16 +1,16 @@
-//! Dense linear equations: factors of a square matrix, with pivots sought in columns.
+//! Dense linear equations: LU factors of a square matrix, with pivots sought in columns.
 
-/// A square matrix, row by row, and then its factors.
+/// A square matrix, row by row, and after [`Self::factorize`] its LU factors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factors {
     size: usize,
     entries: Vec<f64>,
-    /// The row that was exchanged with each.
+    /// Row that was exchanged with each row.
     pivots: Vec<usize>,
 }
 
 impl Factors {
-    /// Makes room for a matrix of so many rows, all zero.
+    /// Makes room for a square matrix of `size` rows, all zero, and returns its entries, row by row.
     pub(super) fn clear(&mut self, size: usize) -> &mut [f64] {
         self.size = size;
         self.entries.clear();
@@ -18,7 +18,7 @@ impl Factors {
         &mut self.entries
     }
 
-    /// Factorises the entries; false if no number can be divided by.
+    /// Factorises the entries; false if a pivot is zero or not finite.
     pub(super) fn factorize(&mut self) -> bool {
         let size = self.size;
         self.pivots.clear();
@@ -50,7 +50,7 @@ impl Factors {
         true
     }
 
-    /// Solves in place.
+    /// Solves in place: `x` is the right-hand side, then the solution.
     pub(super) fn solve(&self, x: &mut [f64]) {
         let size = self.size;
         for (row, &pivot) in self.pivots.iter().enumerate() {

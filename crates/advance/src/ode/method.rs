@@ -1,10 +1,10 @@
-//! The methods there are.
+//! The methods of integration.
 
 use super::dop853::DOP853;
 use super::dormand_prince5::DORMAND_PRINCE5;
 use super::tableau::{EULER, MODIFIED_EULER, RK4, Tableau};
 
-/// A way to go a step ahead.
+/// A method of integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// Dormand and Prince, order 8 with error estimates, dense output of order 7; 12 derivatives a step, 3 more for the
@@ -32,7 +32,7 @@ impl Method {
         self.error_order().is_some()
     }
 
-    /// Order: the error over a fixed time falls with this power of the step.
+    /// Order of the method: the error over a fixed time falls with this power of the step.
     #[must_use]
     pub fn order(self) -> u32 {
         match self {
@@ -44,7 +44,8 @@ impl Method {
         }
     }
 
-    /// Order of the error estimate: the estimate for one step falls with this power of the step plus one.
+    /// Order of the error estimate, which for one step falls with this power of the step plus one; `None` for a method
+    /// without an estimate.
     #[must_use]
     pub fn error_order(self) -> Option<u32> {
         match self {
@@ -55,8 +56,9 @@ impl Method {
         }
     }
 
-    /// How large the rates of a system times the step may be, roughly, before what should decay grows: `None`
-    /// for a method that damps it whatever the step. See [`Stepper::stiffness`](super::Stepper::stiffness).
+    /// Largest product [-] of a system's fastest rate of decay and the step, roughly: beyond it a decaying part grows.
+    /// `None` for a method that damps such parts whatever the step. See
+    /// [`Stepper::stiffness`](super::Stepper::stiffness).
     ///
     /// Source: the boundaries on the real axis of the stability domains, HNW II.4 and E. Hairer, G. Wanner, Solving
     /// Ordinary Differential Equations II, IV.2.
@@ -71,7 +73,7 @@ impl Method {
         }
     }
 
-    /// The part of a step in the middle of the widest interval in which none of its rates is asked for, dense
+    /// Middle, as a fraction of a step, of the widest interval in which none of the step's rates is evaluated, dense
     /// output included; `None` for methods without error estimate and implicit ones.
     #[must_use]
     pub fn middle_between_stages(self) -> Option<f64> {

@@ -1,20 +1,19 @@
 //! Ordinary differential equations: one step of a method, its error, and the motion along it.
 //!
-//! This room knows no bodies: a system is a function that gives the rates of change of some numbers
-//! ([`Ode`]). A [`Stepper`] goes one step and says what it knows about its error; whoever owns the loop
-//! decides whether the step is accepted, may change the end state by about the error (projection on
-//! constraints), and may ask for the motion along the step as [`SegmentPolynomial`]s. The buffers belong to
-//! the stepper: after the first step nothing is allocated.
+//! This room knows no bodies: a system is a function that returns the rates of change of some numbers ([`Ode`]). A
+//! [`Stepper`] makes one step and estimates its error. The caller decides whether the step is accepted, may change the
+//! end state by about the error (projection on constraints), and may ask for the motion along the step as
+//! [`SegmentPolynomial`]s. The buffers belong to the stepper: after the first step nothing is allocated.
 //!
-//! Source of methods and control: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
-//! Equations I, 2nd ed., Springer 1993 ("HNW" in this room).
+//! Source of methods and control: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd
+//! ed., Springer 1993 ("HNW" in this room).
 //!
 //! # Code map
 //!
-//! `method` lists the methods, `tableau` says what one consists of and has the small ones, `dop853` and
-//! `dormand_prince5` the large ones; `stepper` goes a step and estimates its error: of an `explicit` method,
-//! whose motion along the step is in `dense`, or by `radau`, which solves equations (`linear`); `polynomial`
-//! is the form of the motion; `start` proposes the first step and `control` the next.
+//! `method` lists the methods, `tableau` describes the coefficients of an explicit one and has the small ones, `dop853`
+//! and `dormand_prince5` the large ones; `stepper` makes a step and estimates its error: of an `explicit` method, whose
+//! motion along the step is in `dense`, or by `radau`, which solves equations (`linear`); `polynomial` is the form of
+//! the motion, `through` makes one from values; `start` proposes the first step and `control` the next.
 //!
 //! # Examples
 //!
@@ -62,7 +61,7 @@ pub use stepper::{Stepper, StiffnessEstimate};
 
 /// A system of ordinary differential equations `y' = f(t, y)`.
 pub trait Ode {
-    /// Why rates could not be found.
+    /// Error of rates that cannot be found.
     type Error;
 
     /// Writes the rates of change of a state [1/s] at an offset [s] from the start of the segment.
@@ -72,12 +71,12 @@ pub trait Ode {
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Self::Error>;
 }
 
-/// Where a step starts: a state and its rates there.
+/// Start or end of a step: a state and its rates there.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<'a> {
     /// Offset [s] from the start of the segment.
     pub offset: f64,
-    /// The state.
+    /// State, in units of the system.
     pub state: &'a [f64],
     /// Its rates of change [1/s] at the offset.
     pub rates: &'a [f64],

@@ -2,15 +2,15 @@
 
 /// Largest degree: an integrated velocity of degree 7.
 pub(super) const DEGREE: usize = 8;
-/// Most coefficients of the form that dense output has.
+/// Number of coefficients in the nested form of dense output.
 pub(super) const NESTED: usize = 7;
 
-/// A function of time over a step, a polynomial of degree 8 at most.
+/// A function of time over a step: a polynomial of degree 8 at most.
 ///
-/// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and
-/// absolute sums of the coefficients are good bounds. Only the constant is as large as the value; the others
-/// are as small as the motion. So the value at the start is that given, and that at the end, up to a few ulps
-/// and the rounding of the motion alone. Offsets [s] count from the start of the step.
+/// Written in `s = 2 offset / step - 1`, which runs from -1 to 1, where monomials are well conditioned and absolute
+/// sums of the coefficients are good bounds. Only the constant is as large as the value; the others are as small as the
+/// motion. So the values at the start and at the end are those given, up to a few ulps and the rounding of the motion
+/// alone. Offsets [s] count from the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SegmentPolynomial {
     /// Monomial coefficients in `s`; the first is the value at the middle.
@@ -32,17 +32,17 @@ pub struct Jet {
     pub second_derivative: f64,
 }
 
-/// All values within some distance of a centre: bounds along the step.
+/// Bounds of a function along a step: all values within a distance of a centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Centre: what is there at the middle of the step.
+    /// Centre: the value at the middle of the step.
     pub center: f64,
     /// Largest distance from the centre.
     pub radius: f64,
 }
 
 impl Spread {
-    /// Largest size of a value.
+    /// Largest absolute value within the bounds.
     #[must_use]
     #[inline]
     pub fn largest(&self) -> f64 {
@@ -51,16 +51,16 @@ impl Spread {
 }
 
 impl SegmentPolynomial {
-    /// The position that starts and ends at given values and has a given velocity, but for a bump.
+    /// Integrates a velocity to a position with given values at the start and at the end.
     ///
-    /// The integral of the velocity misses the end by about the error of the step. What is missing is put in
-    /// smoothly, as `3 x^2 - 2 x^3` of it after the part `x` of the step; so the derivatives at the ends are
-    /// still the velocity's. What is only rounding of the values at the ends is left missing: over a short
-    /// step it would be a velocity.
+    /// The integral of the velocity misses the end by about the error of the step. The missing part is put in smoothly,
+    /// as `3 x^2 - 2 x^3` of it after the fraction `x` of the step; so the derivatives at the ends are still the
+    /// velocity's. A miss within the rounding of the values at the ends is left: over a short step it would be a
+    /// velocity.
     ///
     /// The velocity is of degree 7 at most, as dense output is. A power of 8, which
-    /// [`through`](SegmentPolynomial::through) may give, has no place in the integral: what it would add is
-    /// among what is missing, and the derivative is off by it.
+    /// [`through`](SegmentPolynomial::through) may give, has no place in the integral: its contribution is part of the
+    /// miss, and the derivative is off by it.
     #[must_use]
     pub fn integrated(start: f64, end: f64, velocity: &SegmentPolynomial) -> Self {
         let half_step = 0.5 * velocity.step;
@@ -86,8 +86,8 @@ impl SegmentPolynomial {
         Self::from_start(start, motion, velocity.step)
     }
 
-    /// The value `start + x (c2 + z (c3 + x (c4 + z (c5 + ...))))`, where `x` is the part of the step that has passed,
-    /// and `z = 1 - x`.
+    /// The polynomial `start + x (c2 + z (c3 + x (c4 + z (c5 + ...))))`, where `x` is the fraction of the step that has
+    /// passed, and `z = 1 - x`.
     ///
     /// Loops go as far as there are powers, though many are zero: so all of it stays in registers.
     pub(super) fn from_nested(start: f64, nested: &[f64; NESTED], step: f64) -> Self {
@@ -104,7 +104,7 @@ impl SegmentPolynomial {
         Self::from_start(start, motion, step)
     }
 
-    /// The start value plus a motion, which is zero at the start.
+    /// The sum of the start value and a motion that is zero at the start, given by coefficients in `s`.
     pub(super) fn from_start(start: f64, motion: [f64; DEGREE + 1], step: f64) -> Self {
         let mut coefficients = motion;
         coefficients[0] += start;
@@ -113,7 +113,7 @@ impl SegmentPolynomial {
         Self { coefficients, step, rate }
     }
 
-    /// The first derivative with respect to time [1/s].
+    /// The first derivative with respect to time, as a polynomial [1/s].
     #[must_use]
     pub fn derivative(&self) -> Self {
         let mut coefficients = [0.0; DEGREE + 1];
@@ -184,7 +184,7 @@ impl SegmentPolynomial {
         (self.coefficients[0] + s * motion, self.rate * slope)
     }
 
-    /// Value and first derivatives at an offset [s], for less than one by one.
+    /// Value, first and second derivative at an offset [s], at less cost than one by one.
     #[must_use]
     #[inline]
     pub fn jet_at(&self, offset: f64) -> Jet {
@@ -247,10 +247,10 @@ impl SegmentPolynomial {
     }
 }
 
-/// Part of a value at an end that is its rounding: of the sum that it is, and of a projection after it.
+/// Rounding of a value at an end as a fraction of it: of the sum that makes it, and of a projection after it.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// One over the powers, which are the shares that integrals have of their integrands; the first is not read.
+/// One over each power, the factor of a term's integral; the first is not read.
 const SHARES: [f64; DEGREE + 1] =
     [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0, 1.0 / 8.0];
 

@@ -1,26 +1,27 @@
-//! Proposes the first step.
+//! Proposal of the first step.
 
 use super::explicit::mean_square;
 use super::{Ode, Point, Stepper};
 
-/// Part of the state's size by which the guess may move it, and size of the error the proposed step aims at.
+/// Fraction of the state's size by which the guess may move it; also the size of the error that the proposed step aims
+/// at.
 const SMALL_CHANGE: f64 = 0.01;
-/// Sizes of state and rates below which they tell nothing about the step.
+/// Size of state or rates, relative to the scales, below which they tell nothing about the step.
 const TOO_SMALL_TO_TELL: f64 = 1e-5;
-/// The guess [s] when state and rates tell nothing.
+/// Guess [s] where state and rates tell nothing.
 const BLIND_GUESS: f64 = 1e-6;
 /// Size of the derivatives [1/s] below which the solution is taken for a straight line at rest.
 const NO_CHANGE: f64 = 1e-15;
-/// The proposed step is at most so many times the guess.
+/// Largest proposed step as a multiple of the guess.
 const LARGEST_GROWTH: f64 = 100.0;
-/// Part of the guess that is proposed when nothing seems to change.
+/// Fraction of the guess that is proposed where nothing seems to change.
 const AT_REST: f64 = 1e-3;
 impl Stepper {
-    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two
-    /// derivatives. With a negative limit the run goes back: the step is negative, and no longer.
+    /// Proposes the length [s] of the first step, at most `limit`, from the sizes of the first two derivatives. A
+    /// negative limit asks for a step back: the step is negative then, and no longer than it.
     ///
     /// Source: HNW II.4, "Starting step size", with `scales` as in [`error_norm`](Stepper::error_norm). Costs one
-    /// derivative; methods with fixed steps ask for none and answer `limit`.
+    /// derivative; methods with fixed steps ask for none and return `limit`.
     ///
     /// # Errors
     /// The error of the system.

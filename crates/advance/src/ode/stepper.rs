@@ -1,4 +1,4 @@
-//! Goes one step of a method, and tells its error and the motion along it.
+//! The stepper: makes one step of a method, and returns its error and the motion along it.
 
 use super::explicit::Explicit;
 use super::method::Method;
@@ -7,28 +7,29 @@ use super::radau::Radau;
 use super::{Ode, Point};
 use std::ops::Range;
 
-/// How fast the fastest part of a system is, as a step of it tells.
+/// Estimate, from one step, of the fastest part of a system and its effect on the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StiffnessEstimate {
-    /// Size of the fastest rate times the step: an explicit method is held up by what is fast rather than by
-    /// its errors when this comes to [`Method::stability_limit`].
+    /// Product [-] of the fastest rate, in size, and the step. When it comes to [`Method::stability_limit`], the fast
+    /// part rather than the error limits the steps of an explicit method.
     pub fastest: f64,
-    /// Size of the error that this makes of the motion along the step, in the units of
-    /// [`Stepper::error_norm`], which does not tell it; 0 where nothing is that fast. The end of the step may
-    /// be right all the same. Of implicit methods it is not known, and 0: over a step as long as what drives a stiff
-    /// system takes to come and go, the motion between its ends is that of a cubic.
+    /// Error of the motion along the step by this part, in the units of [`Stepper::error_norm`], which does not include
+    /// it; 0 where nothing is that fast. The end of the step may be right all the same. Always 0 for implicit methods,
+    /// where it is not known: over a step as long as a load on a stiff system takes to come and go, the motion between
+    /// its ends is that of a cubic.
     pub dense_error: f64,
 }
 
-/// Goes steps of a method; keeps the stages of the last one.
+/// Makes steps of a method; keeps the stages of the last one.
 ///
-/// Systems of any size may follow each other; memory is asked for only by one larger than all before.
+/// Systems of any size may follow each other; only one larger than all before allocates.
 #[derive(Clone, Debug)]
 pub struct Stepper {
     method: Method,
     kind: Kind,
-    /// A state and its rates, to propose a first step by.
+    /// Buffer: a state at which rates are asked for.
     pub(super) trial: Vec<f64>,
+    /// Buffer: rates there, or at the end of a step.
     pub(super) trial_rates: Vec<f64>,
 }
 
@@ -45,7 +46,7 @@ impl Default for Stepper {
 }
 
 impl Stepper {
-    /// A stepper without any buffers yet.
+    /// Makes a stepper; its buffers are still empty.
     #[must_use]
     pub fn new(method: Method) -> Self {
         let kind = match method.tableau() {
@@ -55,24 +56,25 @@ impl Stepper {
         Self { method, kind, trial: Vec::new(), trial_rates: Vec::new() }
     }
 
-    /// The method.
+    /// Method of the steps.
     #[must_use]
     pub fn method(&self) -> Method {
         self.method
     }
 
-    /// Tells an implicit method which errors are just acceptable, as in [`error_norm`](Self::error_norm): it solves its
-    /// equations to a small part of them. Components beyond the scales are integrals, on which no rates depend. Without
-    /// scales of the size of the system it solves to a small part of the state. Explicit methods do not care.
+    /// Sets the errors that are just acceptable, one per component as in [`error_norm`](Self::error_norm), for an
+    /// implicit method: it solves its equations to a small fraction of them. Components beyond the scales are
+    /// integrals, on which no rates depend. Without scales, or with more of them than components, it solves to a small
+    /// fraction of the state. Explicit methods ignore them.
     pub fn set_scales(&mut self, scales: &[f64]) {
         if let Kind::Implicit(radau) = &mut self.kind {
             radau.set_scales(scales);
         }
     }
 
-    /// Goes a step [s] and writes the state there to `end`; a negative step goes back.
+    /// Makes a step of a length [s] and writes the state at its end to `end`; a negative step goes back.
     ///
-    /// An implicit method may not find the state; then `end` is the start, and the error norm is infinite.
+    /// Where an implicit method does not find the state, `end` is the start, and the error norm is infinite.
     ///
     /// # Errors
     /// The first error of the system; then nothing is known about the step.
@@ -101,9 +103,9 @@ impl Stepper {
         Ok(())
     }
 
-    /// As [`step`](Self::step), but where [`needs_end_rates`](Self::needs_end_rates), nothing is known of the
-    /// error before [`close`](Self::close). So who changes the end by about its error, and goes on from
-    /// there, asks for the rates once.
+    /// Makes a step like [`step`](Self::step), but for methods that [need the rates at the end](Self::needs_end_rates)
+    /// the error is known only after [`close`](Self::close): this lets a caller project the end state first and
+    /// evaluate its rates once.
     ///
     /// # Errors
     /// The first error of the system; then nothing is known about the step.
@@ -129,8 +131,8 @@ impl Stepper {
         matches!(&self.kind, Kind::Explicit(explicit) if explicit.tableau.needs_end_rates)
     }
 
-    /// Takes the rates at the end of a step that was made by [`step_open`](Self::step_open), for methods that
-    /// need them.
+    /// Takes the rates at the end of a step that was made by [`step_open`](Self::step_open); methods that do not need
+    /// them ignore them.
     ///
     /// # Panics
     /// If they do not fit the state of the last step.
@@ -140,11 +142,11 @@ impl Stepper {
         }
     }
 
-    /// Size of the estimated error of the last step: the weighted root mean square over the first `scales.len()`
+    /// Size [-] of the estimated error of the last step: the weighted root mean square over the first `scales.len()`
     /// components, where `scales` are the errors that are just acceptable; so 1 is just acceptable.
     ///
-    /// Methods with fixed steps answer 0, whatever came of the step. Of others the answer is not finite if the
-    /// step went out of all bounds.
+    /// Methods with fixed steps return 0, whatever came of the step. For others the size is not finite if the step went
+    /// out of all bounds.
     ///
     /// # Panics
     /// If there are more scales than components, where the method has an estimate.
@@ -159,11 +161,12 @@ impl Stepper {
         }
     }
 
-    /// The same of the components from `first` on; implicit methods answer 0 for what they do not solve for,
-    /// as integrals.
+    /// Size [-] of the estimated error of the last step over the components from `first` on, like
+    /// [`error_norm`](Self::error_norm). Meant for integrals, on which no rates depend: implicit methods, which do not
+    /// solve for these, return 0.
     ///
     /// # Panics
-    /// If there are no so many components from there on, where an explicit method has an estimate.
+    /// If there are fewer components than scales from there on, where an explicit method has an estimate.
     #[must_use]
     pub fn error_norm_from(&self, first: usize, scales: &[f64]) -> f64 {
         match &self.kind {
@@ -172,8 +175,8 @@ impl Stepper {
         }
     }
 
-    /// Estimates how fast the fastest part of the system is, where `end` is the state at the end of the last
-    /// step with its rates, and what that does to the motion along the step.
+    /// Estimates the fastest part of the system, and its effect on the motion along the last step. `end` is the state
+    /// at the end of that step with its rates, `scales` are as in [`error_norm`](Self::error_norm).
     #[must_use]
     pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {
         match &mut self.kind {
@@ -184,11 +187,10 @@ impl Stepper {
 
     /// Writes some components of the motion along the last step as polynomials, one of `out` for each.
     ///
-    /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at
-    /// both ends the polynomials have the values given, but for rounding of the motion, and those of explicit methods
-    /// the rates, too.
-    /// The degree is 7 for DOP853, which asks for three more derivatives, 4 for Dormand-Prince 5, and 3 for
-    /// the others.
+    /// `end` is the state at the end, as the step gave it or changed by about its error, with its rates; at both ends
+    /// the polynomials have the values given, but for rounding of the motion, and those of explicit methods the rates,
+    /// too. The degree is 7 for DOP853, which asks for three more derivatives, 4 for Dormand-Prince 5, and 3 for the
+    /// others.
     ///
     /// # Errors
     /// The first error of the system; then `out` is unchanged.

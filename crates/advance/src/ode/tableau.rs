@@ -1,32 +1,31 @@
-//! What a Runge-Kutta method is made of, and the classical methods with fixed steps.
+//! Tableaux of explicit Runge-Kutta methods, and those of the classical methods with fixed steps.
 //!
-//! Only coefficients that are not zero are written down. Stage 0 holds the rates at the start of a step,
-//! which the caller knows; the next places the rates of `stages`, then comes the place of the rates at the
-//! end, then those of `dense_stages`.
+//! Only coefficients that are not zero are written down. Stage 0 holds the rates at the start of a step, which the
+//! caller knows; the next places the rates of `stages`, then comes the place of the rates at the end, then those of
+//! `dense_stages`.
 //!
-//! Dense output has the form of E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations
-//! I, 2nd ed., Springer 1993, II.6 (and of the authors' programs): with `x` the part of the step that has
-//! passed and `z = 1 - x`,
+//! Dense output has the form of E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd
+//! ed., Springer 1993, II.6 (and of the authors' programs), where `x` is the fraction of the step that has passed, and
+//! `z` the fraction left:
 //!
 //! ```text
 //! y(x) = y0 + x (c2 + z (c3 + x (c4 + z (c5 + x (c6 + z (c7 + x c8))))))
 //! ```
 //!
-//! where `c2`, `c3`, `c4` make it the cubic of Hermite and the others are weighted sums of the stages times the step.
+//! Here `c2`, `c3`, `c4` make it the cubic of Hermite, and the others are weighted sums of the stages times the step.
 
 /// A stage and the weight of its rates.
 pub(super) type Term = (usize, f64);
 
-/// Where a stage is: at `node` of the step, from the start along the weighted rates of earlier stages.
+/// A stage: at the fraction `node` of the step, from the start along the weighted rates of earlier stages.
 #[derive(Debug)]
 pub(super) struct Stage {
     pub(super) node: f64,
     pub(super) terms: &'static [Term],
 }
 
-/// How dense output goes wrong at the limit of stability, where the error estimate does not tell: what decays
-/// so fast that its rate times the step is `from` or more makes it err by up to `by` times the difference
-/// between the last stage and the end.
+/// Error of dense output at the limit of stability, which the error estimate does not show: a part whose rate of decay
+/// times the step is `from` or more makes it err by up to `by` times the difference between the last stage and the end.
 #[derive(Debug)]
 pub(super) struct Swing {
     pub(super) from: f64,
@@ -48,7 +47,7 @@ pub(super) struct Tableau {
     pub(super) dense_stages: &'static [Stage],
     /// Weights of `c5`, `c6`, ...
     pub(super) dense_rows: &'static [&'static [Term]],
-    /// `None` if dense output errs by no more than the error estimate there.
+    /// Swing of dense output; `None` if it errs by no more than the error estimate there.
     pub(super) swing: Option<Swing>,
 }
 
@@ -58,7 +57,7 @@ impl Tableau {
         self.stages.len() + 1
     }
 
-    /// Places of rates in all.
+    /// Number of places of rates.
     pub(super) fn places(&self) -> usize {
         self.end_stage() + 1 + self.dense_stages.len()
     }
@@ -76,10 +75,10 @@ const fn fixed(stages: &'static [Stage], weights: &'static [Term]) -> Tableau {
     }
 }
 
-/// Along the rates at the start.
+/// Euler's method: along the rates at the start.
 pub(super) const EULER: Tableau = fixed(&[], &[(0, 1.0)]);
 
-/// Along the mean of the rates at the start and at the end of a step of Euler (K. Heun 1900).
+/// Heun's method: along the mean of the rates at the start and at the end of a step of Euler (K. Heun 1900).
 pub(super) const MODIFIED_EULER: Tableau =
     fixed(&[Stage { node: 1.0, terms: &[(0, 1.0)] }], &[(0, 0.5), (1, 0.5)]);
 

@@ -6,16 +6,17 @@
 
 use super::polynomial::{DEGREE, SegmentPolynomial};
 
-/// The inner nodes: 0 and the roots of 143 s^4 - 110 s^2 + 15.
+/// Nearer root of 143 s^4 - 110 s^2 + 15: with 0 and the farther one it makes the inner nodes.
 const NEAR: f64 = 0.420_914_805_023_811_46;
+/// Farther root.
 const FAR: f64 = 0.769_455_324_331_787_3;
 
 impl SegmentPolynomial {
-    /// The inner nodes of [`SegmentPolynomial::through`], as parts of the step.
+    /// Inner nodes of [`SegmentPolynomial::through`], as fractions of the step.
     pub const INNER: [f64; 5] = [0.5 - 0.5 * FAR, 0.5 - 0.5 * NEAR, 0.5, 0.5 + 0.5 * NEAR, 0.5 + 0.5 * FAR];
 
-    /// The polynomial of degree 8 with a value and a rate [1/s] at each end of a step [s], and values at the
-    /// inner nodes.
+    /// The polynomial of degree 8 with a value and a rate [1/s] at each end of a step of a length [s], and values at
+    /// the [inner nodes](SegmentPolynomial::INNER).
     #[must_use]
     pub fn through([start, end]: [[f64; 2]; 2], inner: [f64; 5], step: f64) -> Self {
         let [far_left, near_left, middle, near_right, far_right] = inner.map(|value| value - start[0]);
@@ -43,7 +44,8 @@ impl SegmentPolynomial {
     }
 }
 
-/// Monomial coefficients of the polynomial with values at nodes, of which the last two are one, with a slope there.
+/// Monomial coefficients of the polynomial with given values at nodes, the last two of which coincide, and a given
+/// slope there.
 fn newton<const N: usize, const M: usize>(nodes: [f64; N], values: [f64; M], slope: f64) -> [f64; N] {
     let mut differences = [0.0; N];
     differences[..M].copy_from_slice(&values);

@@ -1,17 +1,17 @@
-//! What is tied to each body, in two lists for all of them: most bodies have nothing, and say so with little memory.
+//! Connectors or force laws by body, in two flat lists for all bodies: those that have none cost little memory.
 
 use halfgap_collision::BodyId;
 
-/// Connectors, or force laws, by body.
+/// Lists of items, connectors or force laws, by body.
 #[derive(Clone, Debug)]
 pub(crate) struct ByBody<T> {
-    /// Where the items of each body start, and behind them the end of the last.
+    /// Index in `items` of the first item of each body, and behind them the end of the last.
     starts: Vec<u32>,
     items: Vec<T>,
 }
 
 impl<T: Copy + Ord> ByBody<T> {
-    /// For each body the items that name it, in their order and each once.
+    /// Lists for each of `count` bodies the items that name it, ascending and each once.
     pub(crate) fn new<L: AsRef<[BodyId]>>(count: usize, items: impl Iterator<Item = (T, L)>) -> Self {
         let mut named = Vec::new();
         for (item, bodies) in items {
@@ -25,7 +25,7 @@ impl<T: Copy + Ord> ByBody<T> {
         Self { starts, items: named.into_iter().map(|(_, item)| item).collect() }
     }
 
-    /// What is tied to a body.
+    /// Items that name a body, ascending.
     #[inline]
     pub(crate) fn of(&self, body: BodyId) -> &[T] {
         let range = self.starts[body.index()] as usize..self.starts[body.index() + 1] as usize;

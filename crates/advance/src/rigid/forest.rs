@@ -1,9 +1,9 @@
 //! Disjoint sets of places, joined step by step (union-find with path halving).
 
-/// Sets of the places from 0 on.
+/// Disjoint sets of the places from 0 on.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Forest {
-    /// Another place of the set of each, or itself at the root.
+    /// For each place another place of its set, itself at the root.
     parents: Vec<usize>,
 }
 
@@ -14,7 +14,7 @@ impl Forest {
         self.parents.extend(0..count);
     }
 
-    /// The place that stands for the set of another: the least of the set.
+    /// Root of a place's set: the least place of the set.
     pub(crate) fn root(&mut self, mut place: usize) -> usize {
         while self.parents[place] != place {
             self.parents[place] = self.parents[self.parents[place]];

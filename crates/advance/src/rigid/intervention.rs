@@ -1,5 +1,5 @@
-//! What somebody outside does to bodies: their velocities change at once, and what touches or ties them
-//! responds as to an impact. Forces that last are laws.
+//! Velocity changes by the caller: they take effect at once, and contacts and connectors respond as to an impact.
+//! Forces that last are laws.
 
 use super::error::AdvanceError;
 use super::event::cause::{Cause, EventWork};
@@ -10,10 +10,11 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
 
-/// A change of the velocities of a body. One of nothing makes its group begin anew, with the force laws as they are.
+/// A change of the velocities of a body. A zero change restarts the body's group, which makes changed force laws take
+/// effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityChange {
-    /// The body; a fixed one, or the background, stays as it is.
+    /// The body; a fixed body and the background keep their velocities.
     pub body: BodyId,
     /// Change of the velocity of the centre of mass [m/s].
     pub velocity: DVec2,
@@ -22,14 +23,14 @@ pub struct VelocityChange {
 }
 
 impl RigidSystem {
-    /// Changes velocities of bodies at a time, all at once: connectors and contacts against which they move
-    /// then respond by the impact law. The times of events that come first must have been reached; a time
-    /// before that of the last event counts as that. What the changes do to the energy is in the ledger's
-    /// `interventions`.
+    /// Changes velocities of bodies at a time, all at once: connectors and contacts against which they move then
+    /// respond by the impact law. Handle all earlier events first; a time before that of the last event counts as that.
+    /// The change of energy is in the ledger's `interventions`. Returns the report, or `None` if nothing is to be
+    /// reported.
     ///
     /// # Errors
-    /// A time or a change that is not finite: nothing is done. As of an event: the impact, or the forces after it,
-    /// cannot be found; there is no going on from that.
+    /// A time or a change that is not finite: nothing is done. An impact, or forces after it, that cannot be found: the
+    /// system cannot go on from it.
     ///
     /// # Panics
     /// If there is no such body.
@@ -67,13 +68,13 @@ impl RigidSystem {
             }
         }
         self.forget_past(work);
-        // What touches is told by the velocities: they are others now.
+        // Velocities decide which contacts take part, and they have changed.
         self.collect_again(work);
         self.collide(work)
     }
 
-    /// Gives bodies the velocities again that were seen before their groups were cut, to the bit: the end of a cut
-    /// step is projected onto its rows, of which who changes a velocity knows nothing.
+    /// Restores, to the bit, the velocities that bodies had before their groups were cut: the end of a cut step is
+    /// projected onto its rows, which callers that change a velocity do not expect.
     fn take_back_cut(&mut self, bodies: &[BodyId], seen: &[BodyState]) {
         for (&body, &BodyState { velocity, angular_velocity, .. }) in bodies.iter().zip(seen) {
             let cut = self.flyer(body).unwound_at(self.now);
@@ -109,7 +110,8 @@ impl RigidSystem {
         linear + change.angular_velocity * spin / inertia.inverse_moment
     }
 
-    /// What comes now is no echo of what was: no storm, and no bounce that has become low.
+    /// Forgets the past events of a region's bodies: impacts that follow are neither a storm nor bounces that have
+    /// become low.
     fn forget_past(&mut self, work: &EventWork) {
         for &body in &work.region.bodies {
             self.limits.recent[body.index()] = Recent::default();

@@ -1,4 +1,4 @@
-//! The force laws of a system, and on which bodies each of them acts.
+//! The force laws of a system and the bodies that each acts on.
 
 use super::by_body::ByBody;
 use super::motion::law::{ForceLaw, Snapshot};
@@ -9,14 +9,14 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(crate) struct Laws {
     pub(crate) all: Vec<Arc<dyn ForceLaw>>,
-    /// Those that act on each body.
+    /// Indices of the laws that act on each body.
     of: ByBody<usize>,
     /// Whether each law has a potential.
     pub(crate) has_potential: Vec<bool>,
 }
 
 impl Laws {
-    /// The laws of so many bodies, of which a snapshot is given at some time.
+    /// Lists the laws of a number of bodies; a snapshot at any time tells which laws have a potential.
     pub(crate) fn new(all: Vec<Arc<dyn ForceLaw>>, body_count: usize, snapshot: &Snapshot<'_>) -> Self {
         Self {
             of: ByBody::new(body_count, all.iter().map(|law| law.bodies()).enumerate()),
@@ -25,12 +25,12 @@ impl Laws {
         }
     }
 
-    /// Laws that act on a body.
+    /// Indices of the laws that act on a body.
     pub(crate) fn of(&self, body: BodyId) -> &[usize] {
         self.of.of(body)
     }
 
-    /// Lists the laws that act on some bodies, each once, ascending.
+    /// Lists in `laws` the indices of the laws that act on any of some bodies, each once, ascending.
     pub(crate) fn list(&self, bodies: &[BodyId], laws: &mut Vec<usize>) {
         laws.clear();
         laws.extend(bodies.iter().flat_map(|&body| self.of(body)));

@@ -1,24 +1,24 @@
-//! Where energy went, as far as events and steps know.
+//! The ledger of energy: its changes in events and steps, by cause.
 
 use super::step::group::Work;
 use super::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::{BodyId, BodyState};
 
-/// Changes of energy [J] since the start, each negative where energy was lost.
+/// Changes of energy [J] since the start by cause, each negative where energy was lost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Impacts with elasticity.
     pub impacts: f64,
-    /// Slow closing contacts that were brought to rest, and storms of impacts that were ended.
+    /// Slow closing contacts that were brought to rest, and storms of impacts that were ended without elasticity.
     pub captures: f64,
     /// Projections onto held rows.
     pub projections: f64,
-    /// What somebody outside did by changing velocities.
+    /// Velocity changes by the caller, see [`RigidSystem::intervene`].
     pub interventions: f64,
     /// Work of damping.
     pub damping: f64,
-    /// Work of each force law that has no potential, in their order; 0 for the others.
+    /// Work of each force law that has no potential, in the order of [`RigidSystem::laws`]; 0 for the others.
     pub laws: Vec<f64>,
 }
 
@@ -32,7 +32,7 @@ impl Ledger {
 }
 
 impl RigidSystem {
-    /// The energy's books at a time of the present segments.
+    /// Energy ledger at a time within the present segments.
     #[must_use]
     pub fn ledger_at(&self, time: Time) -> Ledger {
         let mut ledger = Ledger::default();
@@ -40,7 +40,7 @@ impl RigidSystem {
         ledger
     }
 
-    /// Writes what [`Self::ledger_at`] tells, in place of what is there.
+    /// Writes the energy ledger at a time within the present segments over `ledger`, whose buffer is used again.
     pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
         let Ledger { impacts, captures, projections, interventions, damping, ref laws } = self.ledger;
         let mut room = std::mem::take(&mut ledger.laws);
@@ -57,7 +57,7 @@ impl RigidSystem {
         }
     }
 
-    /// Energy [J] that damping took from a body in flight since the start of its segment.
+    /// Change of energy [J], not positive, by the damping of a body in flight since the start of its segment.
     fn damping_loss(&self, body: BodyId, time: Time) -> f64 {
         let flyer = self.flyer(body);
         let Some(start) = flyer.flight_start().filter(|_| flyer.law().is_damped()) else { return 0.0 };
@@ -68,7 +68,7 @@ impl RigidSystem {
         energy(&flyer.unwound_at(time)) - energy(start)
     }
 
-    /// Books what damping took from a body in flight, which starts another segment at a time.
+    /// Books the work of damping on a body in flight, which starts another segment at a time.
     pub(crate) fn book_damping(&mut self, body: BodyId, time: Time) {
         if self.flyer(body).law().is_damped() {
             self.ledger.damping += self.damping_loss(body, time);

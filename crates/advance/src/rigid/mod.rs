@@ -1,20 +1,20 @@
-//! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted
-//! pair by pair, events located at their time.
+//! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by
+//! pair, events located at their time.
 //!
-//! | room | what lives there |
+//! | room | contents |
 //! |---|---|
-//! | `motion` | one body: its state, its path along a segment; what a force law is |
-//! | `step` | groups of bodies that are held together: equations of motion, steps, projection |
-//! | `ending` | what ends a step early: release, feature change, stops |
-//! | `search` | which pairs come into contact next: boxes, pairs, predictions, rules |
-//! | `event` | what happens then: regions, impacts, groups merged and split, ropes, ticks |
-//! | `held` | which contacts and connectors are held from then on |
-//! | `limits` | what counts for nothing or would go on for ever: bounces, hops, storms, pace |
+//! | `motion` | one body: its state, its path along a segment; the trait of force laws |
+//! | `step` | groups of bodies that share steps: equations of motion, steps, projection |
+//! | `ending` | events that end a step early: release, feature change, stops |
+//! | `search` | prediction of the next contact of each pair: boxes, pairs, predictions, rules |
+//! | `event` | handling of an event: regions, impacts, groups merged and split, ropes, ticks |
+//! | `held` | choice of the contacts and connectors that are held after an event |
+//! | `limits` | motions too small to resolve and event sequences without end: bounces, hops, storms, pace |
 //!
-//! `system` ties all to the event loop. `parts` is what a system is made of, `scales` what a tolerance means
-//! in a scene, `intervention` what somebody outside does to bodies, `laws` the force laws, `by_body` and `forest` lists
-//! and sets of bodies, `ledger` the energy's books,
-//! `report` what the outside may ask for.
+//! `system` ties all rooms to the event loop. `parts` lists the parts of a system, `scales` turns a tolerance into
+//! thresholds for a scene, `intervention` is a change of velocities by the caller, `laws` the force laws, `by_body` and
+//! `forest` lists and sets of bodies, `sources` the numbering of events in the queue, `ledger` the energy balance,
+//! `report` the forces and contact changes that callers may ask for, `error` the reasons why an advance stops.
 
 mod by_body;
 mod ending;

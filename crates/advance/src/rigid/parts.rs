@@ -1,4 +1,4 @@
-//! What a system is made of, and what it cannot be made of: bodies that are not there, numbers that are none.
+//! The parts of a system, and the checks that refuse missing bodies and numbers out of range.
 
 use super::motion::flyer::FlightLaw;
 use super::motion::law::ForceLaw;
@@ -7,33 +7,33 @@ use crate::time::Time;
 use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
 use std::sync::Arc;
 
-/// What a system is made of.
+/// Parts of which a system is made.
 #[derive(Clone, Debug, Default)]
 pub struct RigidParts {
-    /// Bodies with what acts on them in free flight, and their states at the start.
+    /// Each body with its law of free flight and its state at the start. A [`BodyId`] is an index of this list.
     pub bodies: Vec<(Body, FlightLaw, BodyState)>,
-    /// What ties them.
+    /// Connectors between bodies, or between a body and the background.
     pub connectors: Vec<Connector>,
-    /// Forces that free flight does not know.
+    /// Force laws beyond those of free flight.
     pub laws: Vec<Arc<dyn ForceLaw>>,
-    /// Pairs that pass through each other.
+    /// Pairs of bodies that never collide with each other.
     pub excluded: Vec<(BodyId, BodyId)>,
 }
 
-/// Why no system can be made of some parts.
+/// Reason why no system can be made of some parts or settings.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartsError {
-    /// A connector, a law or a pair names a body that is not there.
+    /// A connector, a law or an excluded pair names a body that does not exist.
     #[error("{part} {index} names body {}, but there are {count} bodies", body.0)]
     NoSuchBody {
-        /// What names it.
+        /// Kind of the part.
         part: &'static str,
-        /// Which of them.
+        /// Index of the part among those of its kind.
         index: usize,
-        /// The body.
+        /// The missing body.
         body: BodyId,
-        /// How many bodies there are.
+        /// Number of bodies.
         count: usize,
     },
     /// A number of a body is out of range.
@@ -41,34 +41,34 @@ pub enum PartsError {
     BadBody {
         /// The body.
         body: BodyId,
-        /// Which number.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// What it must be.
+        /// The rule that it breaks.
         rule: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
-    /// A connector has numbers that none can have.
+    /// A number of a connector is out of range.
     #[error("connector {index}: {source}")]
     BadConnector {
-        /// Which.
+        /// Index of the connector.
         index: usize,
-        /// What is wrong with it.
+        /// Error of the connector.
         source: ConnectorError,
     },
     /// A setting is out of range.
     #[error("{setting} must be {rule}, got {value}")]
     BadSetting {
-        /// Which.
+        /// Name of the setting.
         setting: &'static str,
-        /// What it must be.
+        /// The rule that it breaks.
         rule: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
 }
 
-/// Quantities that must keep to a rule.
+/// Wording and test of a rule, and the named quantities that must keep to it.
 type Rule<'a> = (&'static str, fn(f64) -> bool, &'a [(&'static str, f64)]);
 
 pub(super) const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
@@ -77,7 +77,10 @@ const NOT_NEGATIVE: (&str, fn(f64) -> bool) =
 const POSITIVE: (&str, fn(f64) -> bool) = ("positive and finite", |value| value > 0.0 && value.is_finite());
 
 impl RigidParts {
-    /// Says why there can be no system of these parts at a time, if so.
+    /// Checks the parts, the settings and the time of the start [s].
+    ///
+    /// # Errors
+    /// The first setting, body, connector or name that breaks its rule.
     pub(crate) fn check(&self, settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
         check_settings(settings, start)?;
         if self.bodies.iter().any(|(body, ..)| !body.is_fixed()) {
@@ -94,7 +97,7 @@ impl RigidParts {
         self.check_names()
     }
 
-    /// Refuses what names bodies that are not there.
+    /// Refuses connectors, laws and excluded pairs that name missing bodies.
     fn check_names(&self) -> Result<(), PartsError> {
         let count = self.bodies.len();
         let check = |part, index, body: BodyId| match body.is_world() || body.index() < count {
@@ -116,7 +119,7 @@ impl RigidParts {
 
 fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
     let RigidSettings { tolerances, steps, search, .. } = settings;
-    // What there is of nothing may be zero.
+    // Settings that are zero where a scene has nothing to derive them from.
     let sizes = [
         ("target_gap", tolerances.target_gap),
         ("accuracy", tolerances.accuracy),
@@ -145,7 +148,7 @@ fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsErro
     keep_to(&rules).map_err(bad)
 }
 
-/// Where something moves, what it comes to touch is at some distance.
+/// Refuses a target gap or a zone of no width, which contacts of movable bodies need.
 fn check_zone(&Tolerances { target_gap, accuracy, .. }: &Tolerances) -> Result<(), PartsError> {
     let sizes = [("target_gap", target_gap), ("accuracy", accuracy)];
     let bad = |(setting, rule, value)| PartsError::BadSetting { setting, rule, value };
@@ -209,7 +212,7 @@ mod tests {
         (body, FlightLaw::default(), BodyState::default())
     }
 
-    /// The message about a disc and the settings that were changed somehow.
+    /// The error message for a system of one disc after a change of its parts or settings.
     fn refused(change: impl FnOnce(&mut RigidParts, &mut RigidSettings)) -> String {
         let (mut parts, mut settings) = (RigidParts { bodies: vec![disc()], ..RigidParts::default() }, FINE);
         change(&mut parts, &mut settings);

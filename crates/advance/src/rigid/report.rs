@@ -1,4 +1,4 @@
-//! What the outside may ask for: forces of rows, contacts that begin and end, the energy's books at any time.
+//! Reports that callers may ask for: forces of rows, contacts that begin and end.
 
 use super::error::AdvanceError;
 use super::event::impacts::ImpactReport;
@@ -13,7 +13,7 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, Moving};
 use halfgap_geometry::FeatureId;
 
-/// The force of one row: a contact, or one direction of a connector.
+/// Force of one held row: a contact, or one direction of a connector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowForce {
     /// The primary and the normal body.
@@ -22,14 +22,14 @@ pub struct RowForce {
     pub connector: Option<ConnectorId>,
     /// The features that touch; `None` in a connector.
     pub features: Option<[FeatureId; 2]>,
-    /// Where the force acts on the primary body [m].
+    /// Point of the primary body at which the force acts, in world coordinates [m].
     pub point: DVec2,
-    /// Unit normal, towards the primary body.
+    /// Unit normal in world directions, from the normal to the primary body.
     pub normal: DVec2,
-    /// Force on the primary body along the normal [N].
+    /// Force on the primary body along the normal [N]: positive pushes the bodies apart.
     pub force: f64,
-    /// How long [s] the bounces would have gone on that were too slow to be resolved, of a contact that begins with an
-    /// impact: a geometric series under constant acceleration. `None` where there is no such series.
+    /// Duration [s] of the geometric series of bounces, too slow to be resolved, that would have followed under
+    /// constant acceleration, of a contact that begins with an impact; `None` where there is no such series.
     pub bouncing: Option<f64>,
 }
 
@@ -39,27 +39,27 @@ impl RowForce {
     }
 }
 
-/// What is told of the last event.
+/// Outcome of the last event, for callers that ask.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Told {
     pub(crate) last_impact: ImpactReport,
-    /// There has been an impact in the event.
+    /// True if the event contained an impact.
     pub(crate) has_hit: bool,
     pub(crate) changes: ContactChanges,
-    /// Why the event could not be handled.
+    /// Error of the event, if it could not be handled.
     pub(crate) failure: Option<AdvanceError>,
-    /// Buffer: which of what begins is no change.
+    /// Buffer: whether each row that begins has only gone on.
     goes_on: Vec<bool>,
 }
 
-/// Contacts that begin and end in one event.
+/// Unilateral rows (contacts, ropes, stops) whose holding begins or ends in one event.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactChanges {
-    /// When.
+    /// Time of the event.
     pub time: Time,
-    /// What is held from now on.
+    /// Rows that are held from this event on.
     pub begin: Vec<RowForce>,
-    /// What is held no longer, with its last force.
+    /// Rows that are held no longer, each with its last force.
     pub end: Vec<RowForce>,
 }
 
@@ -76,8 +76,8 @@ impl ContactChanges {
         self.end.clear();
     }
 
-    /// Drops what ends only to begin at once. Both lists mostly have what they share in one order: each
-    /// search begins where the last one ended.
+    /// Drops rows that end only to begin at once. Those in both lists mostly have one order, so each search begins
+    /// where the last one ended.
     fn drop_continued(&mut self, goes_on: &mut Vec<bool>) {
         let begin = &mut self.begin;
         goes_on.clear();
@@ -98,13 +98,13 @@ impl ContactChanges {
 }
 
 impl RigidSystem {
-    /// What began and ended in the last event.
+    /// Unilateral rows whose holding began or ended in the last event.
     #[must_use]
     pub fn contact_changes(&self) -> &ContactChanges {
         &self.told.changes
     }
 
-    /// The forces of all held rows at a time of the present segments.
+    /// Evaluates the forces of all held rows at a time within the present segments. Allocates.
     #[must_use]
     pub fn row_forces(&self, time: Time) -> Vec<RowForce> {
         let mut stage = self.stage.clone();
@@ -149,7 +149,7 @@ impl RigidSystem {
         self.told.changes.drop_continued(&mut self.told.goes_on);
     }
 
-    /// How long [s] a single contact that was just captured would have gone on bouncing.
+    /// Duration [s] of the bounces that a single contact which was just captured would have gone on to make.
     ///
     /// After an impact at the speed v each flight lasts 2 v/a, and v falls by e each time: 2 e v/(a (1 - e)) in all.
     fn bouncing(&self, region: &Region, settling: &Settling) -> Option<f64> {

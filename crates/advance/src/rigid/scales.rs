@@ -1,4 +1,4 @@
-//! From one relative tolerance and the sizes in a scene to the thresholds of touching and the errors of steps.
+//! Derives the thresholds of touching and the errors of steps from one relative tolerance and the sizes in a scene.
 
 use super::step::segment::StepControl;
 use super::system::RigidSettings;
@@ -7,46 +7,48 @@ use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Aabb;
 
-/// Part of the smallest body's radius, times the tolerance, that the target gap takes: the gap is a modelling
-/// error that impacts amplify, so it lies far below the tolerance.
+/// Target gap as a multiple of the tolerance times the smallest body's radius: the gap is a modelling error that
+/// impacts amplify, so it lies far below the tolerance.
 const GAP_SHARE: f64 = 1e-2;
-/// The target gap is at least so many machine epsilons of the largest coordinate: gaps must be told from
-/// rounding, and so must the small part of one by which a contact without force may sink before it fires
-/// again.
+/// Least target gap as a multiple of machine epsilon times the largest coordinate: gaps must be told from rounding, and
+/// so must the small fraction of a gap by which a contact without force may sink before it fires again.
 const GAP_ROUNDINGS: f64 = 512.0;
-/// Twice that: a body falls through the target gap from rest with a speed that is told from rounding.
+/// Twice `GAP_ROUNDINGS`: `velocity_tol` is at least the speed that a body from rest reaches across the least target
+/// gap.
 const SPEED_ROUNDINGS: f64 = 1024.0;
 
-/// What is slow is not slower than this part of what is by the fastest body.
+/// `velocity_tol` is at least this fraction of the value that the fastest body alone would give.
 const SLOWEST: f64 = 1e-3;
-/// Part of `velocity_tol`, and of the scene's speed, up to which a rate is none.
+/// Upper bound of `rest_speed` as a fraction of `velocity_tol`.
 const REST_OF_SLOW: f64 = 1e-3;
+/// Upper bound of `rest_speed` as a fraction of the scene's speed.
 const REST: f64 = 1e-8;
-/// Part of the tolerance that the error of one step may be, at the finest tolerance.
+/// Error of one step as a fraction of the tolerance, at the finest tolerance.
 const LOCAL_SHARE: f64 = 0.25;
-/// Tolerances finer than this ask for more than rounding leaves.
+/// Finest tolerance that rounding leaves room for [-].
 const FINEST_TOLERANCE: f64 = 1e-12;
 
-/// Sizes that occur in a scene at its start.
+/// Sizes that occur in a scene at its start, from which its thresholds follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scales {
     /// Bounding radius [m] of the smallest movable body; `None` if nothing moves.
     pub smallest_radius: Option<f64>,
-    /// Largest coordinate in size, or radius of an arc [m]: gaps are told from the rounding of both.
+    /// Largest absolute coordinate or radius of an arc [m]: gaps are told from the rounding of both.
     pub coordinate: f64,
-    /// How far it is across all of it [m], or from the origin if that is less.
+    /// Diagonal of the scene's bounds [m], or the largest coordinate if that is less.
     pub extent: f64,
-    /// Largest speed of a point of a body [m/s].
+    /// Largest speed of a point of a movable body [m/s].
     pub speed: f64,
-    /// The least speed [m/s] of those that bodies have, or get by falling as far as they are large; `None` if
-    /// none moves or falls. What is slow beside a bullet need not be so beside a ball.
+    /// Least characteristic speed [m/s] over the movable bodies, each the larger of its speed at the start and
+    /// sqrt(acceleration x reach); `None` if nothing moves or falls. It keeps a speed that is slow for a bullet from
+    /// counting as slow for a ball.
     pub slow: Option<f64>,
-    /// Largest acceleration of a body [m/s^2] but for damping, which makes nothing fast.
+    /// Largest acceleration of a movable body [m/s^2], damping left out: it makes nothing fast.
     pub acceleration: f64,
 }
 
 impl Scales {
-    /// Sets `coordinate` and `extent` to those of a scene within some bounds [m].
+    /// Sets `coordinate` and `extent` to those of a scene within the given bounds [m].
     pub fn set_bounds(&mut self, bounds: Aabb) {
         self.coordinate = bounds.min.abs().max(bounds.max.abs()).max_element();
         self.extent = bounds.size().length().min(self.coordinate);
@@ -58,41 +60,42 @@ impl Scales {
         self.coordinate = self.coordinate.max(radius);
     }
 
-    /// The smallest target gap [m] that coordinates of this size allow.
+    /// Smallest target gap [m] that can be told from the rounding of coordinates.
     #[must_use]
     pub fn smallest_gap(&self) -> f64 {
         GAP_ROUNDINGS * f64::EPSILON * self.coordinate
     }
 
-    /// The largest coordinate [m] at which the smallest target gap is no larger than the smallest movable
-    /// body; `None` if nothing moves.
+    /// Largest coordinate [m] at which the smallest target gap is no larger than the smallest movable body; `None` if
+    /// nothing moves.
     #[must_use]
     pub fn largest_coordinate(&self) -> Option<f64> {
         self.smallest_radius.map(|radius| radius / (GAP_ROUNDINGS * f64::EPSILON))
     }
 
-    /// The target gap [m] that the tolerance asks for.
+    /// Target gap [m] that a relative tolerance asks for; [`Self::smallest_gap`] may exceed it.
     #[must_use]
     pub fn wanted_gap(&self, tolerance: f64) -> f64 {
         tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)
     }
 
-    /// A speed [m/s] of the scene: what falls across it reaches this, even if all is at rest at the start,
-    /// and wherever it is.
+    /// Characteristic speed [m/s] of the scene: the larger of `speed` and sqrt(`acceleration` x `extent`), about the
+    /// speed of a fall across the scene from rest, wherever it lies.
     #[must_use]
     pub fn speed_scale(&self) -> f64 {
         self.speed.max((self.acceleration * self.extent).sqrt())
     }
 
-    /// A normal speed [m/s] that is slow: a part of what is fast, but to stop at it a body need not have
-    /// fallen by more than half the same part of its size.
+    /// Normal speed [m/s] up to which a contact is slow: `tolerance` times the scene's speed, but no more than
+    /// sqrt(`tolerance`) times [`Self::slow`], which the slowest body gains by falling half of `tolerance` times its
+    /// size, and no less than `SLOWEST` of the former.
     fn slowness(&self, tolerance: f64) -> f64 {
         let of_fast = tolerance * self.speed_scale();
         let of_slow = self.slow.map_or(f64::INFINITY, |slow| tolerance.sqrt() * slow);
         of_fast.min(of_slow.max(SLOWEST * of_fast))
     }
 
-    /// The thresholds that a relative tolerance asks for.
+    /// Thresholds of touching for a relative tolerance.
     #[must_use]
     pub fn tolerances(&self, tolerance: f64) -> Tolerances {
         let target_gap = self.wanted_gap(tolerance).max(self.smallest_gap());
@@ -107,14 +110,15 @@ impl Scales {
 }
 
 impl RigidSettings {
-    /// What a relative tolerance asks for in a scene of such sizes, with the default method: contacts carry
-    /// forces, impacts are resolved by the hybrid law, and steps are projected.
+    /// Settings for a relative tolerance in a scene of the given scales, with the default method: contacts carry
+    /// forces, the hybrid law resolves impacts, and ends of steps are projected.
     #[must_use]
     pub fn new(tolerance: f64, scales: &Scales) -> Self {
         Self::with_tolerances(tolerance, scales.tolerances(tolerance), scales, Method::default())
     }
 
-    /// The same with thresholds of touching, and a method, of one's own.
+    /// Settings for a relative tolerance with the caller's thresholds of touching and method; all else is as of
+    /// [`Self::new`].
     #[must_use]
     pub fn with_tolerances(tolerance: f64, tolerances: Tolerances, scales: &Scales, method: Method) -> Self {
         let speed = scales.speed_scale();
@@ -142,23 +146,25 @@ impl RigidSettings {
     }
 }
 
-/// Relative error that a step may make by its estimate. That is of one order less than the step: what errors
-/// add up to falls faster than what is asked of the estimate, by one power in so many.
+/// Relative error that a step may make by its estimate. The estimate is one order lower than the step, so accumulated
+/// errors fall faster than it: for an error of the order of `tolerance` the estimate must fall with the power
+/// order/(order + 1) of that.
 fn local_error(tolerance: f64, method: Method) -> f64 {
     let power = -1.0 / f64::from(method.order() + 1);
     LOCAL_SHARE * tolerance * libm::pow(tolerance / FINEST_TOLERANCE, power)
 }
 
-/// Rates up to which a row is at rest, in a scene of the given speed [m/s].
+/// Largest rate [m/s] at which a row is at rest, in a scene of the given speed [m/s].
 fn rest_speed(velocity_tol: f64, speed: f64) -> f64 {
     let slow = REST_OF_SLOW * velocity_tol;
     if speed > 0.0 { slow.min(REST * speed) } else { slow }
 }
 
-/// The time [s] in which forces can be resolved.
+/// Time [s] in which forces produce `velocity_tol` or bring a body from rest through half the target zone, if that is
+/// longer.
 fn resolution_time(tolerances: &Tolerances, scales: &Scales) -> f64 {
     let speed = scales.speed_scale();
-    // Without forces nothing makes speed: then what crosses the gap tells which events are near each other.
+    // Without forces no speed is produced: the time to cross the target gap tells which events are near each other.
     if scales.acceleration > 0.0 {
         let fall = (2.0 * tolerances.accuracy / scales.acceleration).sqrt();
         fall.max(tolerances.velocity_tol / scales.acceleration)
@@ -180,7 +186,7 @@ mod tests {
             let scales = Scales { speed, slow: Some(3.0), coordinate: 1.0, ..Scales::default() };
             scales.tolerances(tolerance).velocity_tol
         };
-        // Where all is about as fast, or much is asked for, it does not matter.
+        // Where all bodies are about as fast, or the tolerance is fine, the slow body does not matter.
         assert_eq!([slow(1e-2, 10.0), slow(1e-8, 1e4)], [1e-1, 1e-4]);
         assert_eq!([slow(1e-2, 1e4), slow(1e-4, 1e4)], [0.1 * 3.0, 1e-2 * 3.0]);
         assert_eq!(slow(1e-2, 1e9), SLOWEST * 1e7);

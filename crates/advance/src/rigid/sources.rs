@@ -1,11 +1,11 @@
-//! What events come from, and the numbers under which the queue knows that.
+//! Sources of events and their numbers in the queue.
 
 use super::search::pairs::PairId;
 use super::system::RigidSystem;
 use crate::queue::SourceId;
 use halfgap_collision::{BodyId, ConnectorId};
 
-/// What an event comes from. The queue takes events of one time in this order.
+/// Source of an event. The queue takes events of one time in the order of these variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// A body leaves its box.
@@ -14,13 +14,13 @@ pub(crate) enum Source {
     Group(BodyId),
     /// A rope goes taut.
     Connector(ConnectorId),
-    /// What has sunk is put back.
+    /// Sunk contacts are put back, where contacts carry impulses only.
     Tick,
     /// A pair comes into contact, or its search goes on.
     Pair(PairId),
 }
 
-/// How many there are of each kind but the last.
+/// Numbers of bodies and of connectors, which fix the numbers of all sources.
 #[derive(Clone, Copy, Debug)]
 struct Sources {
     bodies: u32,
@@ -67,12 +67,12 @@ impl RigidSystem {
         Sources { bodies: count(self.flyers.len()), connectors: count(self.connectors.all.len()) }
     }
 
-    /// Under which number the queue knows what an event comes from.
+    /// Number of a source in the queue.
     pub(crate) fn source_id(&self, source: Source) -> SourceId {
         self.sources().id(source)
     }
 
-    /// What an event of the queue comes from.
+    /// The source of a number in the queue.
     pub(crate) fn source(&self, id: SourceId) -> Source {
         self.sources().source(id)
     }

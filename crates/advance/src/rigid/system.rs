@@ -1,7 +1,8 @@
 //! Rigid bodies as an event-driven system.
 //!
-//! Kinds of events: a body leaves its box, a pair's search goes on, two bodies come into contact, a group's
-//! segment ends. Between events nothing is computed; an event touches only its bodies and what is near them.
+//! Kinds of events: a body leaves its box, a pair's search goes on or finds a contact, a rope goes taut, a group's
+//! segment ends, sunk contacts are put back. Between events nothing is computed; an event touches only its bodies and
+//! their neighbours.
 
 use super::error::AdvanceError;
 use super::event::cause::EventWork;
@@ -32,41 +33,42 @@ use halfgap_collision::{BodyId, ConnectorId, Moving, RailHint, SearchSettings, T
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use std::sync::Arc;
 
-/// How contacts are judged, impacts resolved, and motions integrated.
+/// Settings of a system: how contacts are judged, impacts resolved, and motions integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidSettings {
-    /// The thresholds of touching.
+    /// Thresholds of touching.
     pub tolerances: Tolerances,
-    /// The impact law.
+    /// Impact law.
     pub law: ImpactLaw,
-    /// The order in which serial laws take the rows.
+    /// Order in which serial impact laws take the rows.
     pub order: ImpactOrder,
-    /// False if bodies pass through each other.
+    /// True if bodies collide; false if they pass through each other.
     pub collisions: bool,
     /// Limits of the search for contacts.
     pub search: SearchSettings,
-    /// The integrator of bodies that are not in free flight.
+    /// Integrator of bodies that are not in free flight.
     pub method: Method,
-    /// How its steps are chosen.
+    /// Choice of the integrator's steps.
     pub steps: StepControl,
-    /// The ends of steps are moved onto the held rows.
+    /// True if the ends of steps are moved onto the held rows, in position and velocity.
     pub projection: bool,
-    /// Accelerations against the errors of held rows, if any.
+    /// Accelerations against the errors of held rows; `None` for none.
     pub extra: Option<ExtraAcceleration>,
-    /// Contacts carry impulses only, in steps of this length [s]; connectors carry forces all the same.
+    /// Time [s] after which sunk contacts are put back, if contacts carry impulses only; `None` if they carry forces.
+    /// Connectors carry forces either way.
     pub impulse_step: Option<f64>,
-    /// Velocities of connectors are made to fit at the ends of steps, where `projection` does not do so.
+    /// True if the velocities of connectors are made to fit at the ends of steps where `projection` is false.
     pub joint_small_impacts: bool,
-    /// Rates [m/s] up to which a row neither closes nor opens: more than rounding leaves of a solve, but far
-    /// less than any approach that counts. Two rows that oppose each other at a small angle stop what slides
-    /// between them, if both are taken to rest.
+    /// Rows with |rate| up to this [m/s] are at rest. Must exceed the rounding of a solve, but lie far below any
+    /// approach speed that counts: two rows that oppose each other at a small angle stop a body that slides between
+    /// them, if both are taken to rest.
     pub rest_speed: f64,
-    /// Time [s] that forces take to make `velocity_tol`, or to cross the target zone: more events than it can
-    /// hold are ended.
+    /// Time [s] in which forces produce `velocity_tol` or cross the target zone. A group with more events than allowed
+    /// within it is stopped without elasticity (a storm).
     pub resolution_time: f64,
 }
 
-/// What was done so far.
+/// Counts and extremes of a system since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
     /// Segments started by movable bodies.
@@ -83,11 +85,11 @@ pub struct Counts {
     pub evaluations: u64,
     /// Storms of impacts that were ended without elasticity.
     pub storms: u64,
-    /// Smallest gap [m] seen.
+    /// Smallest gap [m] seen, negative for overlap; `None` if none was measured.
     pub smallest_gap: Option<f64>,
-    /// Largest error of a connector's gap [m] seen.
+    /// Largest error of a connector's gap [m] seen; `None` if none was measured.
     pub largest_connector_error: Option<f64>,
-    /// Largest kinetic energy [J] that bodies with common steps had at the end of one, or those of an impact before it.
+    /// Largest kinetic energy [J] seen: of a group at the end of a step, or of the bodies of an impact before it.
     pub largest_kinetic_energy: f64,
 }
 
@@ -102,26 +104,26 @@ impl Counts {
     }
 }
 
-/// An event that was handled: an impact, or contacts that begin or end.
+/// Report of a handled event: an impact, or contacts that begin or end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Handled {
-    /// When.
+    /// Time of the event.
     pub time: Time,
-    /// True for an impact, of which [`RigidSystem::last_impact`] tells; [`RigidSystem::contact_changes`]
-    /// tells of the rest.
+    /// True for an impact, which [`RigidSystem::last_impact`] reports; [`RigidSystem::contact_changes`] lists the
+    /// contacts that begin or end.
     pub impact: bool,
 }
 
-/// Rigid bodies that fly, collide, rest on each other, and hang together.
+/// System of rigid bodies that fly, collide, rest on each other, and are tied by connectors.
 #[derive(Clone, Debug)]
 pub struct RigidSystem {
     pub(crate) settings: RigidSettings,
     pub(crate) flyers: Vec<Flyer>,
     pub(crate) connectors: Connectors,
     pub(crate) laws: Laws,
-    /// Nothing accelerates bodies but contacts and connectors.
+    /// True if nothing but contacts and connectors accelerates bodies.
     pub(crate) is_forceless: bool,
-    /// When the system started.
+    /// Time at which the system started.
     pub(crate) start: Time,
     /// Time of the last event handled.
     pub(crate) now: Time,
@@ -136,9 +138,9 @@ pub struct RigidSystem {
     pub(crate) error_scales: Vec<f64>,
     pub(crate) limits: Memory,
     pub(crate) ticks: Ticks,
-    /// Taken out while an event is handled.
+    /// Buffers of an event; taken out while one is handled.
     pub(crate) work: Option<Box<EventWork>>,
-    /// Buffer: pairs of which an event changes what is known.
+    /// Buffer: pairs whose rules or predictions an event changes.
     pub(crate) touched: Vec<PairId>,
     pub(crate) counts: Counts,
     pub(crate) ledger: Ledger,
@@ -146,11 +148,11 @@ pub struct RigidSystem {
 }
 
 impl RigidSystem {
-    /// The system of the given parts at a time. That bodies do not overlap, and connectors hold what they tie
-    /// together, is for the caller to see to.
+    /// Makes the system of the given parts at a time. The caller must see to it that bodies do not overlap and that
+    /// connectors fit the states: neither is checked.
     ///
     /// # Errors
-    /// Parts or settings out of range. The forces at the start cannot be found.
+    /// Parts or settings out of range, or forces at the start that cannot be found.
     pub fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Result<Self, AdvanceError> {
         parts.check(&settings, start)?;
         let RigidParts { bodies, connectors, laws, excluded } = parts;
@@ -193,13 +195,13 @@ impl RigidSystem {
         Ok(system)
     }
 
-    /// How many bodies there are.
+    /// Number of bodies.
     #[must_use]
     pub fn body_count(&self) -> usize {
         self.flyers.len()
     }
 
-    /// A body with its segment.
+    /// Returns a body with its present segment.
     ///
     /// # Panics
     /// If there is no such body.
@@ -208,33 +210,32 @@ impl RigidSystem {
         &self.flyers[body.index()]
     }
 
-    /// What was done so far.
+    /// Counts and extremes of the system since its start.
     #[must_use]
     pub fn counts(&self) -> Counts {
         let (evaluations, solves) = (self.stage.evaluations, self.stage.solves);
         Counts { evaluations, contact_solves: self.counts.contact_solves + solves, ..self.counts }
     }
 
-    /// How contacts are judged.
+    /// The settings of the system.
     #[must_use]
     pub fn settings(&self) -> &RigidSettings {
         &self.settings
     }
 
-    /// The last impact.
+    /// Report of the last impact; empty if there was none.
     #[must_use]
     pub fn last_impact(&self) -> &ImpactReport {
         &self.told.last_impact
     }
 
-    /// The impact of the event that could not be handled, if there was one before that was found out: it is
-    /// in the ledger.
+    /// The impact of the event that then failed, if it got that far: booked in the ledger, not reported.
     #[must_use]
     pub fn untold_impact(&self) -> Option<&ImpactReport> {
         (self.told.failure.is_some() && self.told.has_hit).then_some(&self.told.last_impact)
     }
 
-    /// Why the last event could not be handled: there is no going on from it.
+    /// Error of the last event, if it could not be handled: the system cannot go on from it.
     #[must_use]
     pub fn failure(&self) -> Option<&AdvanceError> {
         self.told.failure.as_ref()
@@ -246,7 +247,7 @@ impl RigidSystem {
         self.now
     }
 
-    /// False for a force law that has no potential, whose work is in the ledger.
+    /// True if the force law at an index has a potential; the work of a law without one is in the ledger.
     ///
     /// # Panics
     /// If there is no such law.
@@ -255,26 +256,26 @@ impl RigidSystem {
         self.laws.has_potential[law]
     }
 
-    /// The force laws.
+    /// Force laws, in the order of their indices.
     #[must_use]
     pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
         &self.laws.all
     }
 
-    /// Where on its path the point of a rail or of a rail's stop is looked for at a time, not before that of the last event;
-    /// `None` for other connectors.
+    /// Place on its path near which the point of a rail or of a rail's stop is sought at a time, which must not be
+    /// before the last event; `None` for other connectors.
     #[must_use]
     pub fn rail_hint(&self, connector: ConnectorId, time: Time) -> Option<RailHint> {
         self.hint_at(connector, 0, time)
     }
 
-    /// Pairs of bodies that pass through each other, the lesser id first, sorted.
+    /// Pairs of bodies that never collide with each other, the lesser id first, sorted.
     #[must_use]
     pub fn excluded(&self) -> &[(BodyId, BodyId)] {
         &self.search.excluded
     }
 
-    /// A body whose segment is cut short, which counts.
+    /// Counts that the segment of a body is cut short, and returns the body.
     pub(crate) fn interrupt(&mut self, body: BodyId) -> &mut Flyer {
         self.counts.segments += 1;
         self.counts.backups += 1;
@@ -297,7 +298,7 @@ impl RigidSystem {
         }
     }
 
-    /// Runs an event at a time, and tells whether it was an impact; `None` if callers need not know of it.
+    /// Runs an event at a time and returns its report; `None` if callers need not know of it.
     pub(crate) fn happen(
         &mut self,
         time: Time,
@@ -346,8 +347,8 @@ impl EventDriven for RigidSystem {
         if self.told.failure.is_some() { Some(self.now) } else { self.queue.first().map(|entry| entry.time) }
     }
 
-    /// Handles the earliest event. What could not be handled leaves bodies that nothing holds: there is no
-    /// going on from it, and it is told again whenever that is tried.
+    /// Handles the earliest event. One that cannot be handled leaves bodies that nothing holds: the system cannot go on
+    /// from it, and each further call returns the same error.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
         if let Some(failure) = &self.told.failure {
             return Err(failure.clone());

@@ -1,4 +1,4 @@
-//! Settings and bodies for tests: discs at rest on a floor, for what happens between bodies that are held.
+//! Settings and bodies for tests of groups: discs and a block on a floor.
 
 use super::motion::flyer::FlightLaw;
 use super::parts::RigidParts;
@@ -13,25 +13,32 @@ use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Shape;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
-/// Half-width of the target zone, in target gaps.
+/// Half-width of the target zone as a fraction of the target gap.
 const ZONE: f64 = 0.6;
 
-/// Target gap [m], relative error of a step, and what counts as slow [m/s], as at rest [m/s] and as soon [s],
-/// where all of it is far finer than anything that happens.
+/// Target gap [m] of [`FINE`], far below all that happens in a scene, like the constants after it.
 const FINE_GAP: f64 = 1e-10;
+/// Relative error of a step of [`FINE`].
 const FINE_ERROR: f64 = 1e-11;
+/// Velocity tolerance [m/s] of [`FINE`].
 const FINE_SLOW: f64 = 1e-9;
+/// Rest speed [m/s] of [`FINE`].
 const FINE_REST: f64 = 1e-12;
+/// Resolution time [s] of [`FINE`].
 const FINE_SOON: f64 = 1e-10;
 
-/// The same for discs at rest.
+/// Target gap [m] of [`DISCS`].
 const DISCS_GAP: f64 = 1e-6;
+/// Relative error of a step of [`DISCS`].
 const DISCS_ERROR: f64 = 1e-6;
+/// Velocity tolerance [m/s] of [`DISCS`].
 const DISCS_SLOW: f64 = 1e-3;
+/// Rest speed [m/s] of [`DISCS`].
 const DISCS_REST: f64 = 1e-10;
+/// Resolution time [s] of [`DISCS`].
 const DISCS_SOON: f64 = 1e-4;
 
-/// Settings far finer than anything that happens.
+/// Settings with thresholds far below anything that happens.
 pub(super) const FINE: RigidSettings = RigidSettings {
     law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
@@ -48,6 +55,7 @@ pub(super) const FINE: RigidSettings = RigidSettings {
     impulse_step: None,
 };
 
+/// Settings for discs at rest.
 const DISCS: RigidSettings = RigidSettings {
     tolerances: Tolerances { target_gap: DISCS_GAP, accuracy: ZONE * DISCS_GAP, velocity_tol: DISCS_SLOW },
     steps: StepControl { local_error: DISCS_ERROR, length: 0.5, speed: 1.0, largest_step: None },
@@ -56,8 +64,8 @@ const DISCS: RigidSettings = RigidSettings {
     ..FINE
 };
 
-/// Discs of radius 0.5 m and 1 kg at rest on a floor, which is body 0, under gravity, with their centres at
-/// the given places [m].
+/// Makes discs of radius 0.5 m and 1 kg at rest on a floor, which is body 0, under gravity, with their centres at the
+/// given places [m].
 pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
     let disc = Shape::disc(0.5).expect("a fine radius");
     let on_floor = |&place: &f64| {
@@ -67,8 +75,8 @@ pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
     resting(places.iter().map(on_floor))
 }
 
-/// A rounded block of 1 kg that stands on one of its corners, of radius 0.1 m, on such a floor, tilted to
-/// where 0.2 rad are left to the end of the corner.
+/// Makes a rounded block of 1 kg that stands on one of its corners, of radius 0.1 m, on such a floor, tilted to 0.2 rad
+/// before the end of the corner.
 pub(super) fn block_on_its_corner() -> RigidSystem {
     let shape = Shape::rounded_block(1.0, 1.0, 0.1).expect("a fine size");
     let tilt = FRAC_PI_4 - 0.2;
@@ -86,7 +94,7 @@ pub(super) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
     (group.state[4], group.state[5]) = (rise, spin);
 }
 
-/// Bodies of 1 kg and as much inertia as a disc of radius 0.5 m at rest on a floor.
+/// Makes bodies of 1 kg, with the moment of inertia of a disc of radius 0.5 m, at rest on a floor.
 fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> RigidSystem {
     let floor = Body {
         shape: Shape::block(20.0, 1.0).expect("a fine size"),

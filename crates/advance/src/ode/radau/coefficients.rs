@@ -10,7 +10,7 @@
 /// Square root of 6.
 const ROOT: f64 = 2.449_489_742_783_178;
 
-/// Where the stages are, in parts of the step.
+/// Places of the stages, as fractions of the step.
 pub(super) const NODES: [f64; 3] = [(4.0 - ROOT) / 10.0, (4.0 + ROOT) / 10.0, 1.0];
 
 /// The matrix A: the stages lie off the start by the step times these sums of their rates.
@@ -25,7 +25,7 @@ pub(super) const REAL: f64 = 3.637_834_252_744_496;
 /// Real and imaginary part of the other two.
 pub(super) const PAIR: (f64, f64) = (2.681_082_873_627_752, 3.050_430_199_247_411);
 
-/// T: stages from what is solved for.
+/// T, which makes the stages of the unknowns that are solved for.
 pub(super) const BACK: [[f64; 3]; 3] = [
     [0.091_232_394_870_892_95, -0.141_255_295_020_954_2, -0.030_029_194_105_147_424],
     [0.241_717_932_707_107, 0.204_129_352_293_799_94, 0.382_942_112_757_261_9],

@@ -13,39 +13,40 @@ use super::{Ode, Point};
 use coefficients::{BACK, ERROR, FORTH, NODES, PAIR, REAL, STAGES};
 use std::ops::Range;
 
-/// Newton's method has converged when what is left to correct is this part of the acceptable error.
+/// Correction left, as a fraction of the acceptable error, at which Newton's method has converged.
 const CONVERGED: f64 = 1e-2;
-/// Corrections below so many roundings of the state cannot be told from none.
+/// Multiple of the state's rounding below which corrections cannot be told from none.
 const ROUNDINGS: f64 = 16.0;
-/// A correction leaves at least this part of itself to correct, however much smaller it is than the one
-/// before: the first is the whole way of the step, and what is slow may hide that what is fast has yet to
-/// follow it.
+/// Fraction of a correction that is taken to be left to correct, at least, however much smaller it is than the one
+/// before: the first is the whole way of the step, and its slow part may hide that the fast part has yet to follow.
 const LEAST_LEFT: f64 = 1e-2;
-/// A correction by less than this part of the acceptable error is none: where a system rests, each is what
-/// rounding makes of its rates, and does not get smaller.
+/// Correction, as a fraction of the acceptable error, up to which it counts as none: in a system at rest corrections
+/// come from the rounding of its rates, and do not get smaller.
 const NEGLIGIBLE: f64 = 1e-6;
-/// Corrections in one step; more mean that a shorter step costs less.
+/// Largest number of corrections in one step; more mean that a shorter step costs less.
 const MOST_CORRECTIONS: usize = 10;
-/// Corrections that fall by less than this factor do not converge.
+/// Ratio of a correction to the one before above which they do not converge.
 const SLOWEST: f64 = 0.9;
-/// Acceptable error of a component, in parts of its size, where none is told.
+/// Acceptable error of a component as a fraction of its size, where no scales are set.
 const UNTOLD: f64 = 1e-10;
-/// Differences are taken over the acceptable error, but over no less than this part of a component, so that
-/// the rounding of the rates does not matter.
+/// Least length of a difference, as a fraction of a component, so that the rounding of the rates does not matter;
+/// otherwise differences are taken over the acceptable error.
 const LEAST_DIFFERENCE: f64 = 1e6 * f64::EPSILON;
-/// Part of where the power method has come to that each component has at least, in the first.
+/// Least size of the first component that the power method goes on from, as a fraction of its vector's size; less for
+/// those after it.
 const STIRRED: f64 = 1e-3;
-/// Turns of the power method in one step.
+/// Number of turns of the power method in one step.
 const TURNS: usize = 4;
 
-/// What the implicit method knows of its last step.
+/// The implicit method, with its last step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Radau {
-    /// Components of the state.
+    /// Number of components of the state.
     size: usize,
-    /// Components that rates depend on, which come first.
+    /// Number of components that rates depend on; they come first.
     active: usize,
     length: f64,
+    /// Acceptable errors that the caller has set.
     told: Vec<f64>,
     /// Acceptable errors of the active components.
     scales: Vec<f64>,
@@ -53,22 +54,22 @@ pub(super) struct Radau {
     trial: Vec<f64>,
     /// Rates at the stages.
     rates: [Vec<f64>; 3],
-    /// How far the stages lie off the start.
+    /// Offsets of the stages from the start.
     stages: [Vec<f64>; 3],
-    /// What is solved for: T^-1 times the stages.
+    /// Unknowns of the equations: T^-1 times the stages.
     split: [Vec<f64>; 3],
     /// Derivatives of the rates by the active components, row by row.
     jacobian: Vec<f64>,
-    /// What rounding makes of the active components along a step.
+    /// Rounding of the active components along a step.
     rounding: Vec<f64>,
     real: Factors,
     pair: Factors,
     right: Vec<f64>,
     error: Vec<f64>,
-    /// Where the power method came to, for the next step.
+    /// Vector to which the power method has come, for the next step.
     fastest: Vec<f64>,
     stiffness: f64,
-    /// The equations of the last step were solved.
+    /// True if the equations of the last step were solved.
     solved: bool,
 }
 
@@ -122,7 +123,7 @@ impl Radau {
                 .map(|(value, node)| (value / node - way) / (1.0 - node));
             let twist = (other - bend) / (second - first);
             let start = self.start[component];
-            // What the end was changed by is put in as 3 x^2 - 2 x^3 of it.
+            // A change of the end after the step is put in as 3 x^2 - 2 x^3 of it.
             let change = end.state[component] - (start + way);
             let mut nested = [0.0; NESTED];
             nested[..3].copy_from_slice(&[way + change, bend - first * twist - change, twist + 2.0 * change]);
@@ -167,7 +168,7 @@ impl Radau {
             let value = from.state[column];
             let scale = if self.scales[column].is_finite() { self.scales[column] } else { 0.0 };
             let change = scale.max(LEAST_DIFFERENCE * value.abs());
-            // Where nothing tells a size, one is as good as another.
+            // Where nothing tells a size, 1 is as good as any other.
             let moved = value + if change > 0.0 { change } else { 1.0 };
             self.trial[column] = moved;
             system.derivative(from.offset, &self.trial, &mut self.rates[0])?;
@@ -202,8 +203,8 @@ impl Radau {
         self.real.factorize() && self.pair.factorize()
     }
 
-    /// Finds what rounding makes of the components: of each itself, and, where rates depend much on some, of
-    /// these: what is fast follows the rounding of the rates.
+    /// Finds the rounding of the components: each one's own, and that of the components on which rates depend much,
+    /// since a fast part follows the rounding of the rates.
     fn find_rounding(&mut self) {
         let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
         self.rounding.clear();
@@ -248,7 +249,7 @@ impl Radau {
         Ok(false)
     }
 
-    /// Corrects the stages by Newton's method; returns the size of the correction in acceptable errors, less what is
+    /// Corrects the stages by Newton's method; returns the size of the correction in acceptable errors, less its
     /// rounding.
     fn correct(&mut self) -> f64 {
         let (active, length) = (self.active, self.length);
@@ -291,7 +292,7 @@ impl Radau {
         (sum / (3 * active).max(1) as f64).sqrt()
     }
 
-    /// The stages of what is only integrated, from the rates at the last ones.
+    /// Finds the stages of the components that are only integrated, from the rates at the last stages.
     fn integrate_others(&mut self) {
         for (stage, weights) in self.stages.iter_mut().zip(&STAGES) {
             for (at, way) in stage.iter_mut().enumerate().skip(self.active) {
@@ -300,8 +301,8 @@ impl Radau {
         }
     }
 
-    /// HW (8.19). Their second filter, (8.20), is left out: it takes what has yet to decay for nothing, and
-    /// the motion along the step would not be that of the system.
+    /// Estimates the error, HW (8.19). Their second filter, (8.20), is left out: it would take the error of parts that
+    /// have yet to decay for none, and the motion along the step would not be that of the system.
     fn estimate_error(&mut self, from: Point<'_>) {
         for at in 0..self.active {
             let stages: f64 = (0..3).map(|stage| ERROR[stage] * self.stages[stage][at]).sum();
@@ -313,7 +314,7 @@ impl Radau {
         }
     }
 
-    /// A few turns of the power method, which goes on from step to step, for the largest eigenvalue in size.
+    /// Finds the largest eigenvalue in size, by a few turns of the power method, which goes on from step to step.
     fn find_fastest(&mut self) {
         let active = self.active;
         if self.fastest.len() != active {
@@ -337,8 +338,8 @@ impl Radau {
         self.stiffness = (rate * self.length).abs();
     }
 
-    /// Gives every component a little of where the power method has come to: what was slow, of which nothing is left
-    /// there, may have become fast. Neighbours differ, for what pulls alike at all is not fast.
+    /// Gives every component of the power method's vector a least size: a slow part, of which nothing is left there,
+    /// may have become fast. Neighbours differ, for a part that pulls all alike is not fast.
     fn stir(&mut self) {
         let norm = root_mean_square(&self.fastest, &self.scales);
         for (index, (component, scale)) in self.fastest.iter_mut().zip(&self.scales).enumerate() {
@@ -350,17 +351,17 @@ impl Radau {
     }
 }
 
-/// By how much a number is larger in size than its rounding; what is not a number stays none.
+/// Excess of a number's size over its rounding, 0 if there is none; NaN stays NaN.
 fn beyond(number: f64, rounding: f64) -> f64 {
     if number.abs() <= rounding { 0.0 } else { number.abs() - rounding }
 }
 
-/// Root of the mean of the squares of the first numbers, measured by their scales.
+/// Root of the mean of the squares of the first numbers, each divided by its scale.
 fn root_mean_square(numbers: &[f64], scales: &[f64]) -> f64 {
     super::explicit::mean_square(&numbers[..scales.len()], scales).sqrt()
 }
 
-/// The rows of a Jacobian of some components; none of none.
+/// Rows of a Jacobian of a number of components; none if there are no components.
 fn slopes_of(jacobian: &[f64], components: usize) -> std::slice::ChunksExact<'_, f64> {
     jacobian.chunks_exact(components.max(1))
 }

@@ -1,32 +1,34 @@
-//! When does a function that is sampled along a segment first fall below zero?
+//! Finds the time at which a function that is sampled along a segment first falls below zero.
 //!
-//! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic
-//! through them shows where the function may dip below zero in between, however briefly, and samples there
-//! tell. The bracket is closed by inverse parabolas where they are sure to serve, else by bisection: some
-//! functions have a kink where they fall (T. Chandrupatla, "A new hybrid quadratic/bisection algorithm for
-//! finding the zero of a nonlinear function without using derivatives", Advances in Engineering Software 28,
+//! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them
+//! shows where the function may dip below zero in between, however briefly, and is followed by samples there. The
+//! bracket is closed by inverse parabolas where they are sure to serve, else by bisection: some functions have a kink
+//! where they fall (T. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear
+//! function without using derivatives", Advances in Engineering Software 28,
 //! 1997).
 
-/// Samples along a segment: both ends and three places between, equally far apart.
+/// Number of samples along a segment: both ends and three places between, equally far apart.
 pub(crate) const NODES: usize = 5;
-/// Parts of the way between two nodes in each of which the quartic has one minimum at most.
+/// Number of parts of the way between two nodes, in each of which the quartic has one minimum at most.
 const PARTS: usize = 4;
-/// Cap on the steps to a minimum of the quartic.
+/// Largest number of steps to a minimum of the quartic.
 const MOST_DESCENTS: usize = 60;
-/// A minimum of the quartic no higher than this part of the largest sample may be a dip below zero.
+/// Height, as a fraction of the largest sample, up to which a minimum of the quartic may be a dip below zero.
 const NEARLY_ZERO: f64 = 1e-3;
-/// Widths, in nodes, of the parabolas that go on from the quartic's minimum to the function's own.
+/// Widths, in nodes, of the parabolas that lead from the quartic's minimum to the function's own.
 const WIDTHS: [f64; 2] = [0.1, 0.01];
-/// Cap on the steps that close a bracket.
+/// Largest number of steps that close a bracket.
 const MOST_STEPS: usize = 200;
-/// A bracket is closed when it is this part of the segment.
+/// Width of a closed bracket as a fraction of the segment.
 const CLOSED: f64 = 1e-14;
 
+/// Index of the middle node.
 const MIDDLE_NODE: f64 = (NODES - 1) as f64 / 2.0;
 
-/// Samples between the start of a segment and its first node, each this part of the next from the start: what starts at
-/// nearly zero dips at once or, mostly, not at all.
+/// Number of samples between the start of a segment and its first node: a function that starts at nearly zero dips at
+/// once or, mostly, not at all.
 pub(crate) const EARLY: usize = 5;
+/// Offset of an early sample as a fraction of that of the next.
 const EARLIER: f64 = 0.25;
 
 /// Offset [s] of an early sample of a segment of the given span.
@@ -34,8 +36,8 @@ pub(crate) fn early_node(index: usize, span: f64) -> f64 {
     (index..EARLY).fold(node(1, span), |offset, _| offset * EARLIER)
 }
 
-/// The first offset up to the first node at which `f` has fallen below zero, given its values at the start,
-/// which is not negative, and at the early nodes.
+/// First offset [s], up to the first node, at which `f` has fallen below zero, given its values at the start, which
+/// must not be negative, and at the early nodes.
 pub(crate) fn early_fall(
     start: f64,
     values: &[f64; EARLY],
@@ -48,9 +50,8 @@ pub(crate) fn early_fall(
     Some(close(above, (early_node(index, span), values[index]), span, f))
 }
 
-/// The first offset up to the first node at which `f` has fallen below zero after it was not below at an
-/// early node, the last such; for what is below zero at the start, if only by rounding, and at the first
-/// node.
+/// Offset [s], up to the first node, at which `f` has fallen below zero after the last early node at which it was not.
+/// For a function that is below zero at the start, if only by rounding, and at the first node; `None` for others.
 pub(crate) fn fall_after_rise(
     values: &[f64; NODES],
     span: f64,
@@ -72,7 +73,7 @@ pub(crate) fn node(index: usize, span: f64) -> f64 {
     if index + 1 == NODES { span } else { span * (index as f64 / (NODES - 1) as f64) }
 }
 
-/// The straight line from node to node, at an offset [s].
+/// Linear interpolation between the values at the nodes, at an offset [s].
 pub(crate) fn between_nodes(values: &[f64; NODES], span: f64, offset: f64) -> f64 {
     let place = (offset / span).clamp(0.0, 1.0) * (NODES - 1) as f64;
     let index = (place as usize).min(NODES - 2);
@@ -80,15 +81,16 @@ pub(crate) fn between_nodes(values: &[f64; NODES], span: f64, offset: f64) -> f6
     values[index] + part * (values[index + 1] - values[index])
 }
 
-/// The first offset in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
+/// First offset [s] in (0, `span`] at which `f` has fallen below zero, given its values at the nodes.
 ///
-/// A function that starts below zero must rise first, but see [`fall_from_below`]. The answer lies behind the
-/// fall: there `f` is negative.
+/// A function that starts below zero must rise first, but see [`fall_from_below`]. The answer lies behind the fall:
+/// there `f` is negative.
 pub(crate) fn first_fall(values: &[f64; NODES], span: f64, f: impl FnMut(f64) -> f64) -> Option<f64> {
     first_fall_before(values, span, None, f)
 }
 
-/// As [`first_fall`], but only a fall before a place matters, given as offset and value there.
+/// First offset [s] at which `f` has fallen below zero, as of [`first_fall`], before a limit, given as offset and value
+/// there.
 pub(crate) fn first_fall_before(
     values: &[f64; NODES],
     span: f64,
@@ -120,8 +122,8 @@ pub(crate) fn first_fall_before(
     None
 }
 
-/// A place strictly between two offsets [s] at which `f` is negative, near one at which the quartic has a
-/// minimum, in nodes.
+/// Offset [s] strictly between two others at which `f` is negative, with its value, near a minimum of the quartic,
+/// which is given in nodes.
 fn find_dip(dip: f64, [from, to]: [f64; 2], span: f64, mut f: impl FnMut(f64) -> f64) -> Option<Sample> {
     let scale = span / (NODES - 1) as f64;
     let is_inside = |place: f64| from < place && place < to;
@@ -145,8 +147,8 @@ fn find_dip(dip: f64, [from, to]: [f64; 2], span: f64, mut f: impl FnMut(f64) ->
     (value < 0.0).then_some((place, value))
 }
 
-/// The first offset at which `f`, which is below zero at the start, has fallen lower than is allowed. The
-/// values are those at the nodes.
+/// First offset [s] at which `f`, which is below zero at the start, has fallen below -`allowed`, given its values at
+/// the nodes.
 pub(crate) fn fall_from_below(
     values: &[f64; NODES],
     span: f64,
@@ -158,15 +160,15 @@ pub(crate) fn fall_from_below(
     }
     let mut raised = |offset| f(offset) + allowed;
     let values = values.map(|value| value + allowed);
-    // What is off already may go far and come back before the first node.
+    // A function that starts below zero may go far and come back before the first node.
     let early = std::array::from_fn(|index| raised(early_node(index, span)));
     early_fall(values[0], &early, span, &mut raised).or_else(|| first_fall(&values, span, raised))
 }
 
-/// The quartic through the samples, about the middle node: the coefficients of the powers of the nodes from there.
+/// The quartic through the samples: its coefficients for powers of the distance, in nodes, from the middle node.
 struct Quartic {
     coefficients: [f64; NODES],
-    /// The largest sample in size.
+    /// Size of the largest sample.
     size: f64,
 }
 
@@ -192,7 +194,7 @@ impl Quartic {
         first + from_middle * (2.0 * second + from_middle * (3.0 * third + from_middle * 4.0 * fourth))
     }
 
-    /// Where between two nodes it has its lowest minimum, in nodes, if that is below zero or nearly so.
+    /// Place, in nodes, of the lowest minimum between two nodes, if it is below zero or nearly so.
     fn dip_between(&self, index: usize) -> Option<f64> {
         let first = index as f64 - MIDDLE_NODE;
         let edge = |part: usize| first + part as f64 / PARTS as f64;
@@ -201,7 +203,7 @@ impl Quartic {
         let mut before = self.slope(edge(0));
         for part in 0..PARTS {
             let after = self.slope(edge(part + 1));
-            // It is nowhere far below its tangents.
+            // The quartic is nowhere far below its tangents.
             let may_dip = || self.value(edge(part)) + before / (PARTS as f64) < enough;
             if before < 0.0 && after >= 0.0 && may_dip() {
                 let place = self.minimum_between(edge(part), edge(part + 1));
@@ -216,7 +218,7 @@ impl Quartic {
         (value < enough).then_some(place + MIDDLE_NODE)
     }
 
-    /// Where the slope, negative at `low` and not so at `high`, vanishes.
+    /// Place, in nodes from the middle, at which the slope, negative at `low` and not so at `high`, vanishes.
     fn minimum_between(&self, mut low: f64, mut high: f64) -> f64 {
         let mut place = 0.5 * (low + high);
         for _ in 0..MOST_DESCENTS {
@@ -239,10 +241,11 @@ impl Quartic {
     }
 }
 
-/// A place and the value there.
+/// An offset [s], or place, and the value there.
 type Sample = (f64, f64);
 
-/// Closes a bracket from `above` (not negative) to `below` (negative).
+/// Closes a bracket from `above` (not negative) to `below` (negative), and returns an offset [s] at which `f` is
+/// negative.
 fn close(above: Sample, below: Sample, span: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     // The bracket is between the last place and the far one; the one before was left.
     let (mut last, mut far, mut left) = (above, below, None);
@@ -273,8 +276,8 @@ fn close(above: Sample, below: Sample, span: f64, mut f: impl FnMut(f64) -> f64)
     if last.1 < 0.0 { last.0 } else { far.0 }
 }
 
-/// Which part of the way from the last place to the far one the inverse parabola through three samples
-/// vanishes at; `None` where that parabola is no function between them.
+/// Fraction of the way from the last place to the far one at which the inverse parabola through three samples vanishes;
+/// `None` where that parabola is no function between them.
 fn part_by_parabola(last: Sample, far: Sample, left: Sample) -> Option<f64> {
     let place = (last.0 - far.0) / (left.0 - far.0);
     let height = (last.1 - far.1) / (left.1 - far.1);
@@ -359,14 +362,15 @@ mod tests {
             let fall = after_rise(room).expect("it leaves");
             assert!((fall - room).abs() < 1e-12 && fall >= room, "{fall}");
         }
-        // What only goes farther beyond has not been within, and what is within at the first node has not left.
+        // A function that only goes farther below has not been above, and one that is above at the first node has not
+        // left.
         assert_eq!(after_rise(-0.1), None);
         assert_eq!(after_rise(1.0), None);
     }
 
     #[test]
     fn a_dip_soon_after_the_start_is_found() {
-        // It rises as t^6, to some ten thousand times what it dips by.
+        // It rises as t^6, to some ten thousand times the depth of its dip.
         let f = |t: f64| 1e-14 - 1e-10 * t * t + 1e-6 * t.powi(6);
         let early = |span: f64| std::array::from_fn(|index| f(early_node(index, span)));
         let fall = early_fall(f(0.0), &early(1.0), 1.0, f).expect("it dips");
@@ -387,12 +391,12 @@ mod tests {
             let offset = fall(allowed, 1e-3).expect("it falls");
             assert!((offset / (1e3 * (allowed - BELOW)) - 1.0).abs() < 1e-2, "{offset}");
         }
-        // What stays where it is, or rises, has not.
+        // A function that stays where it is, or rises, has not.
         assert_eq!(fall(2.0 * BELOW, 0.0), None);
         assert_eq!(fall(2.0 * BELOW, -1.0), None);
-        // What is lower already has.
+        // One that is lower already has.
         assert_eq!(fall(0.5 * BELOW, -1.0), Some(0.0));
-        // What is back by the first node had.
+        // One that is back by the first node had.
         let dips = |t: f64| -BELOW - t * (0.3 - t);
         let values = std::array::from_fn(|index| dips(node(index, 2.0)));
         let offset = fall_from_below(&values, 2.0, 2.0 * BELOW, dips).expect("it dips");

@@ -1,6 +1,7 @@
-//! What ends a step early. `watch` looks along a step that was made: a force that falls to zero, a contact that runs
-//! off its features; `switches` are stops that close and force laws that change branch. `crossing` finds where a
-//! polynomial crosses zero, `overdue` what should have ended before, `staying` which contacts surely do not end.
+//! Events that end a step early. `watch` searches a step that was made for a force that falls to zero and a contact
+//! that runs off its features; `switches` for stops that close and force laws that change branch. `crossing` finds
+//! where a sampled function falls below zero, `overdue` the events that should have come before, `staying` the contacts
+//! that surely do not end; `earliest` keeps the first event found.
 
 pub(super) mod crossing;
 mod earliest;

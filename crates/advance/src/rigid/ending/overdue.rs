@@ -1,7 +1,7 @@
-//! Events that are overdue when a segment starts: by rounding, a contact has a little less than no force
-//! already, or is a little beyond its features, and is held all the same. `watch` waits for falls from above,
-//! which such a contact does not make any more: it would pull from then on, or run along an edge that is not
-//! there.
+//! Events that are overdue when a segment starts: by rounding, the force of a contact is a little below zero already,
+//! or the contact is a little beyond its features, and it is held all the same. `watch` waits for falls from above
+//! zero, which such a contact does not make any more: it would pull from then on, or run along an edge that does not
+//! exist.
 
 use super::crossing::{NODES, fall_from_below};
 use super::earliest::Earliest;
@@ -9,11 +9,11 @@ use super::watch::Watch;
 use crate::rigid::step::dynamics::Dynamics;
 
 impl Dynamics<'_> {
-    /// The earliest fall of any row of a watch that is below zero at the start and falls on: it may do so
-    /// along many segments.
+    /// Offers the earliest fall of any row of a watch that is below zero at the start and falls on; it may do so along
+    /// many segments.
     ///
-    /// * `samples`: its values at the nodes, row by row;
-    /// * `below`: how far below zero each row was when it was first seen to be, 0 of others; brought up to date;
+    /// * `samples`: values at the nodes, row by row;
+    /// * `below`: how far below zero each row was when that was first seen, 0 for the others; updated;
     /// * `rounding`: how far below zero a row may be by rounding alone.
     pub(super) fn find_overdue(
         &mut self,
@@ -72,7 +72,7 @@ mod tests {
         }
     }
 
-    /// Steps the group of body 1, which is changed first, anew, and finds what ends the step.
+    /// Changes the group of body 1, steps it anew, and finds the end of the step.
     fn stepped(mut system: RigidSystem, change: impl FnOnce(&mut Group)) -> Box<Group> {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         change(&mut group);

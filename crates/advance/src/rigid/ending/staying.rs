@@ -1,10 +1,9 @@
-//! Contacts that surely stay on their features along a segment. Bounds on the motion tell so of most of them,
-//! and then `watch` need not sample how far they are from running off.
+//! Contacts that surely stay on their features along a segment. Bounds on the motion prove it for most of them, and
+//! then `watch` need not sample how far they are from running off.
 //!
-//! Let f tell where a contact is: the place of the foot along a line, or the direction of a normal seen from
-//! a body. From the middle of a segment of length h it gets no farther than |f'| h/2 + max |f''| h^2/8, and
-//! with c the centre of the round feature, r its offset from the line's body, which turns at w, and d the
-//! offset between two round features,
+//! Let f be the place of a contact: that of the foot along a line, or the direction of a normal as a body sees it. From
+//! the middle of a segment of length h it changes by no more than |f'| h/2 + max |f''| h^2/8, and with c the centre of
+//! the round feature, r its offset from the line's body, which turns at w, and d the offset between two round features,
 //!
 //! * along a line |f''| <= |r''| + 2 |w| |r'| + (|w'| + w^2) |r|, of r as it turns with the body;
 //! * of a direction of d |f''| <= |d''|/|d| + (|d'|/|d|)^2, and |w'| more as a body sees it.
@@ -26,22 +25,22 @@ struct Side<'a> {
 }
 
 impl Side<'_> {
-    /// Bounds on what turning adds to the velocity [m/s] and acceleration [m/s^2] of the end of the arm.
+    /// Bounds on the velocity [m/s] and acceleration [m/s^2] of the end of the arm that turning adds.
     fn turning(&self) -> [f64; 2] {
         let (arm, speed) = (self.arm.length(), self.bounds.angular_speed);
         [speed * arm, (self.bounds.angular_acceleration + speed * speed) * arm]
     }
 }
 
-/// Bounds on the rate and on the second derivative of an offset.
+/// Bounds on the rate [m/s] and the second derivative [m/s^2] of an offset.
 struct OffsetBounds {
     rate: f64,
     second: f64,
 }
 
 impl OffsetBounds {
-    /// Of the offset between the ends of two arms; where only the primary one turns with its body, to the
-    /// centre of mass of the other body.
+    /// Bounds for the offset between the ends of two arms; where only the primary one turns with its body, for that
+    /// between its end and the centre of mass of the other body.
     fn between(primary: &Side<'_>, other: &Side<'_>, other_turns: bool) -> Self {
         let [mut rate, mut second] = primary.turning();
         if other_turns {
@@ -55,7 +54,7 @@ impl OffsetBounds {
     }
 }
 
-/// How far something gets from the middle of a segment to its ends, by its rate there and a bound on its
+/// Bound on the change of a quantity from the middle of a segment to its ends, by its rate there and a bound on its
 /// second derivative.
 fn way(rate: f64, second: f64, half: f64) -> f64 {
     (rate.abs() + 0.5 * second * half) * half
@@ -68,8 +67,8 @@ impl Dynamics<'_> {
         self.stage.bounds.extend(self.group.paths.iter().map(bounds_along));
     }
 
-    /// True if a held contact stays on its features along the segment, in whose middle the bodies are placed.
-    /// Their bounds are known.
+    /// True if a held contact surely stays on its features along the segment. The bodies must be placed in its middle,
+    /// and their bounds known.
     pub(crate) fn stays(&self, row: usize) -> bool {
         let held = &self.group.rows[row];
         let RowSource::Contact(features) = held.source else { return false };
@@ -93,7 +92,8 @@ impl Dynamics<'_> {
     }
 }
 
-/// True if the foot of the primary feature's centre stays on a line, and the line's direction in the feature's range.
+/// True if the foot of the primary feature's centre surely stays on a line, and the line's direction in the feature's
+/// range.
 fn stays_on_line(
     sample: &GapSample,
     line: &LineFeature,
@@ -120,7 +120,7 @@ fn stays_on_line(
     (place - line.start).min(line.end - place) > way(rate, seen, half)
 }
 
-/// True if the direction from one round feature to another stays in the ranges of both.
+/// True if the direction from one round feature to another surely stays in the ranges of both.
 fn stays_between_ends(sample: &GapSample, primary: &Side<'_>, other: &Side<'_>, half: f64) -> bool {
     let (Feature::Round(round), Feature::Round(other_round)) = (primary.feature, other.feature) else {
         return false;
@@ -152,8 +152,8 @@ mod tests {
     /// Length of a segment [s].
     const SPAN: f64 = 0.125;
 
-    /// Whether the contact of body 1, which sets out otherwise, is said to stay on its features along a
-    /// segment, and whether it does.
+    /// Whether the contact of body 1, with a changed start, is said to stay on its features along a segment, and
+    /// whether it does.
     fn said_and_done(mut system: RigidSystem, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         set_out(&mut group);

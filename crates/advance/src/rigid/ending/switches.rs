@@ -1,4 +1,4 @@
-//! What ends a group's segment early that no held row tells: a stop that closes, a force law that changes branch.
+//! Early ends of a group's segment that no held row shows: a stop that closes, a force law that changes branch.
 
 use super::crossing::{NODES, between_nodes, first_fall, node};
 use crate::rigid::motion::law::Snapshot;
@@ -6,19 +6,19 @@ use crate::rigid::step::dynamics::Dynamics;
 use crate::rigid::step::group::{Group, Stop};
 use crate::rigid::step::rows::moving_of;
 
-/// A search for a stop begins with this part of the segment, and again, if that is too long.
+/// Factor by which the search for a stop that is touched is shortened, until its point is off it at the first node.
 const SHORTER: f64 = 0.25;
-/// Cap on that.
+/// Largest number of such shortenings.
 const MOST_SHORTER: usize = 30;
-/// How often the time after a change of sign is doubled until it shows: what changes slowly shows late.
+/// Largest number of times that the wait after a change of sign is doubled until it shows: slow changes show late.
 const MOST_TICKS: usize = 16;
-/// Part of the first segment of a group after which the sign of a switching function is taken.
+/// Fraction of the first segment of a group after which the sign of a switching function is read.
 const SIGN_AT: f64 = 1.0 / 1024.0;
 
 impl Dynamics<'_> {
-    /// When a stop that is not held closes. One from which its point has just set out is touched at the
-    /// start: the search then begins with a part of the segment so short that the point is off. On a closed
-    /// rail what has gone by a stop seems to have come round: laps are told apart by what is read before.
+    /// Offset [s] at which a stop that is not held closes. A stop from which its point has just set out is touched at
+    /// the start: the search then covers so short a part of the segment that the point is off the stop. On a closed
+    /// rail a point that has gone by a stop seems to have come round: laps are told apart by the value read before.
     pub(super) fn find_stop(&mut self, stop: Stop) -> Option<f64> {
         let lap = self.lap_of(stop);
         let mut reach = self.group.span;
@@ -36,7 +36,8 @@ impl Dynamics<'_> {
         Some(reach)
     }
 
-    /// When the point of a stop on a closed rail passes it from behind, where it does not hold it: from then on it does.
+    /// Offset [s] at which the point of a stop on a closed rail passes it from behind, where it does not hold the
+    /// point: from then on it does.
     pub(super) fn find_passing(&mut self, stop: Stop) -> Option<f64> {
         let (lap, span) = (self.lap_of(stop)?, self.group.span);
         let values = self.sample_stop(stop, span, Some(lap));
@@ -46,13 +47,13 @@ impl Dynamics<'_> {
         })
     }
 
-    /// Length [m] of the rail of a stop, if that is closed.
+    /// Length [m] of the rail of a stop; `None` if it is not closed.
     fn lap_of(&self, stop: Stop) -> Option<f64> {
         let path = self.physics.mechanism.connectors[stop.id.index()].path();
         path.filter(|path| path.is_closed()).map(|path| path.length())
     }
 
-    /// Gaps of a stop [m], with what it may sink by, at the nodes of a part of the segment [s].
+    /// Gaps of a stop [m], raised by its slack, at the nodes of a part of the segment [s].
     fn sample_stop(&mut self, stop: Stop, reach: f64, lap: Option<f64>) -> [f64; NODES] {
         let mut values = [0.0; NODES];
         for index in 0..NODES {
@@ -63,7 +64,7 @@ impl Dynamics<'_> {
         values
     }
 
-    /// Gap of a stop [m], with what it may sink by.
+    /// Gap of a stop [m], raised by its slack, at an offset [s].
     fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
         self.place_at(offset);
         let connector = &self.physics.mechanism.connectors[stop.id.index()];
@@ -77,8 +78,8 @@ impl Dynamics<'_> {
         self.physics.laws[law].switch(index, &now)
     }
 
-    /// The first change of sign of a switching function. Just after one, as a group is made, it is zero: a
-    /// little later tells its sign.
+    /// Offset [s] of the first change of sign of a switching function. As a group is made just after a change, the
+    /// function is zero: its sign is read a little later.
     pub(super) fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
         let Group { span, start, made, .. } = *self.group;
         let sign_at = if start == made { span * SIGN_AT } else { 0.0 };
@@ -94,11 +95,11 @@ impl Dynamics<'_> {
         Some(self.beyond_switch((law, index), sign, offset))
     }
 
-    /// The first time [s] the clock tells after a switching function has changed its sign from the given one, near where
-    /// it does. Where it is zero nobody knows which branch the law takes, and what sets out there must be on the one
-    /// that it goes on.
+    /// First offset [s] that the clock resolves after a switching function has changed its sign from the given one,
+    /// near where it does. Where the function is zero the law may take either branch, and a segment that starts there
+    /// must be on the one that the law goes on with.
     fn beyond_switch(&mut self, (law, index): (usize, usize), sign: f64, offset: f64) -> f64 {
-        // Sums of what the clock tells and of offsets are rounded once more.
+        // Sums of clock times and offsets are rounded once more.
         let tick = f64::EPSILON * (self.start.seconds() + offset).abs().max(offset);
         let mut wait = tick;
         for _ in 0..MOST_TICKS {
@@ -114,7 +115,7 @@ impl Dynamics<'_> {
     }
 }
 
-/// A distance along a closed path [m] that is known up to laps, nearest to another.
+/// Distance [m] along a closed path, known up to laps: the one nearest to another.
 fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
     lap.map_or(value, |lap| value + lap * ((near - value) / lap).round())
 }
@@ -159,8 +160,8 @@ mod tests {
         }
     }
 
-    /// Offset [s] at which a clock rings that is to ring so long after the start of a segment, which is the
-    /// first of its group or not.
+    /// Offset [s] at which a clock rings that is set to a delay [s] after the start of a segment, which is the first of
+    /// its group or not.
     fn rings_at(delay: f64, is_first: bool) -> Option<f64> {
         let later = Time::from_seconds(1.0);
         let body = BodyId(0);

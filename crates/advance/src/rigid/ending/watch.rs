@@ -1,9 +1,8 @@
-//! What ends a group's segment early: a contact force that falls to zero, a contact that runs off its
-//! features or, touched without force, sinks; stops that close and force laws that change branch are in
-//! `switches`.
+//! Early ends of a group's segment: a contact force falls to zero, a contact runs off its features or, touched without
+//! force, sinks; stops that close and force laws that change branch are in `switches`.
 //!
-//! Each is a function along the dense output whose first fall below zero is an event. Places are read at
-//! once, forces only when the time comes up to which none can vanish.
+//! Each is a function along the dense output whose first fall below zero is an event. Functions of positions are read
+//! at once, forces only when the time comes up to which none can vanish.
 
 use super::crossing::{
     EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
@@ -16,45 +15,50 @@ use crate::rigid::step::group::{Group, SegmentEnd};
 use crate::rigid::step::rows::{HeldRow, RowSource};
 use crate::rigid::step::segment::StepControl;
 
-/// A force below this part of the loads of its bodies is none: more than the rounding of nearly redundant contacts.
+/// Force that counts as none, as a fraction of the loads of its bodies: more than the rounding of nearly redundant
+/// contacts.
 const FORCE_SHARE: f64 = 1e-9;
 
-/// With so many times what counts as no force a contact may seem to pull by rounding when it is held.
+/// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
 const PULL: f64 = 16.0;
 
-/// Part of what a contact without force may sink by, by which it may vary and stays where it is.
+/// Change of the gap of a contact without force, as a fraction of the distance by which it may sink, up to which it
+/// stays where it is.
 const STILL_SHARE: f64 = 1e-3;
 
-/// Part of the accuracy by which a held contact may be too near or too far within a step.
+/// Error of a held contact's gap within a step that is allowed, as a fraction of the accuracy.
 const INNER_SHARE: f64 = 0.5;
-/// Errors of a step by which a connector may be off within it: dense output errs by some tens of times what
-/// ends do, and by much more where connectors tell angles by little.
+/// Error of a connector within a step that is allowed, as a multiple of the error of a step: dense output errs some
+/// tens of times more than the ends of steps, and much more where connectors determine angles poorly.
 const INNER_ERRORS: f64 = 50.0;
-/// Parts of a step at which that is read: the middle, for connectors too, and, since errors often change sign
-/// there, two more for contacts.
+/// Place in a step, as a fraction of it, at which the errors of connectors are read.
 const MIDDLE: f64 = 0.5;
+/// Places in a step at which the errors of contacts are read: since errors often change sign in the middle, two more.
 const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
 
-/// A force may begin to fall this many times as fast as it varies along a step.
+/// Rate at which a force may begin to fall, as a multiple of its variation along a step.
 const STEEP: f64 = 4.0;
-/// Cap on the looks for an end of a rail's piece that comes before the one that was found, and the part of the way to
-/// that from which on it is the same.
+/// Largest number of searches for an end of a rail's piece that comes before the one that was found.
 const MOST_ZOOMS: usize = 16;
+/// Fraction of the way to an end from which on another end is the same.
 const EARLIER_BY: f64 = 1.0 - 1e-6;
 
-/// Functions of the rows along a segment of which the first to fall below zero is an event.
+/// Functions of the rows along a segment, the first of which to fall below zero is an event.
 pub(super) struct Watch {
-    /// Places the bodies at an offset [s], with all that reading needs.
+    /// Places the bodies at an offset [s], with all that reading any row needs.
     place: fn(&mut Dynamics<'_>, f64),
-    /// The same of those on which a row depends.
+    /// Places the bodies on which one row depends at an offset [s].
     pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
-    /// The value of a row there.
+    /// Value of a row with the bodies in place.
     pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
-    /// When a row that falls at an offset [s] does so in earnest, if at all; the bodies are in place there.
+    /// Offset [s] at which a row that falls at an offset [s] does so in earnest, if at all; the bodies are in place
+    /// there.
     genuine: fn(&mut Dynamics<'_>, usize, f64) -> Option<f64>,
+    /// End of the segment by the fall of a row.
     pub(super) end: fn(usize) -> SegmentEnd,
 }
 
+/// Contact forces that fall to zero.
 const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
@@ -62,6 +66,7 @@ const RELEASES: Watch = Watch {
     genuine: |_, _, offset| Some(offset),
     end: SegmentEnd::Release,
 };
+/// Contacts and points of rails that run off their features or pieces.
 const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_row_at(row, offset),
@@ -69,18 +74,19 @@ const CHANGES: Watch = Watch {
     genuine: |_, _, offset| Some(offset),
     end: SegmentEnd::Change,
 };
+/// Contacts touched without force that sink.
 const SINKINGS: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
     place_for: |dynamics, row, offset| dynamics.put_idle_at(row, offset),
     read: |dynamics, row| dynamics.height(row),
-    // What sinks beyond the ends of its features, or leans over, has neighbours that tell.
+    // A contact that sinks beyond the ends of its features, or leans over, has neighbours that end the segment.
     genuine: |dynamics, row, offset| {
         if dynamics.is_within(row) { Some(offset) } else { dynamics.first_sinking_within(row) }
     },
     end: SegmentEnd::Sink,
 };
 
-/// Values of watched functions at the nodes, row by row; none of what needs no watch.
+/// Values of watched functions at the nodes, row by row; empty lists where nothing needs a watch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Samples {
     forces: Vec<[f64; NODES]>,
@@ -90,16 +96,16 @@ pub(crate) struct Samples {
     early: Vec<[f64; EARLY]>,
 }
 
-/// Makes room for so many rows.
+/// Makes room for a number of rows.
 fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
     list.clear();
     list.resize(rows, [0.0; NODES]);
 }
 
 impl Dynamics<'_> {
-    /// Finds what ends the segment early, whose dense output and end forces are known. Whether a contact
-    /// loses its force takes an evaluation for every place looked at, so that waits until the time up to
-    /// which none can: mostly something else has happened by then.
+    /// Finds the event that ends the segment early; its dense output and end forces must be known. Whether a contact
+    /// loses its force takes an evaluation for every offset tried, so that waits until the time up to which none can:
+    /// mostly another event has come by then.
     pub(crate) fn find_event(&mut self) {
         self.group.event = self.find_geometric_event();
         let firm = self.firm_part().map(|part| part * self.group.span);
@@ -110,8 +116,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Finds the first contact that loses its force on the segment, if that comes before what ends it
-    /// otherwise; not before the time of the look.
+    /// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
+    /// before the offset of the look.
     pub(crate) fn look_for_release(&mut self) {
         let from = self.group.look.take().unwrap_or(0.0);
         self.find_least_forces();
@@ -134,7 +140,7 @@ impl Dynamics<'_> {
         self.stage.samples.forces = forces;
     }
 
-    /// The release of a contact that pulls as the group is made, by more than rounding.
+    /// Release of a contact that pulls by more than rounding as the group is made.
     fn pull_at_start(&self, forces: &[[f64; NODES]]) -> Option<(f64, SegmentEnd)> {
         let Group { start, made, .. } = *self.group;
         if self.group.is_patient || start != made {
@@ -145,7 +151,7 @@ impl Dynamics<'_> {
         Some((0.0, SegmentEnd::Release(row)))
     }
 
-    /// The earliest event that bodies' places tell.
+    /// Earliest event that is found without the forces of contacts.
     fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest = Earliest::default();
         let samples = self.sample_rows();
@@ -182,8 +188,8 @@ impl Dynamics<'_> {
         heights.iter().all(|sample| sample.iter().all(|height| (height - sample[0]).abs() <= still))
     }
 
-    /// Finds for each row the force [N] below which it has none: part of the loads of the less loaded of its bodies, of
-    /// their accelerations and of all their rows.
+    /// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
+    /// which is that of the body's acceleration plus the forces of all its rows.
     fn find_least_forces(&mut self) {
         let group = &*self.group;
         let count = group.bodies.len();
@@ -205,10 +211,9 @@ impl Dynamics<'_> {
         self.stage.gross = gross;
     }
 
-    /// By how much held contacts are off between the ends of the segment, where dense output is less exact,
-    /// in units of what is allowed so that nothing overlaps and what touches is seen to, or connectors, in
-    /// units of what steps may err by. The largest error of a connector is noted, and the least gap of a
-    /// contact.
+    /// Largest error of held rows between the ends of the segment, where dense output is less exact, as a multiple of
+    /// the allowed one: for contacts such that nothing overlaps and none is missed, for connectors by the error that
+    /// steps may make. Notes the largest error of a connector and the least gap of a contact.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
         (self.group.largest_error, self.group.least_gap) = (0.0, None);
         let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
@@ -229,7 +234,7 @@ impl Dynamics<'_> {
         excess.max(self.group.largest_error / most.max(least))
     }
 
-    /// Forces of the rows at an offset [s] of the segment, left in the stage.
+    /// Evaluates the forces of the rows at an offset [s] of the segment, and leaves them in the stage.
     pub(crate) fn evaluate_at(&mut self, offset: f64) {
         self.find_state_at(offset);
         let trial = std::mem::take(&mut self.stage.trial);
@@ -243,10 +248,10 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
     }
 
-    /// Up to which part of the step no contact comes near to losing its force, as its stages tell; none if
-    /// that is so all along. A force is firm where its least value at the stages and both ends is more than
-    /// all of them vary by, and for as long as it would take to vanish several times as fast as it varies.
-    /// Implicit steps have too few stages to tell.
+    /// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
+    /// is so all along. A force is firm all along if its least value at the stages and both ends exceeds its variation,
+    /// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
+    /// stages to tell.
     fn firm_part(&self) -> Option<f64> {
         let Group { rows, forces, end_forces, .. } = &*self.group;
         let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
@@ -263,7 +268,7 @@ impl Dynamics<'_> {
         contacts.filter_map(part).min_by(f64::total_cmp)
     }
 
-    /// Samples what places tell of the rows at the nodes.
+    /// Samples at the nodes the functions of the rows that need no forces.
     fn sample_rows(&mut self) -> Samples {
         let mut samples = std::mem::take(&mut self.stage.samples);
         let Samples { rooms, heights, early, .. } = &mut samples;
@@ -290,8 +295,8 @@ impl Dynamics<'_> {
         samples
     }
 
-    /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell
-    /// that all of them stay; else the samples of those that do are without end.
+    /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell that all of
+    /// them stay; else the samples of rows that stay are infinite.
     fn find_who_may_leave(&mut self, rooms: &mut Vec<[f64; NODES]>) {
         rooms.clear();
         let mechanism = &self.physics.mechanism;
@@ -309,7 +314,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The earliest contact that sinks before the first node.
+    /// Offers the earliest contact that sinks before the first node.
     fn find_early_sinking(&mut self, earliest: &mut Earliest, samples: &Samples) {
         for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
             let fall = early_fall(heights[0], early, self.group.span, |offset| {
@@ -324,7 +329,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The earliest contact that comes onto its features and runs off again before the first node: what has
+    /// Offers the earliest contact that comes onto its features and runs off again before the first node: one that has
     /// just taken over from its neighbour starts at the end of its features, or beyond by rounding.
     fn find_early_change(&mut self, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
         for (row, values) in rooms.iter().enumerate() {
@@ -336,9 +341,9 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Ends of rails' pieces that were passed for a moment before those that were found. A long step may hold the way up
-    /// and down a piece and far beyond, so it is looked at again up to what was found, as often as that is earlier; and
-    /// from its start on, where by rounding that lies before the piece.
+    /// Offers ends of rails' pieces that were passed for a moment before those that were found. A long step may hold
+    /// the way up and down a piece and far beyond: it is searched again up to the end that was found, as often as that
+    /// is earlier; and from its start on, where by rounding that lies before the piece.
     fn find_earlier_ends(&mut self, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
         for (row, rooms) in rooms.iter().enumerate() {
             let is_rail = matches!(self.group.rows[row].source, RowSource::Connector(..));
@@ -348,7 +353,8 @@ impl Dynamics<'_> {
                     break;
                 }
                 let limit = earliest.limit().unwrap_or(self.group.span);
-                // What rounding makes of a place at the end of a piece is no way beyond it, nor is where it sets out from.
+                // Neither the rounding of a place at the end of a piece nor the place from which the point sets out
+                // counts as beyond.
                 let margin = 2.0 * self.physics.mechanism.change_margin().max(-rooms[0]);
                 let mut room_at = |offset: f64| {
                     self.put_row_at(row, offset);
@@ -365,7 +371,7 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The forces of all rows at a node, raised by what counts as none.
+    /// Samples the forces of all rows at a node, raised by the force that counts as none.
     fn sample_forces(&self, samples: &mut [[f64; NODES]], index: usize) {
         let forces = match index {
             0 => &self.group.forces,
@@ -379,10 +385,10 @@ impl Dynamics<'_> {
         }
     }
 
-    /// The earliest fall of any row of a watch, if it comes before what was found so far.
+    /// Offers the earliest fall of any row of a watch, if it comes before the end found so far.
     ///
-    /// To place the bodies costs more than to read a row: once a fall is found, all rows are read there, and
-    /// those that have not fallen by then need no search of their own.
+    /// Placing the bodies costs more than reading a row: once a fall is found, all rows are read there, and those that
+    /// have not fallen by then need no search of their own.
     fn find_first(&mut self, earliest: &mut Earliest, samples: &[[f64; NODES]], watch: &Watch) {
         if samples.is_empty() {
             return;
@@ -413,9 +419,9 @@ impl Dynamics<'_> {
         self.stage.there = there;
     }
 
-    /// When a contact that is touched without force sinks on its features, beyond which it was seen to: what
-    /// is turned away may be turned back, and then sinks at once. What has gone round its body by then, and
-    /// lies behind its features, does not.
+    /// Offset [s] at which a contact that is touched without force sinks on its features, although it was first seen to
+    /// sink beyond them: if it is turned away it may be turned back, and then sinks at once. A contact that has gone
+    /// round its body by then, and lies behind its features, does not count.
     fn first_sinking_within(&mut self, row: usize) -> Option<f64> {
         let span = self.group.span;
         let mut read = |offset: f64| {
@@ -430,20 +436,20 @@ impl Dynamics<'_> {
         (gap > -mechanism.tolerances.distance_tol()).then_some(fall)
     }
 
-    /// How far a row is from running off its features, without end for one that cannot.
+    /// Distance [m] of a row from running off its features, infinite for one that cannot.
     pub(crate) fn way_to_end(&self, row: usize) -> f64 {
         self.physics.mechanism.way_to_end(&self.group.rows[row], &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
-    /// Distance [m] of a contact that is touched without force from its least gap.
+    /// Height [m] of a contact that is touched without force above its least gap.
     fn height(&self, row: usize) -> f64 {
         let row = &self.group.idle[row];
         self.physics.mechanism.gap(row, &self.stage.movings) - row.gap
     }
 
-    /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has
-    /// them: the projection onto the held rows may have moved their bodies, and what starts below its least
-    /// gap is not seen to sink.
+    /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
+    /// projection onto the held rows may have moved their bodies, and a contact that starts below its least gap is not
+    /// seen to sink.
     pub(crate) fn lower_idle(&mut self) {
         let Group { bodies, end_state, idle, .. } = &mut *self.group;
         if idle.is_empty() {
@@ -457,8 +463,8 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Lets contacts stay where they are if lifting some has not brought them to their gaps: where rows
-    /// contradict each other, each step would be thrown off anew.
+    /// Sets the held gaps of contacts to their present ones if lifting some has not brought them to their gaps: where
+    /// rows contradict each other, each step would be thrown off anew.
     pub(crate) fn leave_lifted(&mut self) {
         let Group { bodies, end_state, rows, .. } = &mut *self.group;
         if !rows.iter().any(|row| row.is_lifted) {
@@ -479,13 +485,13 @@ impl Dynamics<'_> {
         self.idle_way(row) >= 0.0
     }
 
-    /// How far [m] a contact that is touched without force is from running off its features, without end if it cannot.
+    /// Distance [m] of a contact that is touched without force from running off its features, infinite if it cannot.
     fn idle_way(&self, row: usize) -> f64 {
         let row = &self.group.idle[row];
         self.physics.mechanism.way_to_end(row, &self.stage.movings).unwrap_or(f64::INFINITY)
     }
 
-    /// Force [N] of a row, raised by what counts as none; without end for one of either sign.
+    /// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
     fn pressure(&self, row: usize) -> f64 {
         if self.group.rows[row].bilateral {
             f64::INFINITY
@@ -502,7 +508,7 @@ mod tests {
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::BodyId;
 
-    /// Part of its step up to which a contact is firm whose force [N] goes from the first number to the second.
+    /// Fraction of the step up to which a contact is firm, if its force [N] goes from `start` to `end`.
     fn firm_part(start: f64, end: f64) -> Option<f64> {
         let mut system = resting_discs(&[0.0]);
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
@@ -521,7 +527,7 @@ mod tests {
         // It falls by 8 N along the step, and to begin with no more than four times as fast.
         assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
         assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
-        // What starts without force is looked at once.
+        // A contact that starts without force is looked at at once.
         assert_eq!(firm_part(0.0, 5.0), Some(0.0));
         assert_eq!(firm_part(0.0, 0.0), Some(0.0));
     }
@@ -549,7 +555,7 @@ mod tests {
             system.queue.time_of(system.source_id(Source::Group(leader))),
             Some(group.start.plus(offset))
         );
-        // What is found for a time that has gone by happens now.
+        // An event found for a time that has gone by happens now.
         let mut group = system.groups.take(leader).expect("it goes on");
         let late = 2.0 * group.span;
         (group.event, group.look) = (None, Some(late));

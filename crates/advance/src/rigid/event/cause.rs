@@ -1,4 +1,4 @@
-//! Why an event is handled, and the buffers of doing so.
+//! The cause of an event, and the buffers of its handling.
 
 use super::impacts::ImpactReport;
 use super::region::{Region, Touch};
@@ -8,10 +8,10 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, BodyState, ConnectorId};
 use halfgap_contact::Impact;
 
-/// Why an event is handled.
+/// Cause of an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Cause {
-    /// Nothing has happened yet: what rests within `distance_tol` counts as touching.
+    /// The start: contacts at rest within `distance_tol` count as touching.
     Start,
     /// A contact fires: it takes part, however near it is to the ends of its features.
     Fired(Touch),
@@ -19,13 +19,13 @@ pub(crate) enum Cause {
     Taut(ConnectorId),
     /// A contact has run off its features: its neighbours take over, if they touch.
     RunOff(Touch),
-    /// A contact has lost its force: what is found of it again may be what others were moved by meanwhile.
+    /// A contact has lost its force: a small force found on it now may come from the motion of other bodies meanwhile.
     Released(Touch),
-    /// What has sunk is put back, where contacts carry impulses only.
+    /// Sunk contacts are put back, where contacts carry impulses only.
     Tick,
-    /// A point on a rail goes over a smooth joint, where what stops connectors is rounding and no impact.
+    /// The point of a rail goes over a smooth joint: velocities stopped by its connectors are rounding, not an impact.
     SmoothJoint,
-    /// None of these: a corner of a rail, a force law, somebody outside.
+    /// Any other cause: a corner of a rail, a force law, an intervention of the caller.
     #[default]
     Other,
 }
@@ -51,19 +51,19 @@ pub(crate) struct EventWork {
     pub(crate) seeds: Vec<BodyId>,
     /// Impulses that the contacts of the region carry until its low hops have come down [N s].
     pub(crate) carried: Vec<f64>,
-    /// States of bodies to go back to: before contacts were stopped as bilateral ones, or groups were cut.
+    /// States of bodies to restore, from before contacts were stopped as bilateral ones or groups were cut.
     pub(crate) before: Vec<BodyState>,
-    /// How contacts were stopped as bilateral ones.
+    /// Report of the last impact without elasticity that stopped contacts or stilled hops.
     pub(crate) stop: ImpactReport,
     pub(super) lift: Lift,
-    /// How often the pair that fired has done so without time going by, beyond what is calm.
+    /// Number of times, beyond `CALM_REPEATS`, that the pair that fired has done so without time going by.
     pub(super) repeats: u32,
-    /// The contact that fired does not close: the search takes its rounding for motion.
+    /// True if the contact that fired does not close: the search took its rounding for motion.
     pub(super) fired_open: bool,
 }
 
 impl RigidSystem {
-    /// Handles an event, with the buffers for it.
+    /// Runs an action on an event of the given cause, with the buffers of events.
     pub(crate) fn with_work<T>(
         &mut self,
         cause: Cause,

@@ -1,4 +1,4 @@
-//! Connectors among the events: their rows in a region, ropes that go taut.
+//! Connectors in events: their records in a region, and when ropes go taut.
 
 use super::region::Region;
 use crate::rigid::by_body::ByBody;
@@ -16,20 +16,20 @@ use halfgap_collision::{
     MotionBounds, Moving, RailHint, Rope, RopeSearch, rope_contact,
 };
 
-/// Number of times at which a rope is looked at, whether it has gone slack before it is taut again.
+/// Number of times at which a rope is tested for having gone slack before it is taut again.
 const LOOKS: u32 = 8;
 
-/// All connectors, the bodies that they are tied to, and what is known of each.
+/// All connectors with their states, and lists of them by body.
 #[derive(Clone, Debug)]
 pub(crate) struct Connectors {
     pub(crate) all: Vec<Connector>,
-    /// Those of each body.
+    /// Connectors of each body.
     of: ByBody<ConnectorId>,
     pub(crate) states: Vec<ConnectorState>,
 }
 
 impl Connectors {
-    /// Connectors between so many bodies.
+    /// Lists connectors between a number of bodies.
     pub(crate) fn new(all: Vec<Connector>, body_count: usize) -> Self {
         let ids = (0..).map(ConnectorId);
         Self {
@@ -45,28 +45,31 @@ impl Connectors {
     }
 }
 
-/// What is known of a connector beside its parts.
+/// State of a connector.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ConnectorState {
-    /// Where on a rail the point is.
+    /// Place of its point on a rail.
     pub(crate) hint: Option<RailHint>,
-    /// The sides of the corner of a rail in which the point is, before it and after it.
+    /// Sides, before and after, of the corner of a rail that the point is in; `None` if it is in none.
     pub(super) corner: Option<[RailHint; 2]>,
-    /// A rope does not go taut before this time, other than predicted.
+    /// Time before which a rope does not go taut.
     clear: Time,
-    /// When it goes taut; `None` if it does not while the motions are known, or the search goes on then.
+    /// Time at which a rope goes taut; `None` if it does not while the motions are known, or the search has not come so
+    /// far.
     taut: Option<Time>,
-    /// By how much longer [m] a rope is taken that has just gone slack.
+    /// Excess length [m] that a rope is given while it is at its length and does not tighten: it goes taut at the sum
+    /// of both.
     slack: f64,
-    /// It is unilateral, and held: wherever that was begun, it stays.
+    /// True if it is unilateral and held: its row then takes part in events at any gap.
     held: bool,
-    /// When the rope went taut last, or the stop was met, and how often before that without time going by.
+    /// Time at which the rope last went taut, or the stop was met.
     last_taut: Option<Time>,
+    /// Number of times that it did so before without time going by.
     repeats: u32,
 }
 
 impl ConnectorState {
-    /// Where a row of the connector looks for its rail.
+    /// Hint for the place of a row on the rail: that of a side, if the point is in a corner.
     pub(crate) fn hint_of(&self, row: usize) -> Option<&RailHint> {
         match &self.corner {
             Some(sides) => sides.get(row),
@@ -74,8 +77,8 @@ impl ConnectorState {
         }
     }
 
-    /// How often before a rope has gone taut, or a stop was met, at the present time: a rope lies nearer to its
-    /// length than the search can tell.
+    /// Number of earlier times that the rope has gone taut, or the stop was met, at the present time: a rope then lies
+    /// nearer to its length than the search can tell.
     pub(super) fn repeats_at(&self, now: Time) -> u32 {
         if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
     }
@@ -88,7 +91,7 @@ impl ConnectorState {
 }
 
 impl RigidSystem {
-    /// True if rows of a connector that only keep gaps from closing were held until now.
+    /// True if unilateral rows of a connector were held until now.
     pub(super) fn is_held_unilaterally(&self, id: ConnectorId) -> bool {
         let state = &self.connectors.states[id.index()];
         state.held || state.corner.is_some()
@@ -98,7 +101,7 @@ impl RigidSystem {
         &self.connectors.all[id.index()]
     }
 
-    /// Adds the records of the connectors of a body of the region.
+    /// Adds the records of the connectors of a body of the region, and the bodies at their other ends.
     pub(crate) fn collect_connectors(&self, region: &mut Region, place: usize, time: Time) {
         let body = region.bodies[place];
         for &id in self.connectors.of(body) {
@@ -115,8 +118,8 @@ impl RigidSystem {
                 if !is_held && record.geometry.distance > self.settings.tolerances.accuracy {
                     continue;
                 }
-                // What neither closes nor opens is held, or may be; what is held does not graze, though dense output
-                // may have it closing.
+                // A row at rest is held, or may be; a held rope does not graze, though dense output may have it
+                // closing.
                 let closes = !is_held && record.motion.normal_velocity < -self.rest_speed();
                 if is_rope(connector) && closes && self.rope_grazes(id) {
                     continue;
@@ -129,13 +132,13 @@ impl RigidSystem {
         }
     }
 
-    /// How many rows a connector has now: two where the point of a rail is in a corner.
+    /// Number of rows of a connector now: two where the point of a rail is in a corner.
     fn row_count(&self, id: ConnectorId) -> usize {
         self.connectors.states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
     }
 
-    /// The record of a row of a connector, whose bodies move as given at a time. The sides of a corner only
-    /// push, and without elasticity.
+    /// Record of a row of a connector whose bodies move as given at a time. The sides of a corner are unilateral and
+    /// without elasticity.
     pub(super) fn connector_record(
         &self,
         id: ConnectorId,
@@ -157,7 +160,7 @@ impl RigidSystem {
         record
     }
 
-    /// The record of a connector's row anew, with the response that it has.
+    /// Measures the record of a connector's row anew, and keeps its response.
     pub(crate) fn remeasure_connector(&self, record: &mut Collision, id: ConnectorId, row: u32, time: Time) {
         let moving = self.connector(id).bodies().map(|body| self.moving_at(body, time));
         let response = record.response;
@@ -172,7 +175,7 @@ impl RigidSystem {
         connector.measure_near(row, &a, &b, self.hint_at(id, row, time).as_ref())
     }
 
-    /// What makes the row of a record.
+    /// Source of the row of a record.
     pub(crate) fn source_of(&self, record: &Collision) -> Option<RowSource> {
         if let Detector::Connector { id, row } = record.parties.detector {
             return Some(RowSource::Connector(id, row as usize));
@@ -180,7 +183,7 @@ impl RigidSystem {
         Some(RowSource::Contact([record.parties.primary.feature()?, record.parties.normal.feature()?]))
     }
 
-    /// Notes which ropes and stops of a region are held from now on.
+    /// Notes which unilateral connectors of a region are held from now on.
     pub(crate) fn note_held_connectors(&mut self, region: &Region, settling: &Settling) {
         for &body in &region.bodies {
             let Connectors { all, of, states } = &mut self.connectors;
@@ -194,7 +197,7 @@ impl RigidSystem {
         }
     }
 
-    /// Predicts when the ropes of a region go taut.
+    /// Predicts when the ropes of a region's bodies go taut.
     pub(crate) fn predict_ropes(&mut self, region: &Region) {
         let sink = self.sink();
         for &body in &region.bodies {
@@ -212,7 +215,7 @@ impl RigidSystem {
         }
     }
 
-    /// Searches on for the ropes of some bodies, whose motions are known for longer now.
+    /// Continues the search for ropes of some bodies, whose motions are now known for longer.
     pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
         for &body in bodies {
             for index in 0..self.connectors.of(body).len() {
@@ -242,7 +245,7 @@ impl RigidSystem {
         }
         let mut found = self.search_rope(id, rope, from, until);
         if let Some(slack) = self.slackens(id, from, found) {
-            // It comes back to where any rope goes taut.
+            // Once slack it goes taut at its own length.
             self.connectors.states[id.index()].slack = 0.0;
             from = slack;
             found = self.search_rope(id, rope, from, until);
@@ -257,7 +260,7 @@ impl RigidSystem {
         if taut.is_some() || searches_on { self.queue.set(source, clear) } else { self.queue.clear(source) }
     }
 
-    /// Searches from a time on for when a rope goes taut, as it is taken now.
+    /// Searches from a time on for the time at which a rope goes taut, with its present excess length.
     fn search_rope(&self, id: ConnectorId, rope: &Rope, from: Time, until: Time) -> RopeSearch {
         let [a, b] = self.connector(id).bodies();
         let rope = Rope { length: rope.length + self.connectors.states[id.index()].slack, ..*rope };
@@ -270,15 +273,15 @@ impl RigidSystem {
             }
         };
         let ((path_a, offset_a), (path_b, offset_b)) = (path(a), path(b));
-        // Bounds over much longer than the ends need to move by the rope's length would say little.
+        // Bounds over much more than the time in which the ends move by the rope's length would say little.
         let wait =
             crossing_time(&rope, &path_a.bounds(offset_a, offset_a), &path_b.bounds(offset_b, offset_b));
         let span = until.since(from).min(wait);
         rope_contact(&rope, (&path_a, offset_a), (&path_b, offset_b), 0.0, span, &self.settings.search)
     }
 
-    /// When a rope that is taken longer than it is has gone slack by clearly more than that, on the way to
-    /// where a search from a time on has come.
+    /// Time at which a rope with an excess length has clearly gone slack, on the way to the time that a search from a
+    /// time on has come to; `None` if it has no excess, or does not slacken.
     fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
         let slack = self.connectors.states[id.index()].slack;
         if slack <= 0.0 {
@@ -298,23 +301,23 @@ impl RigidSystem {
         let hint = self.hint_at(id, 0, self.now);
         let [a, b] = connector.bodies().map(|body| self.moving_at(body, self.now));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
-        // A rail's end that fires again without time going by lies beyond by more than its point sets out by: it
-        // fires once that has sunk on.
+        // A stop of a rail that fires again without time going by lies nearer than the search can tell: it fires again
+        // only when its point has sunk further, by more each time.
         let repeats = f64::from(self.connectors.states[id.index()].repeats_at(self.now));
         let lies_beyond = connector.is_stop() && repeats > 0.0;
         let slack = if lies_beyond { repeats * self.sink() + (-sample.gap).max(0.0) } else { 0.0 };
         Stop { id, hint, slack: slack.max(self.slack_of(&sample)), is_noted: false }
     }
 
-    /// How far [m] a unilateral connector may sink from where it was measured before it fires: more than
-    /// nothing where it is touched.
+    /// Distance [m] by which a unilateral connector may sink from where it was measured before it fires: positive only
+    /// where it is touched and does not open.
     fn slack_of(&self, sample: &ConnectorSample) -> f64 {
         let touches = sample.gap <= self.settings.tolerances.accuracy;
         let rests = touches && sample.kinematics.rate <= self.rest_speed();
         if rests { self.sink() + (-sample.gap).max(0.0) } else { 0.0 }
     }
 
-    /// True if the event of a connector is a rope that goes taut; otherwise its search goes on.
+    /// True if the event of a connector is a rope that goes taut; otherwise the search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
         let now = self.now;
         let is_taut = self.connectors.states[id.index()].taut.is_some();
@@ -332,7 +335,7 @@ impl RigidSystem {
     }
 }
 
-/// About the time [s] in which the ends of a rope, as they move now, go as far as it is long.
+/// Rough time [s] in which the ends of a rope, as they move now, go as far as the rope is long.
 fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
     let turning = a.angular_speed * rope.point_a.length() + b.angular_speed * rope.point_b.length();
     let speed = a.velocity.largest_difference(&b.velocity) + turning;

@@ -1,12 +1,12 @@
 //! Corners of rails: the point of a rail comes to one, may rest in it, and leaves it along one of its sides.
 //!
-//! Where a path turns, the point is on the piece before the corner or on the one after it. With normals n that
-//! face into the angle between the two, on either piece n.u = 0 of its own and n.u >= 0 of the other one: what
-//! two rows that only push keep to, but that they would let the point go from both. So the point of a rail has
-//! two unilateral rows from when it comes to a corner until one of them opens, or carries no force; the other
-//! goes on as the bilateral row of its piece. Where both would open, the point is kept on one of the sides: the force,
-//! or the impulse, then is one that holds it back. A stop that lies in a corner is at the end of the piece along which
-//! the point comes: what bounces off it does not turn.
+//! Where a path turns, the point is on the piece before the corner or on the one after it. Let the normals n face into
+//! the angle between the two, and u be the point's velocity: then n.u = 0 for its own piece and n.u >= 0 for the other
+//! one. Two unilateral rows keep to this, except that they would let the point leave both pieces. So the point of a
+//! rail has two unilateral rows from when it comes to a corner until one of them opens, or carries no force; the other
+//! goes on as the bilateral row of its piece. Where both would open, the point is kept on one of the sides, whose force
+//! or impulse then holds it back. A stop that lies in a corner is at the end of the piece along which the point comes:
+//! a point that bounces off it does not turn.
 
 use super::cause::{Cause, EventWork};
 use super::events::Booking;
@@ -18,20 +18,20 @@ use crate::rigid::system::RigidSystem;
 use glam::DVec2;
 use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
 
-/// How often without time going by a stop in a corner is met.
+/// Number of times that a stop in a corner is met without time going by.
 const MOST_AGAIN: u32 = 2;
 
-/// A corner of a rail in which its point is, in a region.
+/// A corner of a rail that holds the rail's point, in a region.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     id: ConnectorId,
-    /// Places of the records of its sides.
+    /// Indices of the records of its sides, before and after.
     records: [usize; 2],
 }
 
 impl RigidSystem {
-    /// Notes which points of rails are in a corner at the start. One that moves is on the side along which it
-    /// does: if that leads through the corner, it comes to it at once.
+    /// Notes which points of rails are in a corner at the start. A moving point is put on the side along which it
+    /// moves: if that leads through the corner, the point comes to it at once.
     pub(super) fn note_corners(&mut self) {
         let (now, fast) = (self.now, self.settings.tolerances.velocity_tol);
         for index in 0..self.connectors.all.len() {
@@ -50,9 +50,9 @@ impl RigidSystem {
         }
     }
 
-    /// A point on a rail goes on along the next piece; where that is at a corner, the velocity across it is stopped.
+    /// Takes the point of a rail along the next piece of its path; at a corner, its velocity across that is stopped.
     pub(super) fn pass_joint(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
-        // What is met again at once rests there: in the corner, which holds it as well.
+        // A point that meets the stop again at once rests there, in the corner, which holds it as well.
         if let Some(stop) = self.stop_in_corner(id)
             && self.connectors.states[stop.index()].repeats_at(self.now) < MOST_AGAIN
         {
@@ -63,7 +63,7 @@ impl RigidSystem {
         self.handle_impact(work)
     }
 
-    /// A rope goes taut, or a point comes to the stop of its rail.
+    /// Handles a rope that goes taut, or a point that comes to the stop of its rail.
     pub(super) fn meet_stop(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
         work.region.cause = Cause::Taut(id);
         if self.connector(id).is_stop() {
@@ -72,7 +72,7 @@ impl RigidSystem {
         self.handle_impact(work)
     }
 
-    /// The stop that keeps the point of a rail on the piece along which it comes, where that ends in a corner.
+    /// Finds the stop that keeps the point of a rail on the piece along which it comes, where that ends in a corner.
     fn stop_in_corner(&self, rail: ConnectorId) -> Option<ConnectorId> {
         let hint = self.connectors.states[rail.index()].hint?;
         let moving = self.connector(rail).bodies().map(|body| self.moving_at(body, self.now));
@@ -89,8 +89,8 @@ impl RigidSystem {
         })
     }
 
-    /// Takes a point that an impact drives out of its corner, from both sides at once, along one of them: which
-    /// has to hold it back, in the same impact. True if there is one.
+    /// Puts a point that an impact drives off both sides of its corner on one of them, whose row then holds it back in
+    /// the same impact. True if there is such a point.
     pub(super) fn hold_back(&mut self, region: &mut Region, rates: &[f64]) -> bool {
         let (rest, fast) = (self.rest_speed(), self.settings.tolerances.velocity_tol);
         let opening = |corner: Corner| corner.records.map(|record| rates[record]);
@@ -104,8 +104,8 @@ impl RigidSystem {
         true
     }
 
-    /// Takes a point that two forces do not hold in its corner along one of the sides, and stops what of its
-    /// velocity is across that. True if there is one: forces are to be found anew.
+    /// Puts a point that two forces do not hold in its corner on one of the sides, and stops its velocity across that
+    /// side. True if there is such a point: forces are to be found anew.
     pub(super) fn leave_loose_corner(&mut self, work: &mut EventWork) -> Result<bool, AdvanceError> {
         let held = &work.settling.held;
         let sides = |id: ConnectorId| {
@@ -126,8 +126,8 @@ impl RigidSystem {
         Ok(true)
     }
 
-    /// True for a side from which the point of a rail parts slowly: what presses it into the corner keeps it there,
-    /// for rounding of places makes such speeds again and again.
+    /// True for a side from which the point of a rail parts slowly: the force that presses it into the corner keeps it
+    /// there, for rounding of positions produces such speeds again and again.
     pub(crate) fn stays_in_corner(&self, record: &Collision) -> bool {
         let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
         is_slow && record.connector().is_some_and(|id| self.connectors.states[id.index()].corner.is_some())
@@ -147,7 +147,8 @@ impl RigidSystem {
         is_still && only_rows && self.laws.of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
     }
 
-    /// Stops what of the velocity of a point that leaves a corner is across its side: too slow for an impact.
+    /// Stops the velocity of a point across the side along which it leaves a corner; that velocity is too slow for an
+    /// impact.
     fn stop_across(&mut self, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
         let (now, rest) = (self.now, self.rest_speed());
         let mut records = work.region.records.iter();
@@ -162,9 +163,10 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// The point of a rail leaves its corner along the side from which it parts more slowly, as easily as each is
-    /// moved; if it does from both alike, on along the path. Held there, its row opens the other one: with free
-    /// rates f and the matrix A of both, by f_j - (A_ij/A_ii) f_i, which is positive for the lesser f_i/sqrt(A_ii).
+    /// Takes the point of a rail out of its corner along the side from which it parts more slowly, relative to how
+    /// easily each row is moved; if both are equal, on along the path. Held there, its row opens the other one: with
+    /// free rates f and the matrix A of both rows, the other one opens at f_j - (A_ij/A_ii) f_i, which is positive for
+    /// the lesser f_i/sqrt(A_ii).
     fn take_slower(&mut self, region: &mut Region, corner: Corner, opening: [f64; 2]) {
         let [before, after] = [0, 1].map(|side: usize| {
             let row = self.row_of(&region.records[corner.records[side]]);
@@ -181,7 +183,7 @@ impl RigidSystem {
         region.records.remove(corner.records[1]);
     }
 
-    /// The point of a rail goes on along a side of the corner in which it is, if it is in one.
+    /// Takes the point of a rail along a side of the corner in which it is, if it is in one.
     pub(super) fn go_along(&mut self, id: ConnectorId, side: usize) {
         let state = &mut self.connectors.states[id.index()];
         let Some(sides) = state.corner.take() else { return };
@@ -196,7 +198,7 @@ impl Corner {
     }
 }
 
-/// The corners in which points of rails are in a region: the records of their sides follow each other.
+/// Corners of rails in a region that hold a point: the records of the two sides follow each other.
 fn corners(region: &Region) -> impl Iterator<Item = Corner> + use<'_> {
     let side = |record: &Collision| match record.parties.detector {
         Detector::Connector { id, row } if !record.parties.bilateral => Some((id, row)),

@@ -1,10 +1,10 @@
-//! Groups are cut at the time of an event: where their bodies are then, and when that is.
+//! Cutting of groups at an event: the states of their bodies there, and the exact time.
 //!
-//! The search for contacts sees dense output. Where that may err by much of what a step may, the step is made
-//! anew up to the event, so that the restart has full order; what fired, a contact, a rope or a stop, is then a
-//! little off, and the time is corrected until it is where the search saw it. Where that does not bring all
-//! that touches to where it was seen, as of what closes slowly, or brings a body into another, the event stays
-//! on the dense output, along which nothing penetrates.
+//! The search for contacts reads dense output. Where that may err by much of what a step may, the step is repeated up
+//! to the event, so that the restart has full order; the contact, rope or stop that fired is then a little off, and the
+//! time is corrected until its gap is the one that the search saw. Where that does not bring all touching features to
+//! where they were seen, as some that close slowly, or brings a body into another, the event stays on the dense output,
+//! along which nothing penetrates.
 
 use super::cause::Cause;
 use super::region::{Region, Touch};
@@ -18,24 +18,26 @@ use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_geometry::Relation;
 
-/// An event's time is corrected while the gap is off by more than this part of the accuracy.
+/// Error of the gap of the contact, rope or stop that fired above which an event's time is corrected, as a fraction of
+/// the accuracy.
 const TIME_SHARE: f64 = 1e-2;
-/// Cap on the corrections of an event's time.
+/// Largest number of corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
-/// Part of the accuracy by which a step made anew may have what touches nearer or farther than the search saw it.
+/// Fraction of the accuracy by which gaps after a repeated step may differ from those that the search saw.
 const SEEN_SHARE: f64 = 0.5;
 
-/// Where the bodies of a group that is cut are taken from.
+/// Source of the states of the bodies of a group that is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Source {
-    /// A step made anew, or dense output that errs by little.
+    /// A repeated step, or dense output that errs by little.
     Exact,
-    /// What the search for contacts has seen.
+    /// Dense output, as the search for contacts has seen it.
     Dense,
 }
 
 impl RigidSystem {
-    /// Cuts the groups of a region at the present time, or a little off, and ends them: their bodies fly on from there.
+    /// Cuts the groups of a region at the present time, or a little off it, and ends them; their bodies are in flight
+    /// from there.
     pub(crate) fn cut_groups(&mut self, region: &mut Region) {
         self.complete_dense();
         region.groups.iter().for_each(|&leader| self.note_ways(leader));
@@ -55,8 +57,8 @@ impl RigidSystem {
         }
     }
 
-    /// Cuts the groups of a region where steps made anew bring what fired to the gap [m] that it was seen with;
-    /// the answer is when.
+    /// Cuts the groups of a region by repeated steps, at the time at which the contact, rope or stop that fired has the
+    /// gap [m] that the search saw; returns this time.
     fn cut_exactly(&mut self, region: &Region, gap: Option<f64>) -> Time {
         let mut time = self.now;
         for round in 0..=MOST_CORRECTIONS {
@@ -79,7 +81,8 @@ impl RigidSystem {
         time
     }
 
-    /// When what fired has the gap [m] that it had by dense output, if the time given is off and that can be told.
+    /// Corrected time, at which the contact, rope or stop that fired has the gap wanted [m]; `None` if it has nearly
+    /// that at the given time, or closes too slowly to tell.
     fn corrected(&self, cause: Cause, wanted: Option<f64>, time: Time) -> Option<Time> {
         let (gap, rate) = self.gap_of_cause(cause, time)?;
         let error = gap - wanted?;
@@ -87,8 +90,8 @@ impl RigidSystem {
         (counts && rate < -self.settings.tolerances.velocity_tol).then(|| time.plus(-error / rate))
     }
 
-    /// The earliest contact of the bodies of a region that was predicted for a time before this one, to which
-    /// the present event has been corrected, if it has been passed: what has sunk that deep is not found
+    /// Time of the earliest contact of a region's bodies that was predicted for before the given time, to which the
+    /// present event has been corrected, if that contact has sunk below its zone meanwhile: it would not be found
     /// again.
     fn passed(&self, region: &Region, time: Time) -> Option<Time> {
         if time <= self.now {
@@ -106,8 +109,8 @@ impl RigidSystem {
         contacts.min()
     }
 
-    /// True if what touches in a region is not where the search saw it: of an event whose time was corrected,
-    /// what fired, seen with a gap [m]. So it is where a body lies within another that it did not touch.
+    /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
+    /// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
     fn is_off(&self, region: &Region, gap: Option<f64>, time: Time) -> bool {
         let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
         let fired = self.gap_of_cause(region.cause, time).zip(gap);
@@ -121,7 +124,7 @@ impl RigidSystem {
         moves_touches || self.strayed(region, time).any(|body| self.is_in_another(body, region, time))
     }
 
-    /// The bodies of a region that are farther from where the search saw them than contacts may be.
+    /// Bodies of a region that are farther from their dense output than the accuracy of contacts.
     fn strayed<'a>(&'a self, region: &'a Region, time: Time) -> impl Iterator<Item = BodyId> + 'a {
         let allowed = self.settings.tolerances.accuracy;
         let groups =
@@ -138,7 +141,7 @@ impl RigidSystem {
         })
     }
 
-    /// True if a body lies within one near it, deeper than contacts may be, that it does not touch in a region.
+    /// True if a body crosses one near it that it does not touch in a region.
     fn is_in_another(&self, body: BodyId, region: &Region, time: Time) -> bool {
         let pose = |body: BodyId| self.flyer(body).moving_at(time).pose;
         let shape = |body: BodyId| &self.flyers[body.index()].body().shape;
@@ -156,10 +159,10 @@ impl RigidSystem {
         let Some(mut group) = self.groups.take(leader) else { return };
         let offset = time.since(group.start).max(0.0);
         if offset < 0.5 * group.span {
-            // What was read there is not reached.
+            // The middle of the segment, at which the error was read, is not reached.
             group.largest_error = 0.0;
         }
-        // Along a step over the kink of a force dense output errs by more than the step's estimate knows.
+        // Along a step over the kink of a force dense output errs by more than the estimate of the step's error.
         let is_smooth = !matches!(group.event, Some((_, SegmentEnd::Switch)));
         if offset != group.span || source == Source::Dense {
             self.with_group(&mut group, |dynamics, tools| {

@@ -1,4 +1,4 @@
-//! The handling of an event: cut what it touches at its time, resolve the impact, find what is held, go on.
+//! Handling of an event: cut the groups that it touches at its time, resolve the impact, find the held rows, go on.
 
 use super::cause::{Cause, EventWork};
 use super::impacts::{ImpactReport, Manner};
@@ -18,25 +18,25 @@ use halfgap_geometry::{Feature, FeatureId, GapSample};
 
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
 const SEAM_ANGLE: f64 = 4e-9;
-/// To stop contacts changes the velocities of their bodies' points by no more than so many times what they
-/// closed or opened by.
+/// Largest change of the velocities of bodies' points by an impact that stops contacts, as a multiple of the rates that
+/// were stopped.
 const MODEST: f64 = 100.0;
-/// Nor are its impulses greater than so many times what the momentum of some body changes by.
+/// Largest impulse of such an impact, as a multiple of the largest change of momentum of a body.
 const MOST_CANCELLING: f64 = 10.0;
-/// Cap on the rounds in which the low hops of one event are stilled.
+/// Largest number of rounds in which the low hops of one event are stilled.
 const HOP_ROUNDS: u32 = 4;
 
-/// Where the energy of an impact is booked.
+/// Entry of the ledger in which the energy of an impact is booked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Booking {
     /// As an impact, unless it is slow.
     BySpeed,
-    /// As a capture: something was stopped without elasticity, whatever its speed.
+    /// As a capture: rows were stopped without elasticity, whatever their speed.
     Capture,
 }
 
 impl RigidSystem {
-    /// Finds what is held at the start, where nothing has happened yet.
+    /// Finds the rows that are held at the start.
     pub(crate) fn establish(&mut self) -> Result<(), AdvanceError> {
         self.with_work(Cause::Start, |system, work| {
             work.seeds.clear();
@@ -46,28 +46,29 @@ impl RigidSystem {
             if !system.closes_slowly(&work.region) {
                 return system.go_on(work);
             }
-            // What closes fast fires in its own time, unless that is now.
+            // Contacts that close fast fire in their own time, unless they are in their target zone now.
             let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
             work.region.records.retain(|record| !fast(record));
             system.collide(work)
         })
     }
 
-    /// Rates [m/s] up to which what touches at the start is in contact: such that leave the target zone more
-    /// slowly than forces can be resolved. What has come to rest elsewhere may come with that much.
+    /// Largest rate [m/s] at which a touching contact counts as resting at the start: with it, a contact leaves the
+    /// target zone more slowly than forces can be resolved. Bodies that have come to rest elsewhere may come with that
+    /// much.
     pub(crate) fn start_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
     }
 
-    /// The same for one contact: what slides faster than that has not come to rest, and would be stopped where normals
-    /// differ.
+    /// Largest rate [m/s] at which one contact counts as resting at the start. A contact that slides faster than
+    /// `start_rest` has not come to rest, and would be stopped where normals differ: for it this is the rest speed.
     pub(crate) fn start_rest_of(&self, record: &Collision) -> f64 {
         let rest = self.start_rest();
         if record.motion.lateral_velocity.abs() <= rest { rest } else { self.rest_speed() }
     }
 
-    /// True if any contact of a region closes so slowly that it is to be caught, and is not at rest yet.
+    /// True if any contact of a region closes so slowly that it is to be captured, but is not at rest yet.
     fn closes_slowly(&self, region: &Region) -> bool {
         let closes = |record: &Collision| {
             record.motion.normal_velocity < -self.start_rest_of(record) && !closes_fast(record)
@@ -76,7 +77,7 @@ impl RigidSystem {
         self.settings.impulse_step.is_none() && records.any(closes)
     }
 
-    /// Handles two bodies that come into contact.
+    /// Handles the contact of two features of a pair.
     pub(crate) fn handle_contact(
         &mut self,
         pair: PairId,
@@ -147,7 +148,7 @@ impl RigidSystem {
         }
     }
 
-    /// True if a contact that has come to the end of its features leaves them.
+    /// True if a contact that has come to the end of its features has left them.
     fn leaves(&self, Touch { bodies, features }: Touch) -> bool {
         let moving = bodies.map(|body| self.flyer(body).moving_at(self.now));
         self.mechanism().has_left(bodies, features, [&moving[0], &moving[1]])
@@ -183,12 +184,12 @@ impl RigidSystem {
         self.cut_groups(&mut work.region);
         self.remeasure(&mut work.region, self.now);
         if self.neighbour_closes(&work.region) {
-            // Cutting moves bodies by little, but a corner that was passed a moment ago may be ahead again.
-            // It takes over only if it is what is nearest now.
+            // Cutting moves bodies a little, and a corner that was passed a moment ago may be ahead again: it takes
+            // over only if it is nearest now.
             self.collect_again(work);
         }
         self.hand_over(work);
-        // Beside a seam a corner may be as near to the next one, and pass over it.
+        // Beside a seam a corner may be as near to the next corner, and pass over it.
         let region = &mut work.region;
         region.records.retain(|record| !(closes_fast(record) && self.passes_by(record)));
         let rest = self.rest_speed();
@@ -198,7 +199,7 @@ impl RigidSystem {
         self.go_on(work)
     }
 
-    /// True if two corners pass each other before they come to where their bodies fire.
+    /// True if two corners pass each other before they come to the gap at which their bodies fire.
     pub(super) fn passes_by(&self, record: &Collision) -> bool {
         if record.parties.detector != Detector::CornerCorner {
             return false;
@@ -210,7 +211,7 @@ impl RigidSystem {
         nearest > halos.min(record.tolerances.target_gap)
     }
 
-    /// True if another place closes where the bodies of the contact touch that has run off its features.
+    /// True if another contact closes of the two bodies whose contact has run off its features.
     fn neighbour_closes(&self, region: &Region) -> bool {
         let Some(run_off) = region.cause.run_off() else { return false };
         let rest = self.rest_speed();
@@ -218,9 +219,9 @@ impl RigidSystem {
         closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
     }
 
-    /// Where a contact goes from one feature to the next along a smooth joint it goes on: what its neighbour
-    /// closes or opens by is only the angle up to which joints are smooth. What meets at the same moment is
-    /// an impact, which does without.
+    /// Continues a contact that goes from one feature to the next along a smooth joint: the rate of its neighbour comes
+    /// only from the angle up to which joints are smooth, and is stopped. Where another contact closes fast at the same
+    /// moment, the impact does that.
     fn hand_over(&mut self, work: &mut EventWork) {
         let Some(run_off) = work.region.cause.run_off() else { return };
         let is_neighbour = |record: &Collision| {
@@ -242,7 +243,7 @@ impl RigidSystem {
         }
     }
 
-    /// Collects the region of bodies in flight anew. The groups that have been cut no longer tell who belongs
+    /// Collects the region of bodies in flight anew. The groups that have been cut no longer tell which bodies belong
     /// together; others may have come in, and are cut, too.
     pub(crate) fn collect_again(&mut self, work: &mut EventWork) {
         work.seeds.clear();
@@ -271,7 +272,7 @@ impl RigidSystem {
 
     /// Resolves the impact of a region whose bodies are in flight, and goes on.
     pub(crate) fn collide(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
-        // What was slow when it fired stays inelastic, whatever the speed it has gained since.
+        // One event too many in a short time, or of one pair without time going by, is resolved without elasticity.
         work.region.in_storm = self.note_events(&work.region);
         let is_storm = work.region.in_storm || work.repeats > 0;
         let mut report = std::mem::take(&mut self.told.last_impact);
@@ -284,7 +285,7 @@ impl RigidSystem {
         }
         self.told.last_impact = report;
         outcome?;
-        // What comes to rest without closing is a contact that begins, not an impact.
+        // A row that comes to rest without having closed is a contact that begins, not an impact.
         let (rest, at_joint) = (self.rest_speed(), work.region.cause == Cause::SmoothJoint);
         let mut rows = self.told.last_impact.rows.iter();
         let is_hit = rows.any(|row| match row.collision.parties.bilateral {
@@ -300,7 +301,7 @@ impl RigidSystem {
         self.go_on(work)
     }
 
-    /// Finds what is held, makes groups, and predicts: the bodies of the region are in flight with their new
+    /// Finds the held rows, makes groups, and predicts: the bodies of the region are in flight with their new
     /// velocities.
     fn go_on(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         for &body in &work.region.bodies {
@@ -330,7 +331,7 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// Finds what is held, and stills what of it hops: to stop some contacts makes others hop.
+    /// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.
     fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let EventWork { region, settling, .. } = &mut *work;
         settling.set_likely(region.records.iter().map(|record| self.is_likely(record)));
@@ -355,13 +356,13 @@ impl RigidSystem {
         outcome
     }
 
-    /// Resolves an impact without elasticity in which some contacts were marked as bilateral, and marks them
-    /// as they are. Where such rows contradict each other, nothing is done: as unilateral ones they need not.
+    /// Resolves an impact without elasticity in which some contacts are marked as bilateral, and removes the marks.
+    /// Where such rows contradict each other, nothing is done: as unilateral ones they need not.
     fn stop_bilaterally(&mut self, work: &mut EventWork) {
         let now = self.now;
         work.before.clear();
         work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(now)));
-        // What may as well be left is not worth long trying.
+        // A stop that may as well be left out is not worth a long solve.
         let manner = Manner::Trial;
         let outcome = self.resolve_impact(&mut work.region, &mut work.impact, &mut work.stop, now, manner);
         if outcome.is_ok() {
@@ -381,10 +382,9 @@ impl RigidSystem {
         }
     }
 
-    /// True if an impact changed the velocities of its bodies by about as much as its rows had to be stopped,
-    /// and by the most that its impulses can do. Contacts whose normals hardly differ hold all of a body, and
-    /// to stop what is left between them by their angle would stop it altogether, by large impulses that
-    /// cancel each other on every body.
+    /// True if an impact changed the velocities of its bodies by about the rates that were stopped, with impulses of
+    /// about the change of momentum. Contacts whose normals hardly differ hold all of a body: to stop the rate that
+    /// their angle leaves would stop the body altogether, by large impulses that cancel each other on every body.
     fn is_modest(&self, report: &ImpactReport, region: &Region, before: &[BodyState]) -> bool {
         let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
         let impulse = report.rows.iter().fold(0.0f64, |most, row| most.max(row.impulse.abs()));
@@ -411,14 +411,15 @@ impl RigidSystem {
         })
     }
 
-    /// Measures the touching features of a region at the present time.
+    /// Measures gaps and rates of the touching features of a region at the present time.
     pub(crate) fn measure_touches(&self, region: &mut Region) {
         let Region { touches, motions, .. } = region;
         motions.clear();
         motions.extend(touches.iter().map(|&touch| self.gap_at(touch, self.now)));
     }
 
-    /// Notes the least gap of features of a region that lie opposite each other: beyond their ends gaps are of nothing.
+    /// Notes the least gap of features of a region that lie opposite each other: beyond their ends a gap is no distance
+    /// between bodies.
     fn note_gaps(&mut self, region: &Region) {
         for (&touch, &(gap, _)) in region.touches.iter().zip(&region.motions) {
             if self.counts.smallest_gap.is_some_and(|least| least <= gap) {
@@ -435,7 +436,7 @@ impl RigidSystem {
         }
     }
 
-    /// Gap [m] and rate [m/s] at a time of what fires an event: a contact, a rope or a stop.
+    /// Gap [m] and rate [m/s] at a time of the contact, rope or stop that fires an event; `None` for other causes.
     pub(super) fn gap_of_cause(&self, cause: Cause, time: Time) -> Option<(f64, f64)> {
         match cause {
             Cause::Fired(touch) => Some(self.gap_at(touch, time)),
@@ -451,7 +452,7 @@ impl RigidSystem {
         [0, 1].map(|side: usize| self.flyer(bodies[side]).body().shape.feature(features[side]))
     }
 
-    /// Gap [m] and rate [m/s] of two features at a time.
+    /// Gap [m] and rate [m/s] of two features at a time, also beyond their ends; without end where there is none.
     pub(crate) fn gap_at(&self, touch: Touch, time: Time) -> (f64, f64) {
         let moving = touch.bodies.map(|body| self.flyer(body).moving_at(time));
         let [a, b] = self.features_in(touch);
@@ -462,7 +463,7 @@ impl RigidSystem {
         (sample.gap, GapKinematics::of(&sample, &moving[primary], &moving[normal]).rate)
     }
 
-    /// Books what an impact changes of the energy.
+    /// Books the change of energy of an impact in the ledger.
     pub(crate) fn book_impact(&mut self, report: &ImpactReport, booking: Booking) {
         // Connectors are stopped whichever way they move: a corner of a rail that turns to either side is an impact.
         let closing = report.rows.iter().map(|row| {
@@ -476,7 +477,7 @@ impl RigidSystem {
     }
 }
 
-/// Takes the marks as bilateral from the contacts of a region.
+/// Removes the marks as bilateral from the contacts of a region.
 fn unmark(region: &mut Region) {
     for record in &mut region.records {
         record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;

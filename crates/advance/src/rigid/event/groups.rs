@@ -1,4 +1,4 @@
-//! The life of groups: made after an event from what is held, extended step by step, cut by the next event.
+//! The life of groups: made after an event from held rows and force laws, extended step by step, cut by the next event.
 
 use super::connectors::is_rope;
 use super::members::Members;
@@ -19,30 +19,30 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, ConnectorId};
 use halfgap_contact::InverseInertia;
 
-/// Where a contact has sunk, others of the same bodies may lie so many times as deep.
+/// Depth of other contacts of two bodies as a multiple of that to which one has sunk.
 const SUNK_BESIDE: f64 = 2.0;
 
-/// All groups, found by their bodies, and what their stepping needs.
+/// All groups by their leaders, and the buffers of their making.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Groups {
-    /// By leader.
+    /// Group of each leader.
     pub(crate) by_leader: Vec<Option<Box<Group>>>,
-    /// The leader of each body's group.
+    /// Leader of each body's group.
     pub(crate) leader_of: Vec<Option<BodyId>>,
-    /// Groups to be used again.
+    /// Cleared groups to be used again.
     #[expect(clippy::vec_box, reason = "groups go from here to `by_leader` without being copied")]
     pool: Vec<Box<Group>>,
-    /// What is known of the last group of each body.
+    /// Steps and depth of each body's last group.
     pub(crate) past_of: Vec<Past>,
-    /// The places of a region, in sets that share their steps.
+    /// Places of a region, in sets that share their steps.
     coupled: Forest,
     /// True for places of a region that need an integrator.
     integrated: Vec<bool>,
-    /// Leader of the group whose dense output waits until somebody looks.
+    /// Leader of the group whose dense output is deferred until it is read.
     pub(crate) waiting: Option<BodyId>,
     /// Leaders of the groups that were made last.
     pub(crate) made: Vec<BodyId>,
-    /// What belongs to the groups that are being made.
+    /// Members of the groups that are being made.
     members: Members,
     /// Inertias of the bodies of a group that starts.
     inertias: Vec<InverseInertia>,
@@ -76,8 +76,8 @@ impl RigidSystem {
         self.groups.by_leader[leader.index()].as_deref()
     }
 
-    /// How deep [m] two bodies may lie in one another, as the contacts of a group do that one of them is in,
-    /// or was until now. What takes over from a contact that has sunk lies as deep.
+    /// Depth [m] to which two bodies may lie in one another, as the contacts of a group do that one of them is in, or
+    /// was in until now. A contact that takes over from a sunk one lies as deep.
     pub(crate) fn held_depth(&self, bodies: [BodyId; 2]) -> f64 {
         let depths = bodies.map(|body| match self.group_of(body) {
             Some(group) => group.depth(),
@@ -87,7 +87,7 @@ impl RigidSystem {
         if sunk > 0.0 { (SUNK_BESIDE * sunk).min(self.thinness(bodies)) } else { 0.0 }
     }
 
-    /// A group with its dynamics.
+    /// Runs an action on a group with its dynamics and its stepper.
     pub(crate) fn with_group<T>(
         &mut self,
         group: &mut Group,
@@ -99,7 +99,7 @@ impl RigidSystem {
         act(&mut Dynamics { physics, group, stage, start }, &mut Tools { stepper, scales, settings })
     }
 
-    /// Ends a group, whose bodies fly on; its works are booked.
+    /// Ends a group, whose bodies are in flight; its works are booked.
     pub(crate) fn dissolve(&mut self, leader: BodyId) {
         self.note_ways(leader);
         let Some(mut group) = self.groups.take(leader) else { return };
@@ -190,7 +190,7 @@ impl RigidSystem {
             self.groups.integrated[place] |= connectors.any(|&id| self.connector(id).is_stop());
         }
         self.couple_touching(region, settling);
-        // What is integrated is a matter of the whole class.
+        // A set is integrated if any of its places is.
         for place in 0..count {
             if self.groups.integrated[place] {
                 let root = self.groups.coupled.root(place);
@@ -199,8 +199,8 @@ impl RigidSystem {
         }
     }
 
-    /// Joins what is integrated, or turns, and touches without force, neither closing nor opening: a group
-    /// watches such a contact from step to step, where the search would look for it in steps as short as it
+    /// Joins bodies that touch without force, neither closing nor opening, if they are integrated or one of them turns:
+    /// a group watches such a contact from step to step, where the search would go on in steps as short as the contact
     /// takes to sink by next to nothing.
     fn couple_touching(&mut self, region: &Region, settling: &Settling) {
         if self.settings.impulse_step.is_some() {
@@ -255,7 +255,7 @@ impl RigidSystem {
         group
     }
 
-    /// Lists the contacts of a group that are touched without force and neither close nor open.
+    /// Lists the idle contacts of a group: touched without force, neither closing nor opening.
     fn list_idle(
         &self,
         group: &mut Group,
@@ -263,7 +263,7 @@ impl RigidSystem {
         touches: impl Iterator<Item = usize>,
     ) {
         if self.settings.impulse_step.is_some() {
-            // Without contact forces the search is told of what sinks, once a step.
+            // Without contact forces the rules of the search tell of contacts that sink, once a step.
             return;
         }
         for index in touches {
@@ -284,7 +284,7 @@ impl RigidSystem {
         }
     }
 
-    /// True if a contact that is touched without force is watched by the group of its bodies.
+    /// True if a contact that is touched without force is watched by the group of one of its bodies.
     pub(crate) fn is_watched(&self, touch: Touch) -> bool {
         let source = RowSource::Contact(touch.features);
         let groups = touch.bodies.into_iter().filter_map(|body| self.group_of(body));
@@ -292,8 +292,9 @@ impl RigidSystem {
         idle.any(|row| row.bodies == touch.bodies && row.source == source)
     }
 
-    /// Hands back to the search the contacts of a group that have opened beyond the target zone, run as far off
-    /// their features, or gone round their bodies and lie behind them, and the ropes that have slackened as much.
+    /// Hands back to the search the idle contacts of a group that have opened beyond the target zone, have run as far
+    /// off their features, or have gone round their bodies and lie behind them, and the ropes that have slackened as
+    /// much.
     pub(crate) fn let_go(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
@@ -308,7 +309,7 @@ impl RigidSystem {
             let stays = gap < opened && gap > -self.settings.tolerances.distance_tol() && !has_run_off;
             if !stays && let Some(pair) = self.pairs.between(touch.bodies[0], touch.bodies[1]) {
                 self.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
-                // It has left the target zone: when it comes back it is no low bounce.
+                // The contact has left the target zone: its return is no low bounce.
                 self.pairs.seen_mut(pair).retain(|seen| seen.features != features);
                 touched.push(pair);
             }
@@ -340,9 +341,8 @@ impl RigidSystem {
         }
     }
 
-    /// True for a rope within a group that is taut and neither slackens nor tightens: without a force it is
-    /// watched like a stop, where the search would look for it in steps as short as it takes to lengthen by
-    /// next to nothing.
+    /// True for a rope within a group that is taut and neither slackens nor tightens. Without a force it is watched
+    /// like a stop, where the search would go on in steps as short as it takes to lengthen by next to nothing.
     fn is_idly_taut(&self, group: &Group, id: ConnectorId) -> bool {
         let connector = self.connector(id);
         let bodies = connector.bodies();
@@ -363,7 +363,8 @@ impl RigidSystem {
             .any(|group| group.stops.iter().any(|stop| stop.id == id))
     }
 
-    /// Lists the works of a group: those of laws in their order.
+    /// Lists the works that are integrated with a group: those of laws without potential in their order, then that of
+    /// damping.
     fn list_works(&self, group: &mut Group) {
         group.works.clear();
         let works = group.laws.iter().copied().filter(|&law| !self.laws.has_potential[law]).map(Work::Law);
@@ -386,7 +387,7 @@ impl RigidSystem {
         group.find_sides();
         group.held.set_structure(&inertias, &group.sides);
         self.groups.inertias = inertias;
-        // The projection works on the end of a segment: one of no length ends here.
+        // The projection acts on the end of a segment: a segment of no length ends here.
         group.end_state.clear();
         group.end_state.resize(dimension, 0.0);
         for place in 0..count {
@@ -414,7 +415,7 @@ impl RigidSystem {
         self.extend_group(group)
     }
 
-    /// Goes on with a group whose segment has come to its natural end.
+    /// Extends a group whose segment has come to its natural end by another segment.
     pub(crate) fn continue_group(&mut self, leader: BodyId) -> Result<(), AdvanceError> {
         self.note_ways(leader);
         let Some(mut group) = self.groups.take(leader) else { return Ok(()) };
@@ -462,7 +463,7 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// Looks along the rest of a group's segment for a contact that loses its force.
+    /// Searches the rest of a group's segment for a contact that loses its force.
     pub(crate) fn look_further(&mut self, leader: BodyId) {
         let Some(mut group) = self.groups.take(leader) else { return };
         self.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
@@ -479,7 +480,7 @@ impl RigidSystem {
         }
     }
 
-    /// The bodies of a group follow its dense output.
+    /// Sets the bodies of a group on its dense output.
     pub(crate) fn fly_along(&mut self, group: &Group) {
         let span = group.end().since(group.start);
         for (&body, paths) in group.bodies.iter().zip(&group.paths) {
@@ -500,8 +501,8 @@ impl RigidSystem {
         }
     }
 
-    /// Two bodies whose centres are so far apart [m], if there are such among those that the laws of a group
-    /// act on: where forces vary over that length, these are to blame.
+    /// Two bodies whose centres are at a given distance [m], among those that a law of a group names together; `None`
+    /// if there are none. Where forces vary over that length, these are to blame.
     fn so_far_apart(&self, group: &Group, length: f64) -> Option<[BodyId; 2]> {
         let center = |body: BodyId| match group.bodies.binary_search(&body) {
             Ok(place) => body_state(&group.state, group.bodies.len(), place).position,

@@ -1,4 +1,4 @@
-//! The impulses of an event and what is told of them.
+//! The impulses of an event, and their report.
 
 use super::region::Region;
 use crate::rigid::error::{AdvanceError, Between};
@@ -10,45 +10,45 @@ use halfgap_collision::{BodyId, BodyState, Collision, Detector, Moving};
 use halfgap_contact::{CollisionRow, Impact, ImpactError, InverseInertia};
 use halfgap_geometry::GapSample;
 
-/// One row of an impact, as told to the outside.
+/// Report of one row of an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowReport {
-    /// The record, with its impulse.
+    /// Collision record of the row, with its impulse.
     pub collision: Collision,
-    /// Rate of the gap before [m/s].
+    /// Rate of the gap before the impact [m/s]; negative closes.
     pub rate_before: f64,
-    /// Rate of the gap after [m/s].
+    /// Rate of the gap after the impact [m/s]; negative closes.
     pub rate_after: f64,
-    /// Impulse along the normal [N s].
+    /// Impulse on the primary body along the normal [N s]: positive pushes the bodies apart.
     pub impulse: f64,
 }
 
-/// An impact, as told to the outside.
+/// Report of an impact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpactReport {
-    /// When.
+    /// Time of the impact.
     pub time: Time,
     /// The rows that carried an impulse.
     pub rows: Vec<RowReport>,
-    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2.
+    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2 over the rows.
     pub energy_change: f64,
-    /// States of the movable bodies that took part, after the impact.
+    /// States after the impact of the movable bodies on which an impulse acted.
     pub states: Vec<(BodyId, BodyState)>,
 }
 
-/// In what way an impact is resolved.
+/// Manner in which an impact is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Manner {
-    /// By the scene's law.
+    /// By the impact law of the settings.
     Lawful,
     /// Without elasticity.
     Inelastic,
-    /// The same, unless that takes long.
+    /// Without elasticity, but given up if that takes long.
     Trial,
 }
 
 impl RigidSystem {
-    /// Rates [m/s] up to which a row counts as neither closing nor opening.
+    /// Largest rate [m/s] at which a row counts as neither closing nor opening.
     pub(crate) fn rest_speed(&self) -> f64 {
         self.settings.rest_speed
     }
@@ -61,8 +61,8 @@ impl RigidSystem {
         InverseInertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
     }
 
-    /// Resolves the impact of a region's rows; the bodies, which must be in flight, go on with changed
-    /// velocities, and the records are brought up to date. `report` tells of it.
+    /// Resolves the impact of a region's rows and writes the report. The bodies, which must be in flight, go on with
+    /// changed velocities, and the records get their impulses.
     pub(crate) fn resolve_impact(
         &mut self,
         region: &mut Region,
@@ -100,12 +100,12 @@ impl RigidSystem {
         }
     }
 
-    /// The row of a record, as an impact sees it.
+    /// Row of a record in an impact.
     pub(crate) fn row_of(&self, record: &Collision) -> CollisionRow {
         CollisionRow::of_collision(record, record.bodies().map(|body| self.inertia(body)))
     }
 
-    /// True if what a unilateral record is of was held until now.
+    /// True if the contact or unilateral connector of a record was held until now.
     fn was_held(&self, record: &Collision) -> bool {
         match record.parties.detector {
             Detector::Connector { id, .. } => self.is_held_unilaterally(id),
@@ -113,7 +113,7 @@ impl RigidSystem {
         }
     }
 
-    /// Gives an impact the rows of a region.
+    /// Sets the rows of an impact to those of a region.
     pub(crate) fn set_rows(&self, region: &Region, impact: &mut Impact) {
         let dull = self.settings.impulse_step.is_none() && self.bounces_low(region);
         let rows = region.records.iter().map(|record| {
@@ -124,8 +124,8 @@ impl RigidSystem {
         impact.set_rows(rows);
     }
 
-    /// Gives the bodies of a region, which must be in flight, the velocities that a resolved impact leaves
-    /// them, and reports it.
+    /// Gives the bodies of a region, which must be in flight, their velocities after a resolved impact, and writes the
+    /// report.
     pub(crate) fn conclude_impact(
         &mut self,
         region: &mut Region,
@@ -149,7 +149,7 @@ impl RigidSystem {
         }
         for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
             record.response.impulse = Some(impulse);
-            // Beyond the end of a feature its gap is of nothing.
+            // Beyond the end of a feature its gap is no distance between bodies.
             if record.parties.primary.site.is_some() && record.geometry.outside <= 0.0 {
                 self.counts.note_gap(record.geometry.distance);
             }
@@ -164,7 +164,8 @@ impl RigidSystem {
             let impulse = impact.impulses()[index];
             let (rate_before, rate_after) = (impact.rows()[index].rate, impact.rates()[index]);
             if impulse != 0.0 {
-                // What the bodies do: by long arms their rounding moves rows by more than that of the rows' own rates.
+                // The rate afterwards is that of the bodies: by long arms the rounding of their velocities moves rows
+                // by more than the rounding of the rows' own rates.
                 report.energy_change += 0.5 * impulse * (rate_before + self.rate_of(record, time));
                 report.rows.push(RowReport { collision: *record, rate_before, rate_after, impulse });
             }
@@ -174,8 +175,8 @@ impl RigidSystem {
         report.states.extend(struck.map(|(&body, _)| (body, self.flyer(body).state_at(time))));
     }
 
-    /// Rate of the gap of a record [m/s] by the bodies' motion at a time, at which they are still where it
-    /// was measured.
+    /// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
+    /// measured.
     fn rate_of(&self, record: &Collision, time: Time) -> f64 {
         let j = &record.motion.kinematics.jacobian;
         let sides = record.bodies();
@@ -186,7 +187,7 @@ impl RigidSystem {
         sides.into_iter().enumerate().map(of_side).sum()
     }
 
-    /// Brings a record to the bodies' present motion at a time.
+    /// Updates a record to the bodies' present motion at a time.
     pub(crate) fn remeasure_record(&self, record: &mut Collision, time: Time) {
         if let Detector::Connector { id, row } = record.parties.detector {
             return self.remeasure_connector(record, id, row, time);
@@ -204,7 +205,7 @@ impl RigidSystem {
         }
     }
 
-    /// A body's motion at a time of its present segment; the background rests.
+    /// Motion of a body at a time of its present segment; the background rests.
     pub(crate) fn moving_at(&self, body: BodyId, time: Time) -> Moving {
         if body.is_world() { Moving::BACKGROUND } else { self.flyer(body).moving_at(time) }
     }

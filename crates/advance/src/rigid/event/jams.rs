@@ -1,9 +1,9 @@
-//! Impacts that jam: impulses that cancel each other by far, between contacts that need not be.
+//! Impacts that jam: large impulses cancel each other, between contacts that need not take part.
 //!
-//! What was held from the start, or since it was caught, is held at the gap at which it formed. Where a body
-//! fits between two others with little room it may so be held on both sides, farther from both than where
-//! bodies fire. As it passes their corners two such contacts come to lie opposite each other: they seem to
-//! hold it like a vice, and the least angle between them stops it for good.
+//! A contact held since the start or its capture is held at the gap at which it formed. A body that fits between two
+//! others with little room may so be held on both sides, farther from both than the gap at which bodies fire. As it
+//! passes their corners, two such contacts come to lie opposite each other: they act like a vice, and the least angle
+//! between them stops the body for good.
 
 use super::impacts::Manner;
 use super::region::Region;
@@ -12,13 +12,13 @@ use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::{Impact, ImpactError};
 
-/// Impulses this many times larger than what they change of the momentum of any body jam, as do forces that
-/// are so much larger than all loads together.
+/// Impulses jam if they exceed the largest change of momentum of any body by this factor; so do forces that exceed all
+/// loads together by it.
 pub(crate) const JAM: f64 = 100.0;
 
 impl RigidSystem {
-    /// Leaves out of a region what is farther away than where bodies fire, if the impulses of contacts cancel
-    /// each other by far; true if there is any.
+    /// Leaves out of a region the contacts farther apart than the gap at which bodies fire, if the impulses of contacts
+    /// jam; true if there are any.
     pub(super) fn leave_out_jammed(&self, region: &mut Region, impact: &Impact) -> bool {
         region.left_out.clear();
         if region.records.iter().all(|record| self.is_close(record)) || !self.jams(region, impact) {
@@ -29,8 +29,9 @@ impl RigidSystem {
         true
     }
 
-    /// Finds the impulses of a region without what was left out, but for those of it that are pressed all the
-    /// same: of what fits with little room only one side is. Where those jam, too, nothing is left out.
+    /// Finds the impulses of a region without the records left out, except those that are pressed all the same: of a
+    /// body that fits with little room only one side is. Where those jam, too, or cannot be solved, nothing is left
+    /// out.
     pub(super) fn find_impulses_of_pressed(
         &self,
         region: &mut Region,
@@ -49,12 +50,12 @@ impl RigidSystem {
         }
     }
 
-    /// True if a record is no farther away than where bodies fire, or holds them anyway.
+    /// True if a record is bilateral, or no farther apart than the gap at which bodies fire.
     pub(crate) fn is_close(&self, record: &Collision) -> bool {
         record.parties.bilateral || record.distance_to_target() <= self.sink()
     }
 
-    /// True if impulses of contacts cancel each other by far.
+    /// True if the impulses of contacts jam: they cancel each other by far.
     fn jams(&self, region: &mut Region, impact: &Impact) -> bool {
         let contacts = region.records.iter().zip(impact.impulses());
         let contacts = contacts.filter(|(record, _)| !record.parties.bilateral);
@@ -62,15 +63,15 @@ impl RigidSystem {
         largest > 0.0 && largest > JAM * self.momentum_changed(region, impact)
     }
 
-    /// The largest change of momentum [N s] of any body of a region by an impact, with what turns it acting
-    /// at its reach.
+    /// Largest change of momentum [N s] of any body of a region by an impact: its mass times the change of velocity,
+    /// plus that of spin at its reach.
     fn momentum_changed(&self, region: &mut Region, impact: &Impact) -> f64 {
         region.sum_changes(impact);
         let changed = region.bodies.iter().zip(&region.changes);
         changed.map(|(&body, change)| self.flyer(body).load(change)).fold(0.0, f64::max)
     }
 
-    /// Lets in again what was left out and is pressed by the impulses found without it; true if there is any.
+    /// Lets in again the records left out that are pressed by the impulses found without them; true if there are any.
     fn admit_pressed(&self, region: &mut Region, impact: &Impact) -> bool {
         region.sum_changes(impact);
         let (mut records, mut left_out) =
@@ -89,7 +90,7 @@ impl RigidSystem {
 }
 
 impl Region {
-    /// By how much the changes of the bodies' velocities change the rate of a record [m/s].
+    /// Change of the rate of a record [m/s] by the changes of its bodies' velocities; positive opens.
     fn change_of(&self, record: &Collision) -> f64 {
         let j = &record.motion.kinematics.jacobian;
         let sides = record.bodies();
@@ -115,16 +116,18 @@ mod tests {
     use halfgap_collision::{Body, BodyState, Tolerances};
     use halfgap_geometry::Shape;
 
-    /// Gap [m] at which bodies fire, and gaps in its zone.
+    /// Gap [m] at which bodies fire.
     const GAP: f64 = 5e-3;
+    /// Gap [m] in the zone, above that at which bodies fire.
     const FAR: f64 = 7e-3;
+    /// Gap [m] in the zone, below that at which bodies fire.
     const NEAR: f64 = 4.9e-3;
     /// Angle [rad] of the shuttle.
     const TILT: f64 = -2e-5;
 
-    /// The velocity of a shuttle of a kilogram that goes down between a wall on its left and the end of
-    /// another on its right, a gap [m] away from both and tilted so that its way narrows, after an impact; a
-    /// disc that lies on its right may go at a speed [m/s].
+    /// Velocity [m/s] after an impact of a shuttle of 1 kg that goes down between a wall on its left and the end of
+    /// another on its right, a gap [m] away from both and tilted so that its way narrows; a disc on its right moves
+    /// towards it at a speed [m/s].
     fn velocity_after(gap: f64, disc_speed: f64) -> DVec2 {
         let body = |shape: Result<Shape, _>, inverse_mass: f64, position: DVec2, state: BodyState| {
             let shape = shape.expect("a fine size");

@@ -1,12 +1,12 @@
-//! What of a region belongs to which of its groups: bodies, held rows, and places where they touch. Listed once
-//! for all groups, as there may be as many of them as bodies.
+//! Members of the groups that are made from a region: bodies, held rows and touching features. They are listed once for
+//! all groups, as there may be as many groups as bodies.
 
 use super::region::Region;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::step::rows::HeldRow;
 use halfgap_collision::BodyId;
 
-/// Pairs of the root of a group, by its place in the region, and an index, both ascending.
+/// Pairs of a group's root, which is a place in the region, and an index, both ascending.
 type ByRoot = Vec<(usize, usize)>;
 
 /// The members of all groups that are made of a region.
@@ -28,7 +28,7 @@ impl Members {
         self.places.clear();
         self.places.extend((0..region.bodies.len()).map(|place| (root(place), place)));
         let places = &self.places;
-        // A row, and a contact, is that of the first of its bodies that moves.
+        // A row or touch belongs to the group of the first of its bodies that moves.
         let root_of = |bodies: [BodyId; 2]| {
             bodies.into_iter().find_map(|body| region.place(body)).map(|place| places[place].0)
         };
@@ -53,7 +53,7 @@ impl Members {
         of_root(&self.held, root).map(|index| settling.held[index].1)
     }
 
-    /// Indices of the places where bodies of a group touch something.
+    /// Indices of the touches of a group's bodies.
     pub(super) fn touches(&self, root: usize) -> impl Iterator<Item = usize> {
         of_root(&self.touches, root)
     }

@@ -1,8 +1,9 @@
-//! What happens at an event. `events` is the order of it: `region` collects the bodies that touch, `cutting`
-//! takes them to the event's time, `impacts` applies impulses (`jams`: impulses that cancel each other, of
-//! contacts that need not be), `groups` merges and splits groups of bodies (`members`: what belongs to which).
-//! `connectors` says when a rope goes taut, `rails` where on its rail a point is, `corners` what it does at a corner;
-//! `ticks` stands in for forces where contacts carry impulses only. What is held afterwards is found in `held`.
+//! Handling of an event. `events` is its order: `region` collects the bodies that touch, `cutting` takes them to the
+//! event's time, `impacts` applies impulses (`jams`: large impulses of contacts that cancel each other and can be
+//! avoided), `groups` merges and splits groups of bodies (`members`: the bodies, rows and touches of each).
+//! `connectors` predicts when a rope goes taut, `rails` finds where on its rail a point is, `corners` takes it through
+//! a corner; `ticks` stands in for forces where contacts carry impulses only. `cause` is the reason of an event, with
+//! its buffers. The rows held afterwards are found in `held`.
 
 pub(super) mod cause;
 pub(super) mod connectors;

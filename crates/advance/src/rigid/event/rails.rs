@@ -1,8 +1,8 @@
-//! Where on their rails the points of rails and stops are: pieces, joints and laps.
+//! Positions on their paths of the points of rails and stops: pieces, joints and laps.
 //!
-//! A row on a path of pieces stays on the piece on which its point is until an event at a joint is handled, so that nothing
-//! jumps. On a closed path a point just behind a stop and one that has gone a lap since lie at the same place: which it
-//! is, is known by how far it was before the stop.
+//! A row on a path of pieces stays on the piece of its point until an event at a joint is handled, so that nothing
+//! jumps. On a closed path a point just behind a stop and one that has gone a lap since lie at the same place: the
+//! distance that was left before the stop tells them apart.
 
 use super::region::Region;
 use crate::rigid::step::dynamics::body_state;
@@ -13,21 +13,21 @@ use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId, ConnectorKind, RailHint};
 
-/// Part of a lap by which a point may seem to lie behind a stop that it has just passed: rounding.
+/// Fraction of a lap, for rounding, by which the way to a stop may fall short of a lap and count as one.
 const PASSED: f64 = 1e-12;
-/// Number of times at which a point is looked for along a segment: it goes round by less than half in between.
+/// Number of times at which a point is sought along a segment: it goes round by less than half in between.
 const LOOKS: u32 = 8;
 
 impl RigidSystem {
-    /// Where a row of a connector looks for its rail at a time: with how far the point is before a stop, for it may go round
-    /// by more than half within the segment of its body.
+    /// Hint for the place of a connector's row on its rail at a time. It tells the distance left before a stop, for the
+    /// point may go round by more than half within the segment of its body.
     pub(crate) fn hint_at(&self, id: ConnectorId, row: usize, time: Time) -> Option<RailHint> {
         let hint = self.connectors.states.get(id.index())?.hint_of(row).copied()?;
         Some(hint.with_left(self.followed(id, time).or(hint.left())))
     }
 
-    /// How far [m] the point is before a stop of a closed rail at a time, followed along the segment of its body, which
-    /// watches the stop.
+    /// Distance [m] left before a stop of a closed rail at a time, followed along the segment of the group that watches
+    /// the stop; `None` for other connectors and stops.
     fn followed(&self, id: ConnectorId, time: Time) -> Option<f64> {
         let connector = self.connector(id);
         let path = connector.path().filter(|path| connector.is_stop() && path.is_closed())?;
@@ -45,7 +45,7 @@ impl RigidSystem {
         hint.left()
     }
 
-    /// Notes how far the point is before a stop of a closed rail at a time.
+    /// Notes the distance left before a stop of a closed rail at a time.
     fn note_left(&mut self, id: ConnectorId, time: Time) {
         let stop = self.connector(id);
         if !(stop.is_stop() && stop.path().is_some_and(|path| path.is_closed())) {
@@ -56,7 +56,7 @@ impl RigidSystem {
         state.hint = state.hint.map(|hint| hint.with_left(Some(left)));
     }
 
-    /// The same for all stops that a group watches, the segment of which ends now.
+    /// Notes the distances left before all stops that a group watches, whose segment ends now.
     pub(super) fn note_ways(&mut self, leader: BodyId) {
         let watched = |system: &Self, place: usize| {
             let group = system.groups.by_leader[leader.index()].as_deref()?;
@@ -71,13 +71,14 @@ impl RigidSystem {
         }
     }
 
-    /// The way [m] to a stop that is a lap or more: its point has passed it from behind, where it does not hold it.
+    /// The way [m] to a stop, less a lap if it is a lap or more: the point has then passed the stop from behind, where
+    /// the stop does not hold it.
     fn within_lap(&self, id: ConnectorId, left: f64) -> f64 {
         let lap = self.connector(id).path().map_or(f64::INFINITY, |path| path.length());
         if left >= (1.0 - PASSED) * lap { left - lap } else { left }
     }
 
-    /// Notes where on their rails the points of a region's connectors are.
+    /// Notes the places on their rails of the points of a region's connectors.
     pub(crate) fn note_rails(&mut self, region: &Region, time: Time) {
         for &body in &region.bodies {
             for index in 0..self.connectors.of(body).len() {
@@ -89,7 +90,7 @@ impl RigidSystem {
                 }
                 let point = self.point_on_rail(id, time);
                 let hint = path.hint_near(point, state.hint.as_ref());
-                // A stop lies on whatever piece: it must see its point pass the joints before it.
+                // A stop may lie on any piece: its hint must follow its point over the joints before it.
                 if !self.connector(id).is_stop() {
                     self.set_hint(id, hint.staying());
                 } else if !self.is_led(id) {
@@ -103,8 +104,8 @@ impl RigidSystem {
         }
     }
 
-    /// Notes where the point of a rail is, and with it the rail's stops: beyond a sharp corner the piece before it
-    /// seems as near to them. They are seen along the piece, as if it went on: its end is an event.
+    /// Notes the place of a rail's point, for the rail and its stops: beyond a sharp corner the piece before it seems
+    /// as near to these. They are measured along the piece as if it went on: its end is an event.
     pub(super) fn set_hint(&mut self, id: ConnectorId, hint: RailHint) {
         self.connectors.states[id.index()].hint = Some(hint);
         for index in 0..self.connectors.of(self.connector(id).bodies()[0]).len() {
@@ -116,7 +117,7 @@ impl RigidSystem {
         }
     }
 
-    /// True for a stop that holds its point on the piece of a hint, which ends there in a corner.
+    /// True for a stop that holds its point on the piece of a hint, where that piece ends in a corner.
     pub(super) fn is_at_end(&self, stop: ConnectorId, hint: &RailHint) -> bool {
         let ConnectorKind::RailStop { path, at, upper, .. } = &self.connector(stop).kind else {
             return false;
@@ -124,21 +125,21 @@ impl RigidSystem {
         path.ends_in_corner(hint, *upper, *at)
     }
 
-    /// True for a stop whose rail is there, too.
+    /// True for a stop whose rail is a connector of the system, too.
     fn is_led(&self, id: ConnectorId) -> bool {
         let stop = self.connector(id);
         let beside = self.connectors.of(stop.bodies()[0]);
         beside.iter().any(|&rail| stop.is_stop_of(self.connector(rail)))
     }
 
-    /// Where [m] the point of a rail or a stop is at a time.
+    /// Position [m] of the point of a rail or a stop at a time, in world coordinates.
     pub(super) fn point_on_rail(&self, id: ConnectorId, time: Time) -> DVec2 {
         let (anchor, _) = self.connector(id).anchors();
         self.moving_at(anchor.body, time).pose.point_to_world(anchor.point)
     }
 
-    /// The point of a rail comes to a joint of the path: it goes on along the next piece, unless the joint is a
-    /// corner, where it is for now. True if it is one.
+    /// Moves the hint of a rail, whose point comes to a joint of the path, on to the next piece. True if the joint is a
+    /// corner, in which the point then is.
     pub(crate) fn pass_knot(&mut self, id: ConnectorId, time: Time) -> bool {
         let Some(path) = self.connector(id).path() else { return false };
         let place =
@@ -156,8 +157,8 @@ impl RigidSystem {
         corner.is_some()
     }
 
-    /// Notes where on their rails the points of a group are at its start: laps of an arc are told apart by
-    /// what is near. Rows on splines were followed to it.
+    /// Notes the places on their rails of a group's points at its start: laps of an arc are told apart by the last
+    /// place. Rows on splines were followed to it.
     pub(super) fn renew_hints(&mut self, group: &mut Group) {
         let count = group.bodies.len();
         let Group { bodies, state, rows, stops, .. } = group;
@@ -186,7 +187,7 @@ impl RigidSystem {
         self.note_hints(rows);
     }
 
-    /// Notes where on their rails the points of rows are, but for those that rest in a corner.
+    /// Notes the hints of rows for their rails, except for points that rest in a corner.
     pub(super) fn note_hints(&mut self, rows: &[HeldRow]) {
         for row in rows {
             if let (RowSource::Connector(id, _), Some(hint)) = (row.source, row.hint)

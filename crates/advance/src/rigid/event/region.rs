@@ -26,28 +26,28 @@ pub(crate) struct Touch {
 pub(crate) struct Region {
     /// The movable bodies, in the order in which they were found.
     pub(crate) bodies: Vec<BodyId>,
-    /// Every place where they touch, once.
+    /// Records of all places where they touch, each once.
     pub(crate) records: Vec<Collision>,
-    /// Every pair of features that touches.
+    /// All pairs of features that touch.
     pub(crate) touches: Vec<Touch>,
-    /// Gap [m] and rate [m/s] of each of them after the event.
+    /// Gap [m] and rate [m/s] of each pair in `touches` after the event.
     pub(crate) motions: Vec<(f64, f64)>,
-    /// Leaders of the groups that they belong to.
+    /// Leaders of the groups of these bodies.
     pub(crate) groups: Vec<BodyId>,
-    /// Why its bodies are looked at.
+    /// Cause of the event.
     pub(crate) cause: Cause,
-    /// What happens to it is one event too many in a short time.
+    /// True if the event is one too many in a short time.
     pub(crate) in_storm: bool,
-    /// It comes on so slowly that contacts which count as resting seem to take turns.
+    /// True if steps have become so short that contacts that count as resting seem to take turns.
     pub(crate) is_hasty: bool,
     fresh: Vec<Collision>,
-    /// By how much an impact changes the velocities (x, y, angle) of each of its bodies.
+    /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].
     pub(crate) changes: Vec<[f64; 3]>,
-    /// Whether an impulse acts on each of them.
+    /// Whether an impulse acts on each body.
     pub(crate) struck: Vec<bool>,
     /// Records that were left out because they jam.
     pub(super) left_out: Vec<Collision>,
-    /// Place of each body in `bodies`, valid where the stamp is the present one.
+    /// Stamp and place in `bodies` of each body, valid where the stamp is the present one.
     places: Vec<(u32, u32)>,
     stamp: u32,
 }
@@ -67,13 +67,13 @@ impl Region {
         }
     }
 
-    /// Place of a body in the region; `None` for others and for those that cannot move.
+    /// Place of a body in the region; `None` for bodies outside it and those that cannot move.
     pub(crate) fn place(&self, body: BodyId) -> Option<usize> {
         let &(stamp, place) = self.places.get(body.index())?;
         (stamp == self.stamp).then_some(place as usize)
     }
 
-    /// Sums what an impact changes of the velocities of the bodies.
+    /// Sums the changes of the bodies' velocities by an impact, and notes which bodies an impulse acts on.
     pub(super) fn sum_changes(&mut self, impact: &Impact) {
         let (mut changes, mut struck) = (std::mem::take(&mut self.changes), std::mem::take(&mut self.struck));
         changes.clear();
@@ -92,7 +92,7 @@ impl Region {
         (self.changes, self.struck) = (changes, struck);
     }
 
-    /// The row of a record in a problem of the region's bodies, in their order; `None` if nothing of it moves.
+    /// Row of a record in a problem of the region's bodies, in their order; `None` if neither of its bodies moves.
     pub(crate) fn row_of(&self, record: &Collision, offset: f64) -> Option<Row> {
         let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(ProblemBody);
         let sides = record.bodies().map(place);
@@ -100,7 +100,7 @@ impl Region {
         Some(if record.parties.bilateral { row.bilateral() } else { row })
     }
 
-    /// Gives a problem the region's bodies and no rows.
+    /// Fills a problem with the region's bodies, without rows.
     pub(crate) fn begin(&self, problem: &mut Problem, inertia: impl Fn(BodyId) -> InverseInertia) {
         problem.clear();
         for &body in &self.bodies {
@@ -118,7 +118,7 @@ impl Region {
 }
 
 impl RigidSystem {
-    /// Fills the region around some bodies at a time, along their present segments.
+    /// Collects the region around some bodies at a time, along their present segments.
     pub(crate) fn collect_region(&self, region: &mut Region, seeds: &[BodyId], time: Time) {
         region.clear(self.body_count());
         for &seed in seeds.iter().filter(|seed| self.is_movable(**seed)) {
@@ -141,7 +141,7 @@ impl RigidSystem {
         }
     }
 
-    /// Adds the records of a body of the region with all that it touches.
+    /// Adds the records of a body of the region with all bodies that it touches, and these bodies.
     fn collect_touches(&self, region: &mut Region, place: usize, time: Time) {
         let body = region.bodies[place];
         let moving = self.flyer(body).moving_at(time);
@@ -153,7 +153,7 @@ impl RigidSystem {
             let lanes = [&self.search.lanes[body.index()], &self.search.lanes[other.index()]];
             let reach = lanes[0].reach + lanes[1].reach + self.settings.tolerances.distance_tol();
             let offset = moving.pose.position - self.position_of(other, time);
-            // What has fired may be farther away by rounding.
+            // A contact that has fired may be farther apart by rounding.
             let has_fired = region.cause.fired().is_some_and(|fired| fired.bodies == sorted(body, other));
             if offset.length_squared() > reach * reach && !has_fired {
                 continue;
@@ -174,7 +174,7 @@ impl RigidSystem {
         }
     }
 
-    /// Where the centre of mass of a body is [m] at a time of its present segment.
+    /// Position [m] of a body's centre of mass at a time of its present segment.
     fn position_of(&self, body: BodyId, time: Time) -> DVec2 {
         let lane = &self.search.lanes[body.index()];
         let flown = || self.flyer(body).moving_at(time).pose.position;
@@ -185,7 +185,7 @@ impl RigidSystem {
         lane.position_at(time)
     }
 
-    /// Adds the records of two bodies in the target zone or nearer, or held farther away; true if there are any.
+    /// Adds the records of two bodies that take part in an event; true if there are any.
     fn touch(&self, region: &mut Region, [first, second]: &[Moment<'_>; 2], time: Time) -> bool {
         let tolerances = &self.settings.tolerances;
         let mut fresh = std::mem::take(&mut region.fresh);
@@ -198,9 +198,9 @@ impl RigidSystem {
             self.counts_as_touching(record, bodies, region.cause == Cause::Start, takes_over)
                 && (!(self.is_passed_over(record) || self.is_grazing(record)) || self.is_carried(record))
         });
-        // What has fired takes part, and what is put back at a tick, though it may have been moved out of its
-        // zone, or may have turned by a little since: where a block lies flat, to put back one of its corners
-        // would sink the other.
+        // A contact that has fired takes part, and one that is put back at a tick, though it may have been moved out of
+        // its zone or have turned a little since: where a block lies flat, putting back one of its corners would sink
+        // the other.
         let moved = self.ticks.moved;
         let fired = region.cause.fired();
         let waiting = if region.cause == Cause::Tick { self.ticks.waiting_of(bodies) } else { &[] };
@@ -225,10 +225,10 @@ impl RigidSystem {
         last.is_some_and(|record| record.involves_body(first.id) && record.involves_body(second.id))
     }
 
-    /// True if a record takes part in an event: what is at its target or nearer, what closes within the
-    /// target zone, and what was held already, or from the start, or takes over from a contact that has run
-    /// off its features. What carries a force does, though dense output may have it closing or opening
-    /// faster than what rests. Other rows have room, and fire in their own time if they come to close.
+    /// True if a record takes part in an event: a contact at its target or nearer, one that closes within the target
+    /// zone, one that is held already, or touches at the start, or takes over from a contact that has run off its
+    /// features; and one that carries a force, though dense output may have it closing or opening faster than a contact
+    /// at rest. Other contacts have room, and fire in their own time if they close.
     fn counts_as_touching(
         &self,
         record: &Collision,
@@ -249,7 +249,7 @@ impl RigidSystem {
             || self.is_carried(record)
     }
 
-    /// True if a contact is held now: the search leaves it alone.
+    /// True if a contact is held now, so that the search skips it.
     fn is_held_contact(&self, record: &Collision, bodies: [BodyId; 2]) -> bool {
         let (Some(touch), Some(pair)) = (touch_of(record, bodies), self.pairs.between(bodies[0], bodies[1]))
         else {
@@ -265,14 +265,14 @@ impl RigidSystem {
         groups.any(|group| group.rows.iter().any(|row| row.touch() == Some(touch)))
     }
 
-    /// Whether a record is likely to carry a force: if the search has left it alone until now, as it does
-    /// what is held; of others nothing is known.
+    /// `Some(true)` if a record is likely to carry a force, since its contact is held until now; `None` if nothing is
+    /// known.
     pub(crate) fn is_likely(&self, record: &Collision) -> Option<bool> {
         let [a, b] = record.bodies();
         self.is_held_contact(record, sorted(a, b)).then_some(true)
     }
 
-    /// Brings the records to the bodies' present motion at a time.
+    /// Updates the records to the bodies' present motion at a time.
     pub(crate) fn remeasure(&self, region: &mut Region, time: Time) {
         for record in &mut region.records {
             self.remeasure_record(record, time);
@@ -315,12 +315,12 @@ impl Touch {
         }
     }
 
-    /// A rule by which the search leaves the pair alone.
+    /// Rule by which the search skips the features.
     pub(crate) fn skipped(&self) -> FeatureRule {
         FeatureRule { features: self.features, target: None }
     }
 
-    /// A rule by which the pair fires only at a gap [m].
+    /// Rule by which the features fire only at a gap [m].
     pub(crate) fn lowered_to(&self, gap: f64) -> FeatureRule {
         FeatureRule { features: self.features, target: Some(gap) }
     }

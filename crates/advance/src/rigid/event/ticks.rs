@@ -1,12 +1,12 @@
-//! Without contact forces: slow contacts sink, and are put back once a step.
+//! Contacts that carry impulses only: slow ones sink, and are put back once a step.
 //!
-//! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was seen
-//! last, does not fire. At the next tick of the step its velocity is stopped by an impulse and it is moved
-//! back to its target gap, by the least displacement in the metric of the masses. What is pressed so hard
-//! that it sinks deep meanwhile is stopped there, too.
+//! A pair that closes more slowly than `velocity_tol`, or has not left its target zone since it was last seen, does not
+//! fire. At the next tick of the step an impulse stops its velocity, and it is moved back to its target gap by the
+//! least displacement in the metric of the masses. A pair that is pressed so hard that it sinks deep before the tick is
+//! stopped there, too.
 //!
-//! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another
-//! blow may drive one on into the other, and what has turned meanwhile touches elsewhere.
+//! Until then the two bodies are searched, and take part in impacts, as deep as they may have sunk: another impact may
+//! drive one further into the other, and a body that has turned meanwhile touches at other places.
 
 use super::cause::{Cause, EventWork};
 use super::region::{Region, Touch};
@@ -21,52 +21,53 @@ use halfgap_collision::{BodyId, BodyState, Tolerances};
 use halfgap_contact::Problem;
 use halfgap_geometry::FeatureId;
 
-/// Rounds of putting back: gaps are not linear in the displacement, but nearly. And so many more that go a
-/// part of the way.
+/// Number of rounds of putting back that go all the way: gaps are not linear in the displacement, but nearly.
 const ROUNDS: usize = 3;
+/// Number of further rounds of putting back that go a fraction of the way.
 const SHORT_ROUNDS: usize = 5;
-/// Part of its reach by which a body is moved in a round at most: farther, gaps are not nearly linear.
+/// Longest way of a body in one round, as a fraction of its reach: farther, gaps are not nearly linear.
 const LONGEST_WAY: f64 = 0.1;
-/// Part of the reach of the smaller body, and of the area over the reach of the thinner one, by which a pair
-/// may sink, beside what it slowly closes by in a step.
+/// Depth to which a pair may sink, as a fraction of the reach of the smaller body, beside the way that it slowly closes
+/// by in a step.
 const SUNK_SHARE: f64 = 1e-2;
+/// Bound of that depth, as a fraction of area over reach of the thinner body.
 const THIN_SHARE: f64 = 1e-1;
-/// Part of that room to which it sinks before it fires again.
+/// Fraction of the room to sink at which a pair fires again.
 const FIRST_SHARE: f64 = 0.6;
-/// Part of it beyond which it sinks no further, but for what others drive it.
+/// Fraction of the room beyond which a pair sinks no further, unless others drive it.
 const DEEPEST_SHARE: f64 = 0.9;
-/// Part of it by which it may sink further whenever it fires again, slowly.
+/// Fraction of the room by which a pair may sink further whenever it fires again, slowly.
 const FURTHER_SHARE: f64 = 1.0 / 96.0;
-/// So many times that room, what is deeper lies behind.
+/// Multiple of the room: features that are deeper lie on the far side of a body.
 const BEHIND: f64 = 1.25;
-/// Part of that room at which a fast pair has sunk, rather than just been seen.
+/// Fraction of the room beyond which a fast pair has sunk, rather than just been seen.
 const DEEP_SHARE: f64 = 0.3;
 
-/// So many collisions of what has sunk, within a step, are too many.
+/// Largest number of collisions of sunk contacts within a step.
 const MOST_PRESSED: u32 = 100_000;
 
-/// What waits for the next tick.
+/// Contacts that wait for the next tick.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ticks {
     /// Touches that have sunk, sorted.
     waiting: Vec<Touch>,
-    /// How far [m] bodies have been moved in being put back, zero but at a tick.
+    /// Distance [m] by which bodies have been moved in being put back; zero except during a tick.
     pub(crate) moved: f64,
-    /// Ticks that have gone by.
+    /// Number of ticks that have gone by.
     count: f64,
-    /// How often what waits has collided since the last.
+    /// Number of collisions of sunk contacts since the last tick.
     pressed: u32,
-    /// The laws of a region's bodies.
+    /// Buffer: indices of the laws of a region's bodies.
     laws: Vec<usize>,
 }
 
-/// The least displacement by which bodies are moved apart.
+/// Buffers of the least displacement that moves bodies apart.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lift {
     problem: Problem,
-    /// The record of each of its rows.
+    /// Index of the record of each row of the problem.
     rows: Vec<usize>,
-    /// By how much (x, y, angle) each body of the region is moved [m, rad].
+    /// Displacement (x, y, angle) of each body of the region [m, m, rad].
     shifts: Vec<[f64; 3]>,
 }
 
@@ -77,7 +78,7 @@ impl Ticks {
         }
     }
 
-    /// What waits of two bodies, the lesser first.
+    /// Waiting touches of two bodies, the lesser first.
     pub(super) fn waiting_of(&self, bodies: [BodyId; 2]) -> &[Touch] {
         let start = self.waiting.partition_point(|touch| touch.bodies < bodies);
         let count = self.waiting[start..].partition_point(|touch| touch.bodies == bodies);
@@ -86,7 +87,7 @@ impl Ticks {
 }
 
 impl RigidSystem {
-    /// True if a pair that fires is left to sink until the next tick.
+    /// Leaves a pair that fires to sink until the next tick; false if it has to be handled now.
     pub(crate) fn sinks(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let Some(step) = self.settings.impulse_step else { return false };
         let bodies = self.pairs.bodies(pair);
@@ -116,20 +117,24 @@ impl RigidSystem {
         true
     }
 
-    /// How far [m] a pair of bodies may sink until it is put back; zero where contacts carry forces.
+    /// Depth [m] by which a pair of bodies may sink below the target gap until it is put back; zero where contacts
+    /// carry forces.
+    ///
+    /// # Panics
+    /// If there is no such body.
     #[must_use]
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         let Some(step) = self.settings.impulse_step else { return 0.0 };
         let reach = bodies.map(|body| self.flyer(body).reach());
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         let of_bodies = (SUNK_SHARE * reach[0].min(reach[1])).min(self.thinness(bodies));
-        // What is in the target zone is where it may be, and may sink from there.
+        // Contacts may be anywhere in the target zone, and sink from there: a first firing lies no higher than its end.
         of_bodies.max(accuracy / FIRST_SHARE) + velocity_tol * step
     }
 
-    /// Gap [m] at which a contact without force fires that has a gap now and does not open. What has been
-    /// stopped below its zone, until it is put back, may be pressed on by what acts on its bodies, or by
-    /// their turning, at once: it goes a part of the way that is left to where it may sink no further.
+    /// Gap [m] at which a contact without force that does not open fires, by its present gap [m]. Forces on its bodies,
+    /// or their turning, may press on at once a contact that was stopped below its zone until it is put back: it may go
+    /// a fraction of the way that is left to the depth beyond which it sinks no further.
     pub(crate) fn sinks_to(&self, touch: Touch, gap: f64) -> f64 {
         let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
         if self.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
@@ -139,7 +144,7 @@ impl RigidSystem {
         gap - self.sink().max(FURTHER_SHARE * left)
     }
 
-    /// How far [m] one body may lie in another and be told from what has gone through it.
+    /// Depth [m] up to which a body that lies in another is told from one that has gone through it.
     pub(crate) fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
         let shares = bodies.map(|body| {
             let flyer = self.flyer(body);
@@ -148,8 +153,9 @@ impl RigidSystem {
         shares[0].min(shares[1])
     }
 
-    /// How deep [m] two bodies, the lesser first, may lie in one another: where they have been left to sink,
-    /// have been moved, or would sink within a step. Where contacts carry forces, because held ones do.
+    /// Depth [m] to which two bodies, the lesser first, may lie in one another. Where contacts carry impulses only,
+    /// they have been left to sink, have been moved, or would sink within a step; where contacts carry forces, held
+    /// ones may lie deep.
     pub(crate) fn may_have_sunk_by(&self, bodies: [BodyId; 2]) -> f64 {
         if self.settings.impulse_step.is_none() {
             return self.held_depth(bodies);
@@ -157,13 +163,16 @@ impl RigidSystem {
         // Either may have been moved against the other.
         let moved = 2.0 * self.ticks.moved;
         if !self.ticks.waiting_of(bodies).is_empty() {
-            // What is turned as it is put back sinks elsewhere.
+            // A body that is turned as it is put back sinks at other places.
             return BEHIND * self.room_to_sink(bodies) + moved.min(self.thinness(bodies));
         }
         self.settings.search.depth.max(moved).min(self.thinness(bodies))
     }
 
-    /// Counts the collisions of what has sunk within a step.
+    /// Counts a collision of a touch, if it has sunk.
+    ///
+    /// # Errors
+    /// More than `MOST_PRESSED` such collisions since the last tick.
     pub(crate) fn note_pressed(&mut self, touch: Touch) -> Result<(), AdvanceError> {
         let Some(step) = self.settings.impulse_step else { return Ok(()) };
         let sunk = self.settings.tolerances.target_gap - DEEP_SHARE * self.room_to_sink(touch.bodies);
@@ -179,7 +188,7 @@ impl RigidSystem {
         Err(AdvanceError::Pressed { time, between: Between { primary, normal }, events, step })
     }
 
-    /// The first tick after the present time.
+    /// Time of the first tick after the present time.
     fn next_tick(&mut self, step: f64) -> Time {
         let passed = (self.now.since(self.start) / step).floor();
         self.ticks.count = passed.max(self.ticks.count);
@@ -206,7 +215,7 @@ impl RigidSystem {
         outcome
     }
 
-    /// What could not be put back altogether is put back further at the next tick.
+    /// Keeps waiting the touches that could not be put back altogether, and sets the next tick for them.
     fn keep_what_is_sunk(&mut self) {
         let mut waiting = std::mem::take(&mut self.ticks.waiting);
         let Tolerances { target_gap, accuracy, .. } = self.settings.tolerances;
@@ -221,8 +230,8 @@ impl RigidSystem {
         }
     }
 
-    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target, and takes
-    /// in what they come upon.
+    /// Moves the bodies of a region, which are in flight, so that no gap is less than its target; bodies that they come
+    /// to touch join the region.
     pub(crate) fn put_back(&mut self, work: &mut EventWork) {
         let (mut full, mut short) = (0, 0);
         while full < ROUNDS && short < SHORT_ROUNDS {
@@ -243,13 +252,13 @@ impl RigidSystem {
             self.remeasure(&mut work.region, self.now);
         }
         self.ticks.moved = 0.0;
-        // Where connectors are put together again afterwards, what touches may yet sink.
+        // Touching contacts may yet sink when connectors are put together again afterwards.
         for &touch in &work.region.touches {
             self.ticks.wait(touch);
         }
     }
 
-    /// One round: tells which part of the way it went; `None` if nothing had to move.
+    /// Makes one round; returns the fraction of the displacement that was made, or `None` if nothing had to move.
     fn move_apart(&mut self, work: &mut EventWork) -> Option<f64> {
         let EventWork { region, settling, lift, .. } = work;
         if !self.pose_lift(region, lift) || settling.solve(&lift.problem).is_err() {
@@ -271,8 +280,8 @@ impl RigidSystem {
         Some(share)
     }
 
-    /// The longest way [m] of a point of a region's bodies along a displacement (x, y, angle) of each, and
-    /// the longest in parts of its body's reach.
+    /// Longest way of a point of a region's bodies along a displacement (x, y, angle) of each: in metres, and as a
+    /// fraction of the body's reach.
     fn longest_way(&self, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
         let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
             let reach = self.flyer(body).reach();
@@ -282,7 +291,7 @@ impl RigidSystem {
         ways.fold((0.0, 0.0), |most, way| (most.0.max(way.0), most.1.max(way.1)))
     }
 
-    /// Sets up the least displacement of a region's bodies that leaves no gap less than its target; false if none is.
+    /// Sets up the least displacement of a region's bodies that leaves no gap below its target; false if none is.
     fn pose_lift(&self, region: &Region, Lift { problem, rows, .. }: &mut Lift) -> bool {
         region.begin(problem, |body| self.inertia(body));
         rows.clear();
@@ -299,7 +308,7 @@ impl RigidSystem {
         any_sunk
     }
 
-    /// Potential energy [J] of the bodies of a region, as far as it has one.
+    /// Potential energy [J] of the bodies of a region under uniform accelerations and laws that have a potential.
     fn potential_of(&mut self, region: &Region) -> f64 {
         let mut energy = 0.0;
         for &body in &region.bodies {

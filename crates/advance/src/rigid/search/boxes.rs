@@ -1,8 +1,8 @@
 //! A body's room to move: a fat box in the broad phase, and when the body could leave it.
 //!
-//! While a body stays in its box, only bodies whose boxes overlap can meet it. How fat a box is follows what
-//! it finds: many neighbours make it shrink, few make it grow, between bounds that depend on the body's size.
-//! A body in flight has most of its room ahead.
+//! While a body stays in its box, only bodies whose boxes overlap can meet it. The size of a box follows the number of
+//! neighbours found: many make it shrink, few make it grow, between bounds that depend on the body's size. The box of a
+//! body in flight has most of its room ahead.
 
 use crate::rigid::motion::flyer::Flyer;
 use crate::rigid::motion::lane::Lane;
@@ -12,27 +12,29 @@ use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
 use halfgap_geometry::Aabb;
 
-/// More neighbours than this make a box shrink. Fewer cost more moves of boxes in a gas, more cost more
+/// Number of neighbours above which a box shrinks. Fewer neighbours cost more moves of boxes in a gas, more cost more
 /// predictions: from 8 to 14 there is little between them.
 const MANY: usize = 10;
-/// Fewer neighbours than this make a box grow.
+/// Number of neighbours below which a box grows.
 const FEW: usize = 5;
-/// By how much a box grows or shrinks at a time.
+/// Factor by which a margin grows or shrinks at a time.
 const FACTOR: f64 = 1.5;
-/// A box is set ahead of a body in flight by this part of its margin: a gas has a seventh fewer moves of boxes for it.
+/// Distance by which a box is set ahead of a body in flight, as a fraction of its margin: a gas has a seventh fewer
+/// moves of boxes for it.
 const AHEAD: f64 = 0.6;
-/// A margin is at least this part of the body's reach, and at most so many times, beyond all coordinates:
-/// what flies off, or is small and far from all else, as a moon, would leave its boxes without end.
+/// Least margin as a multiple of the body's reach.
 const SMALLEST_MARGIN: f64 = 1.0 / 64.0;
+/// Largest margin as a multiple of the body's reach, beyond all coordinates: with a smaller one a body that flies off,
+/// or is small and far from all others, as a moon, would leave its boxes without end.
 const LARGEST_MARGIN: f64 = 1e80;
 
-/// The room a body has around the circle of its reach.
+/// Room of a body around the circle of its reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Room {
     /// Distance [m] that the centre of mass may move from where the box was set, along either axis.
     margin: f64,
     reach: f64,
-    /// Bodies nearer than this [m] are neighbours.
+    /// Gap [m] below which bodies are neighbours.
     skin: f64,
 }
 
@@ -41,7 +43,7 @@ impl Room {
         Self { margin: reach, reach, skin }
     }
 
-    /// The box around the body at a time, with the room that it has.
+    /// Box around the body and its room at a time.
     pub(crate) fn fat_box(&self, lane: &Lane, flyer: &Flyer, time: Time) -> Aabb {
         if lane.is_at_rest {
             return flyer.body().shape.bounds_at(&flyer.moving_at(time).pose).grown(self.skin);
@@ -50,7 +52,7 @@ impl Room {
             Some(path) => path.position + self.ahead(path.velocity),
             None => {
                 let state = flyer.state_at(time);
-                // Of what does not fly only a bound on the speed is known: it has as much room on all sides.
+                // Of a body that does not fly only a bound on the speed is known: it has as much room on all sides.
                 let ahead = flyer.flight().map_or(DVec2::ZERO, |_| self.ahead(state.velocity));
                 state.position + ahead
             }
@@ -58,7 +60,7 @@ impl Room {
         Aabb::around_disc(center, self.reach + self.margin + self.skin)
     }
 
-    /// By how much [m] the box of what flies is set ahead of the body.
+    /// Offset [m] by which the box of a body in flight is set ahead.
     fn ahead(&self, velocity: DVec2) -> DVec2 {
         velocity.try_normalize().map_or(DVec2::ZERO, |direction| direction * (AHEAD * self.margin))
     }
@@ -72,7 +74,7 @@ impl Room {
         }
     }
 
-    /// A time before which the body surely stays in the given box; `None` if it stays for ever.
+    /// Time before which the body surely stays in the given box; `None` if it stays for as long as its motion is known.
     pub(crate) fn stays_until(&self, lane: &Lane, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
         if lane.is_at_rest {
             return None;
@@ -95,22 +97,22 @@ impl Room {
                 let by_axes = damped_leaving_time(flight, offset, &core)?;
                 Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))
             }
-            // What comes after the segment is another question.
+            // The motion after the segment is predicted anew.
             Path::Dense(dense) if core.contains(&dense.center_box()) => None,
             Path::Dense(dense) => {
                 let speed = dense.top_speed();
-                // What does not move stays, also where rounding puts it just outside.
+                // A body that does not move stays, even where rounding puts it just outside.
                 (speed > 0.0).then(|| time.plus(slack() / speed))
             }
         }
     }
 }
 
-/// When a point on a parabola first leaves a box, in seconds from its start.
+/// Time [s] from its start at which a point on a parabola first leaves a box; `None` if it never does.
 fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
     let (x, v, a) = (path.position, path.velocity, path.acceleration);
     if a == DVec2::ZERO {
-        // Straight on: along each axis towards one of two sides. What stands still along one goes to none.
+        // Straight on: along each axis towards one of two sides, or neither where the velocity along it is zero.
         let wait =
             |low: f64, high: f64, v: f64| if v == 0.0 { f64::INFINITY } else { (low / v).max(high / v) };
         let [along_x, along_y] =
@@ -121,8 +123,8 @@ fn leaving_time(path: &Polynomial, core: &Aabb) -> Option<f64> {
     leaving_time_within(path, [a, a], core)
 }
 
-/// A time [s] before which a damped flight from an offset [s] surely stays in a box: its acceleration keeps
-/// its direction and dies away, so that along each axis the flight is between a straight line and a parabola.
+/// Time [s] before which a damped flight from an offset [s] surely stays in a box: its acceleration keeps its direction
+/// and dies away, so that along each axis the flight is between a straight line and a parabola.
 fn damped_leaving_time(flight: &Flight, offset: f64, core: &Aabb) -> Option<f64> {
     let state = flight.state_at(offset);
     let acceleration = flight.acceleration_at(offset);
@@ -130,8 +132,8 @@ fn damped_leaving_time(flight: &Flight, offset: f64, core: &Aabb) -> Option<f64>
     leaving_time_within(&path, [acceleration.min(DVec2::ZERO), acceleration.max(DVec2::ZERO)], core)
 }
 
-/// When a point first leaves a box at the earliest, if its accelerations [m/s^2] lie between a least and a
-/// greatest along each axis.
+/// Earliest time [s] at which a point may leave a box, if its accelerations [m/s^2] lie between a least and a greatest
+/// along each axis.
 fn leaving_time_within(path: &Polynomial, [least, greatest]: [DVec2; 2], core: &Aabb) -> Option<f64> {
     let (x, v) = (path.position, path.velocity);
     [

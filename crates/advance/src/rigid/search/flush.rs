@@ -1,10 +1,10 @@
 //! Corners that pass over each other where two surfaces are flush.
 //!
-//! What rests has its target gap under it. A block on a fixed table and a cart beside it are both lifted by
-//! that, so that the block, as it slides from the table onto the cart, has its corner at the very height of
-//! the cart's: whether it runs against it is for the last digit to say. Where the two edges that lead away
-//! from the corners are parallel, or as nearly as contacts in the target zone may leave them, and the one is to slide
-//! along the other, it does not.
+//! A resting body has its target gap under it. A block on a fixed table and a cart beside it are both lifted by that,
+//! so that the block, as it slides from the table onto the cart, has its corner at the very height of the cart's:
+//! whether the two meet is for the last digit to say. Where the two edges that lead away from the corners are parallel,
+//! or as nearly as contacts in the target zone may leave them, and one is to slide along the other, the corners do not
+//! meet.
 
 use super::pairs::PairId;
 use crate::rigid::event::region::Touch;
@@ -13,17 +13,18 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
 use halfgap_geometry::{Edge, Feature, FeatureId};
 
-/// Angle [rad] between edges that are flush, whatever their lengths. What rests in a wide target zone may lie askew by
-/// more: by the width of the zone at the other end of the shorter edge.
+/// Angle [rad] up to which edges are flush, whatever their lengths. Bodies that rest in a wide target zone may lie
+/// askew by more: by the width of the zone at the other end of the shorter edge.
 const PARALLEL: f64 = 1e-6;
-/// Only edges that are so many times as long as half of the zone may be askew: shorter ones are within it at any angle.
+/// Least length of edges that may be askew, as a multiple of half the zone's width: shorter ones are within it at any
+/// angle.
 const LONG: f64 = 24.0;
-/// Corners that meet are no farther from each other than so many target gaps.
+/// Largest distance of corners that meet, in target gaps.
 const NEAR: f64 = 4.0;
-/// What passes rises or sinks by less than this part of its way; more along edges at a larger angle.
+/// Largest rise or fall of a passing corner as a fraction of its way; more along edges at a larger angle.
 const LEVEL: f64 = 1e-3;
 
-/// Pairs of features, of the lesser body first.
+/// Pairs of features that pass each other, that of the lesser body first.
 type Passing = [Option<[FeatureId; 2]>; 4];
 
 /// A corner of a body in motion.
@@ -32,7 +33,7 @@ struct Corner {
     id: FeatureId,
     /// The edges that end and start there.
     sides: [FeatureId; 2],
-    /// How they lead away from it, if they are straight.
+    /// Directions and lengths of these edges, if they are straight.
     straight: [Option<Straight>; 2],
     place: DVec2,
     velocity: DVec2,
@@ -48,8 +49,8 @@ struct Straight {
 }
 
 impl RigidSystem {
-    /// True if two features that fire are those of corners that pass over each other: the search leaves these
-    /// alone from now on.
+    /// True if two features that fire are those of corners that pass over each other: the search skips these from now
+    /// on.
     pub(crate) fn passes_over(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let is_left_alone = |rule: &FeatureRule| rule.features == features && rule.target.is_none();
         if self.pairs.rules(pair).iter().any(is_left_alone) {
@@ -68,15 +69,15 @@ impl RigidSystem {
         true
     }
 
-    /// True if a record is of corners that pass over each other.
+    /// True if the features of a record are those of corners that pass over each other.
     pub(crate) fn is_passed_over(&self, record: &Collision) -> bool {
         record.motion.normal_velocity < -self.rest_speed()
             && Touch::of(record)
                 .is_some_and(|touch| self.passing_features(touch.bodies, touch.features).is_some())
     }
 
-    /// The pairs of features that do not run against each other where two features meet, these among them:
-    /// those of corners that pass over each other.
+    /// Pairs of features of two corners that pass over each other, where the given features are one of them; `None` if
+    /// there are no such corners.
     fn passing_features(&self, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<Passing> {
         if bodies.iter().any(|&body| self.flyer(body).disc().is_some()) {
             return None;
@@ -123,8 +124,8 @@ impl RigidSystem {
         }
     }
 
-    /// Which side of each of two corners that meet is flush with that of the other, if they are to pass over
-    /// each other: that which ends there or that which starts there.
+    /// For two corners that meet and pass over each other, the side of each that is flush with that of the other: 0 for
+    /// the edge that ends there, 1 for the edge that starts there. `None` if they do not pass.
     fn flush_sides(&self, [first, second]: [&Corner; 2]) -> Option<[usize; 2]> {
         let (gap, accuracy) = (self.settings.tolerances.target_gap, self.settings.tolerances.accuracy);
         let (offset, velocity) = (first.place - second.place, first.velocity - second.velocity);
@@ -144,7 +145,7 @@ impl RigidSystem {
             let tilt = PARALLEL.max(askew);
             let angle = along_first.perp_dot(along_second).abs();
             let is_parallel = along_first.dot(along_second) < 0.0 && angle <= tilt;
-            // What lies askew comes as near as contacts do, which sink to the end of the zone, and no nearer.
+            // Edges askew come as near as contacts do, which sink to the end of the zone, and no nearer.
             let lowest = if angle <= PARALLEL { -accuracy } else { gap - accuracy - self.sink() };
             // The inside of a body is on the left of its outline.
             let outward = -along_second.perp();

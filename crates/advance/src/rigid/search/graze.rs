@@ -1,10 +1,10 @@
-//! Contacts that graze: features that come nearer than where bodies fire, and turn back before they touch.
+//! Contacts that graze: features that come nearer than the gap at which bodies fire, and turn back before they touch.
 //!
-//! Near a dead point of what connectors hold, a part of a body comes towards another at a speed that vanishes
-//! with the gap: the corner beside the hinge of a lid that falls shut, a bob that just clears the floor, a
-//! slider at its dead centre. To stop such a part stops the whole mechanism, by a lever that is next to none;
-//! and where it lies flush in the end, it is the far corner that should do so. What fires at the target gap,
-//! but is turned back by its own motion before it lies deeper than contacts may anyway, is let pass.
+//! Near a dead point of a mechanism held by connectors, a part of a body comes towards another at a speed that vanishes
+//! with the gap: the corner beside the hinge of a lid that falls shut, a bob that just clears the floor, a slider at
+//! its dead centre. Stopping such a part stops the whole mechanism, by next to no lever arm; and where the part lies
+//! flush in the end, it is the far corner that should stop it. A contact that fires at the target gap, but is turned
+//! back by its own motion before it lies deeper than contacts may anyway, is let pass.
 
 use super::pairs::PairId;
 use crate::rigid::event::region::Touch;
@@ -15,13 +15,13 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule};
 use halfgap_geometry::{Feature, FeatureId};
 
-/// Depth, in target gaps, that what grazes does not come to: a little less than that from which contacts are lifted.
+/// Depth, in target gaps, that grazing features do not come to: a little less than that from which contacts are lifted.
 const DEPTH: f64 = 0.9 * DEEPEST;
-/// Gaps may seem to be less than they are by so many times what connectors are off by in the middle of a step.
+/// Apparent loss of a gap as a multiple of the connectors' error in the middle of a step.
 const SEEMING: f64 = 2.0;
 
 impl RigidSystem {
-    /// True if two features that fire only graze: the search lets them come as deep from now on.
+    /// True if two features that fire only graze: the search lets them come down to the least grazing gap from now on.
     pub(crate) fn grazes(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let touch = Touch { bodies: self.pairs.bodies(pair), features };
         let most = self.grazing_gap(touch.bodies);
@@ -40,25 +40,26 @@ impl RigidSystem {
         true
     }
 
-    /// True if a record is of features that close, and only graze.
+    /// True if the features of a record close, and only graze.
     pub(crate) fn is_grazing(&self, record: &Collision) -> bool {
         record.motion.normal_velocity < -self.rest_speed()
             && Touch::of(record).is_some_and(|touch| self.turns_back(touch))
     }
 
-    /// The gap [m] of what grazes is larger: bodies do not overlap by what one sees.
+    /// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
+    /// bodies do not visibly overlap.
     pub(crate) fn grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
         if self.is_zone_seen(bodies) { 0.0 } else { -DEPTH * self.settings.tolerances.target_gap }
     }
 
-    /// True if features of which one is held by connectors, as they move now, part again before they are as
-    /// deep as what grazes never is.
+    /// True if features, one of them on a body held by connectors, part again in their present motion before they come
+    /// to the least grazing gap.
     fn turns_back(&self, touch: Touch) -> bool {
         let least = self.least_grazing_gap(touch.bodies);
         let Some(corners) = self.corners_of(touch) else {
             return self.parts_again(touch.bodies, least, |time| self.gap_at(touch, time));
         };
-        // Of two corners that run into each other the distance is never negative: it would grow again.
+        // The distance of two corners that run into each other is never negative: it would grow again.
         let apart = |time: Time| {
             let [a, b] = [0, 1].map(|side: usize| {
                 let moving = self.flyer(touch.bodies[side]).moving_at(time);
@@ -74,7 +75,7 @@ impl RigidSystem {
         })
     }
 
-    /// The places of two sharp corners that touch [m], each in its body's coordinates; `None` of other features.
+    /// Positions [m] of two sharp corners that touch, each in its body's coordinates; `None` for other features.
     fn corners_of(&self, Touch { bodies, features }: Touch) -> Option<[DVec2; 2]> {
         let corner = |side: usize| match self.flyer(bodies[side]).body().shape.feature(features[side]) {
             Feature::Round(round) if round.radius == 0.0 => Some(round.center),
@@ -83,15 +84,15 @@ impl RigidSystem {
         Some([corner(0)?, corner(1)?])
     }
 
-    /// The gap [m] to which what grazes may seem to come: between the ends of a step its dense output has
-    /// bodies off what holds them, and that is no depth.
+    /// Gap [m] to which grazing features may seem to come: between the ends of a step dense output has bodies off their
+    /// held rows, which is no real depth.
     fn least_grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
         let errors = bodies.iter().filter_map(|&body| self.group_of(body)).map(|group| group.largest_error);
         self.grazing_gap(bodies) - SEEMING * errors.sum::<f64>()
     }
 
-    /// True if a rope one end of which is held by other connectors, too, as it moves now, is slack again
-    /// before it is longer by as much as what grazes may be deep.
+    /// True if a rope, one end of which other connectors hold, too, is slack again in its present motion before it is
+    /// longer by the grazing slack.
     pub(crate) fn rope_grazes(&self, id: ConnectorId) -> bool {
         let connector = self.connector(id);
         let bodies = connector.bodies();
@@ -102,14 +103,13 @@ impl RigidSystem {
         })
     }
 
-    /// How much longer [m] a rope is taken that grazes.
+    /// Excess length [m] that a grazing rope is given.
     pub(crate) fn grazing_slack(&self) -> f64 {
         DEPTH * self.settings.tolerances.target_gap
     }
 
-    /// True if a gap that closes between bodies of which one is held by connectors, as they move now, opens
-    /// again before it is less than so much [m]. It is given, with its rate [m/s], at any time of the present
-    /// motion.
+    /// True if a closing gap between bodies, one of them held by connectors, opens again in the present motion before
+    /// it falls below `least` [m]. `gap_at` returns gap [m] and rate [m/s] at any time of this motion.
     fn parts_again(&self, bodies: [BodyId; 2], least: f64, gap_at: impl Fn(Time) -> (f64, f64)) -> bool {
         let is_moved = |body: &BodyId| !body.is_world() && self.group_of(*body).is_some();
         if !bodies.iter().any(|&body| self.is_tied(body)) || !bodies.iter().any(is_moved) {
@@ -120,7 +120,7 @@ impl RigidSystem {
         if rate >= 0.0 || room <= 0.0 {
             return false;
         }
-        // With a constant acceleration, what turns back within the room does so within this time.
+        // With a constant acceleration, a gap that turns back within the room does so within this time.
         let ends = bodies.into_iter().filter_map(|body| self.segment_end(body));
         let known = ends.map(|end| end.since(self.now)).fold(f64::INFINITY, f64::min);
         let span = (-2.0 * room / rate).min(known);
@@ -133,7 +133,7 @@ impl RigidSystem {
         turns && (nearest > known || gap_at(self.now.plus(nearest)).0 > least)
     }
 
-    /// True if a body is held by a connector, whichever way it is pushed.
+    /// True if a body is tied by a bilateral connector.
     pub(crate) fn is_tied(&self, body: BodyId) -> bool {
         !body.is_world() && self.connectors.of(body).iter().any(|&id| self.connector(id).is_bilateral())
     }

@@ -1,19 +1,18 @@
-//! How far ahead of its bodies a pair is searched: what comes first changes their motions, and what would
-//! come later is looked for when it has not.
+//! The horizon of a pair's search: a little beyond the first contact known of its bodies, for that changes their
+//! motions. Later contacts are searched for if it has not come.
 
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use halfgap_collision::BodyId;
 
-/// A search goes beyond the first contact by this part of the time until it: where that is corrected, what
-/// comes close after is known.
+/// Time by which a search goes beyond the first contact, as a fraction of the time until it: where the contact's time
+/// is corrected, contacts that come close after it are known.
 const BEYOND: f64 = 1.0 / 8.0;
-/// What ends no sooner than after this part of what is known of the motions is searched to the end: bounds on
-/// all of a step are at hand.
+/// Fraction of the known motion below which a search is worth ending early: bounds on all of a step are at hand.
 const WORTHWHILE: f64 = 0.5;
 
 impl RigidSystem {
-    /// Until when, of the time up to `until`, two bodies are searched from a time on.
+    /// Time, at most `until`, up to which two bodies are searched from a time on.
     pub(super) fn searched_until(&self, bodies: [BodyId; 2], from: Time, until: Time) -> Time {
         let [a, b] = bodies.map(|body| self.search.first_contacts[self.slot(body)]);
         let ahead = |contact: Time| if contact > from { contact } else { Time::NEVER };
@@ -21,22 +20,22 @@ impl RigidSystem {
         if wait < WORTHWHILE * until.since(from) { from.plus(wait) } else { until }
     }
 
-    /// Notes a contact of two bodies that was found by a search from a time on.
+    /// Notes a contact of two bodies that a search from a time on has found.
     pub(super) fn note_contact_ahead(&mut self, bodies: [BodyId; 2], from: Time, contact: Time) {
         for body in bodies.into_iter().filter(|&body| !self.pairs.is_fixed(body)) {
             let slot = self.slot(body);
             let first = &mut self.search.first_contacts[slot];
-            // One that has gone by without a change of the motion is none.
+            // A contact that has gone by without a change of the motion no longer counts.
             *first = if *first > from { contact.min(*first) } else { contact };
         }
     }
 
-    /// Forgets the contacts of a body, whose motion is another.
+    /// Forgets the first contact of a body whose motion has changed.
     pub(super) fn forget_contacts_ahead(&mut self, body: BodyId) {
         self.search.first_contacts[body.index()] = Time::NEVER;
     }
 
-    /// Bodies of a group share an entry: what changes the motion of one changes that of all.
+    /// Index of a body's entry. Bodies of a group share one: a change of one's motion is a change of all.
     fn slot(&self, body: BodyId) -> usize {
         self.groups.leader_of[body.index()].unwrap_or(body).index()
     }
@@ -56,8 +55,9 @@ mod tests {
     const MOVING: BodyId = BodyId(0);
     const NEAR: BodyId = BodyId(1);
     const FAR: BodyId = BodyId(2);
-    /// When the moving square meets the near one and, without it, the far one [s].
+    /// Time [s] at which the moving square meets the near one.
     const MEETS_NEAR: f64 = 0.05;
+    /// Time [s] at which it meets the far one, if the near one is away.
     const MEETS_FAR: f64 = 0.2;
 
     /// A square that moves at 1 m/s towards a small one, behind which there is a large one.

@@ -1,8 +1,8 @@
-//! Marks on bodies that are all taken away at once.
+//! Marks on bodies that are all removed at once.
 
 use halfgap_collision::BodyId;
 
-/// A set of bodies, emptied without a look at them.
+/// A set of bodies that is emptied without visiting them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Marks {
     /// A body is marked where this is the present stamp.
@@ -11,7 +11,7 @@ pub(crate) struct Marks {
 }
 
 impl Marks {
-    /// No body is marked, of so many.
+    /// Removes all marks, and makes room for a number of bodies.
     pub(crate) fn begin(&mut self, body_count: usize) {
         self.stamps.resize(body_count, 0);
         self.stamp = self.stamp.wrapping_add(1);
@@ -26,7 +26,7 @@ impl Marks {
         self.stamps[body.index()] = self.stamp;
     }
 
-    /// True if the body is marked, from now on no longer.
+    /// Removes the mark of a body; true if it had one.
     #[inline]
     pub(crate) fn take(&mut self, body: BodyId) -> bool {
         std::mem::take(&mut self.stamps[body.index()]) == self.stamp

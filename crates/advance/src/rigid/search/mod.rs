@@ -1,8 +1,8 @@
-//! Which bodies come into contact next, and when. `neighbourhood` is what is known of the bodies; `boxes` are the bodies' room in the broad phase, `pairs`
-//! what is known of two bodies near each other (`marks`: a set of bodies), `predictions` ask the
-//! collision crate when they touch, `horizon` how far ahead. `rules` say which features of a pair the search
-//! leaves alone or lets come nearer: held contacts, corners that pass over each other (`flush`), what only
-//! grazes (`graze`).
+//! Search for the next contacts: between which bodies, and when. `neighbourhood` holds the data of the bodies; `boxes`
+//! are the bodies' room in the broad phase, `pairs` the state of two bodies near each other (`marks`: a set of bodies),
+//! `predictions` ask the collision crate when they touch, `horizon` limits how far ahead. `rules` are the features of a
+//! pair that the search skips or lets come nearer: held contacts, corners that pass over each other (`flush`), contacts
+//! that only graze (`graze`).
 
 pub(super) mod boxes;
 pub(super) mod flush;

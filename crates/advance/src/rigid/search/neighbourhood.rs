@@ -1,5 +1,5 @@
-//! What the search for contacts knows beside the pairs: where bodies may be, who may meet whom, how far ahead
-//! each is known.
+//! Data of the search for contacts beside the pairs: where bodies may be, which of them may meet, and the first contact
+//! known of each.
 
 use super::boxes::Room;
 use super::marks::Marks;
@@ -12,30 +12,32 @@ use crate::time::Time;
 use halfgap_collision::{BodyId, BroadPhase};
 use halfgap_geometry::FeatureId;
 
-/// The bodies as the search sees them, and its buffers.
+/// Bodies as the search sees them, with its buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbourhood {
-    /// What predictions read of each body.
+    /// Motion and size of each body, as predictions read them.
     pub(crate) lanes: Vec<Lane>,
-    /// The room of each body in the broad phase.
+    /// Room of each body in the broad phase.
     pub(super) rooms: Vec<Room>,
     pub(super) broad: BroadPhase,
-    /// The first contact that is known of each body, or of the group that it leads.
+    /// Time of the first contact known of each body, or of the group that it leads.
     pub(super) first_contacts: Vec<Time>,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
-    /// Bodies that no other can collide with.
+    /// True for bodies that no other body can collide with.
     pub(crate) loners: Vec<bool>,
-    /// Contacts that lie deep, and at which gap [m] they were to fire, while what the search is told is made anew.
+    /// Contacts that lie deep, with the gaps [m] at which they were to fire, while the rules are made anew.
     pub(super) deep: Vec<(PairId, [FeatureId; 2], f64)>,
-    /// Buffers: links of a body, bodies near it, which of them are known.
+    /// Buffer: links of a body.
     pub(crate) links: Vec<Link>,
+    /// Buffer: bodies near a body.
     pub(super) neighbours: Vec<BodyId>,
+    /// Buffer: which of these are known already.
     pub(super) marks: Marks,
 }
 
 impl Neighbourhood {
-    /// Of bodies of which nothing was searched yet; the broad phase is still empty.
+    /// Sets up the search for bodies; the broad phase is still empty.
     pub(crate) fn new(
         flyers: &[Flyer],
         mut excluded: Vec<(BodyId, BodyId)>,

@@ -1,4 +1,5 @@
-//! Predictions of pairs of bodies whose boxes overlap: when their next contact is, or until when there is none.
+//! Pairs of bodies whose boxes overlap, with the prediction of their next contact, or of the time until which there is
+//! none.
 
 use crate::time::Time;
 use halfgap_collision::{BodyId, FeatureRule};
@@ -8,27 +9,27 @@ use halfgap_geometry::FeatureId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PairId(pub(crate) u32);
 
-/// What is known of a pair's next contact.
+/// Prediction of a pair's next contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Prediction {
-    /// A contact of these features, at the time until which the pair is clear.
+    /// Contact of these features, at the time until which the pair is clear.
     Contact([FeatureId; 2]),
-    /// No contact before that time, at which the search goes on.
+    /// No contact before the time until which the pair is clear; then the search goes on.
     SearchOn,
     /// No contact before one of the bodies leaves its box: nothing is in the queue.
     Quiet,
 }
 
-/// Two bodies whose boxes overlap: what every prediction reads, and no more, within a line of the cache.
+/// State of a pair of bodies: all that every prediction reads, and no more, within a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Pair {
-    /// No contact before this time.
+    /// Time before which there is no contact.
     pub(crate) clear: Time,
     pub(crate) prediction: Prediction,
-    /// The last batch of predictions that it was in.
+    /// Last batch of predictions that the pair was in.
     batch: u16,
-    /// False if no feature pair is searched otherwise.
+    /// True if rules change the search of any feature pair.
     pub(crate) has_rules: bool,
     alive: bool,
 }
@@ -40,14 +41,14 @@ pub(crate) struct Link {
     pub(crate) other: BodyId,
 }
 
-/// What a pair keeps of its past.
+/// Rules and past contacts of a pair.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairPast {
-    /// Feature pairs that are searched otherwise.
+    /// Rules that change the search of feature pairs.
     rules: Vec<FeatureRule>,
     /// Feature pairs that have touched lately.
     seen: Vec<Seen>,
-    /// Contacts handled one after another without time going by.
+    /// Number of contacts handled without time going by since the first of them.
     pub(crate) repeats: u32,
     /// Time of the last contact.
     pub(crate) last_contact: Option<Time>,
@@ -62,26 +63,26 @@ impl PairPast {
     }
 }
 
-/// Two features as they were at the last event in which they touched.
+/// State of two features at the last event in which they touched.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// Of the lesser body and of the other.
+    /// Features of the lesser body and of the other.
     pub(crate) features: [FeatureId; 2],
     pub(crate) time: Time,
     /// Gap [m].
     pub(crate) gap: f64,
-    /// The largest gap [m] at which they have touched.
+    /// Largest gap [m] at which they have touched.
     pub(crate) formed: f64,
     /// Rate of the gap [m/s].
     pub(crate) rate: f64,
-    /// How many low bounces have come before, one after another.
+    /// Number of low bounces in a row before that event.
     pub(crate) low: u32,
-    /// It has fired although it did not close, and has not left its target since: it opens too slowly for the
-    /// search to see it leave.
+    /// True if they fired although they did not close, and have not left their target since: they open too slowly for
+    /// the search to see them leave.
     pub(crate) fires_open: bool,
 }
 
-/// All pairs, and those of each body.
+/// All pairs, and lists of them by body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
@@ -90,9 +91,10 @@ pub(crate) struct Pairs {
     pasts: Vec<PairPast>,
     free: Vec<PairId>,
     of_body: Vec<Vec<Link>>,
-    /// The present batch of predictions.
+    /// Number of the present batch of predictions.
     batch: u16,
-    /// Fixed bodies keep no list: nothing ever changes their motion, and theirs would be the longest.
+    /// True for fixed bodies. These keep no list: nothing ever changes their motion, and their lists would be the
+    /// longest.
     is_fixed: Vec<bool>,
 }
 
@@ -114,18 +116,18 @@ impl Pairs {
         self.bodies[id.0 as usize]
     }
 
-    /// True of a body that nothing moves.
+    /// True for a body that cannot move.
     #[inline]
     pub(crate) fn is_fixed(&self, body: BodyId) -> bool {
         self.is_fixed[body.index()]
     }
 
-    /// Rules for single pairs of features.
+    /// Rules for feature pairs of a pair of bodies.
     pub(crate) fn rules(&self, id: PairId) -> &[FeatureRule] {
         &self.pasts[id.0 as usize].rules
     }
 
-    /// To change the rules, after which `has_rules` says whether there are any.
+    /// Changes the rules of a pair, and updates `has_rules`.
     pub(crate) fn change_rules<T>(
         &mut self,
         id: PairId,
@@ -156,7 +158,7 @@ impl Pairs {
         &mut self.pasts[id.0 as usize]
     }
 
-    /// Begins a batch of predictions.
+    /// Begins a new batch of predictions, without pairs.
     pub(crate) fn begin_batch(&mut self) {
         self.batch = self.batch.wrapping_add(1);
         if self.batch == 0 {
@@ -165,9 +167,10 @@ impl Pairs {
         }
     }
 
-    /// Puts the pairs of a body into the present batch, all of them or those that are quiet; those that were not there.
+    /// Puts the pairs of a body into the present batch, and lists those that were not in it yet: all, or only the quiet
+    /// ones.
     ///
-    /// A loop of its own, for the pairs lie anywhere in memory: it asks for the next before the last has come.
+    /// A loop of its own: pairs lie anywhere in memory, and it asks for the next before the last has come.
     #[inline]
     pub(crate) fn enter_batch(&mut self, body: BodyId, only_quiet: bool, entered: &mut Vec<Link>) {
         entered.clear();

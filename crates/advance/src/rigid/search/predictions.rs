@@ -1,4 +1,4 @@
-//! What may happen next: which bodies are near each other, and when pairs of them come into contact.
+//! Predictions: which bodies are near each other, and when pairs of them come into contact.
 
 use super::pairs::{Link, PairId, Prediction};
 use crate::rigid::motion::lane::{Lane, LaneKind};
@@ -12,7 +12,7 @@ use halfgap_collision::{
 };
 use halfgap_geometry::GapSample;
 
-/// One search looks at most this far ahead [s]: bounds over the span stay finite.
+/// Longest span [s] of one search: bounds over it stay finite.
 pub(crate) const LONGEST_SPAN: f64 = 1e6;
 
 impl RigidSystem {
@@ -29,7 +29,7 @@ impl RigidSystem {
         }
     }
 
-    /// Gives a body that goes on as before a box of its own.
+    /// Gives a body a new box around its present motion, and predicts when it leaves that.
     fn place_box(&mut self, body: BodyId) {
         let (lane, flyer) = (&self.search.lanes[body.index()], &self.flyers[body.index()]);
         let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.now);
@@ -57,7 +57,7 @@ impl RigidSystem {
         }
     }
 
-    /// Pairs the body with all whose boxes overlap its own, and with no others.
+    /// Pairs a body with all bodies whose boxes overlap its own, and with no others.
     fn find_neighbours(&mut self, body: BodyId) {
         let Some(fat_box) = self.search.broad.bounds(body).copied() else { return };
         let mut near = std::mem::take(&mut self.search.neighbours);
@@ -68,7 +68,7 @@ impl RigidSystem {
         self.search.links.extend_from_slice(self.pairs.of_body(body));
         for index in 0..self.search.links.len() {
             let Link { pair, other } = self.search.links[index];
-            // What is left marked is new.
+            // Bodies that stay marked are new neighbours.
             if !self.search.marks.take(other) {
                 self.note_prediction(pair, (Prediction::Quiet, self.now));
                 self.pairs.remove(pair);
@@ -89,18 +89,19 @@ impl RigidSystem {
         any_movable && self.search.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
     }
 
-    /// When the present segment of a body ends; `None` for a flight.
+    /// End of the present segment of a body; `None` for a flight.
     pub(crate) fn segment_end(&self, body: BodyId) -> Option<Time> {
         if body.is_world() { None } else { self.group_of(body).map(|group| group.end()) }
     }
 
-    /// Until when the present motion of a body is known and near.
+    /// Time until which the present motion of a body is known and stays in its box.
     fn known_until(&self, body: BodyId) -> Time {
         let stay = self.search.lanes[body.index()].stay;
         self.segment_end(body).map_or(stay, |end| stay.min(end))
     }
 
-    /// Searches on for the pair's next contact, from where it is known to be clear, while both motions are known.
+    /// Continues the search for a pair's next contact, from where it is known to be clear, while both motions are
+    /// known.
     pub(crate) fn predict(&mut self, pair: PairId) {
         let [a, b] = self.pairs.bodies(pair);
         let from = self.pairs.get(pair).clear.max(self.now);
@@ -108,7 +109,8 @@ impl RigidSystem {
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
 
-    /// Searches from a time on for the next contact of a pair, of whose one body is known how it flies if it is a disc.
+    /// Searches from a time on for the next contact of a pair; `disc` is the flight of the body that the link starts
+    /// from, if that is a disc.
     #[inline]
     fn predict_from(&mut self, from: Time, disc: Option<&DiscAt>, link: Link) {
         match disc.and_then(|disc| self.look_at_discs(from, disc, link)) {
@@ -117,7 +119,7 @@ impl RigidSystem {
         }
     }
 
-    /// A body from a time on, if it is a disc in flight.
+    /// Flight of a body from a time on, if it is a disc.
     #[inline]
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
         let lane = &self.search.lanes[body.index()];
@@ -126,7 +128,7 @@ impl RigidSystem {
         is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
     }
 
-    /// The outlook of a pair of free discs; `None` of all else.
+    /// Prediction of a pair of free discs and the time until which they are clear; `None` for other pairs.
     #[inline]
     fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
         let lane = &self.search.lanes[link.other.index()];
@@ -135,14 +137,14 @@ impl RigidSystem {
         if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
             return None;
         }
-        // What is in flight has no end but its box.
+        // A motion in flight is known until the body leaves its box.
         look_ahead(from, own.stay.min(lane.stay), |span| {
             let other = (lane.parabola_from(from), lane.radius);
             disc_contact((own.parabola, own.radius), other, span, tolerances)
         })
     }
 
-    /// Kept apart: most pairs do not come here.
+    /// Searches from a time on for the next contact of any pair. Not inlined: most pairs do not come here.
     #[inline(never)]
     fn predict_any(&mut self, pair: PairId, from: Time) {
         let [a, b] = self.pairs.bodies(pair);
@@ -165,8 +167,8 @@ impl RigidSystem {
         self.note_prediction(pair, (prediction, clear));
     }
 
-    /// True if the bodies of a pair, one of which at least follows an integrator, surely do not come near
-    /// each other: in a heap, where steps are short, few of those that are neighbours do.
+    /// True if the bodies of a pair, at least one of which follows an integrator, surely do not come near each other:
+    /// in a heap, where steps are short, few neighbours do.
     fn stays_apart(&self, pair: PairId, from: Time, until: Time) -> bool {
         let [a, b] = self.pairs.bodies(pair).map(|body| &self.search.lanes[body.index()]);
         let span = until.since(from);
@@ -191,7 +193,7 @@ impl RigidSystem {
         }
     }
 
-    /// Drops the rules of contacts that have opened beyond their target gap: they may fire there again.
+    /// Drops the rules of contacts that have opened beyond their target zone: they may fire at their target again.
     fn drop_rules(&mut self, pair: PairId, time: Time) {
         let may_open = |rule: &FeatureRule| rule.target.is_some();
         if !self.pairs.get(pair).has_rules || !self.pairs.rules(pair).iter().any(may_open) {
@@ -240,7 +242,7 @@ impl RigidSystem {
         sunk: f64,
         span: f64,
     ) -> Search {
-        // A lowered target makes nothing lie on the far side of its body.
+        // A target below zero does not lessen the depth: it makes no feature lie on the far side of its body.
         let depth = tolerances.target_gap.max(0.0) + self.settings.tolerances.target_gap + sunk;
         let search = self.settings.search;
         let settings = &SearchSettings { depth, ..search };
@@ -253,7 +255,8 @@ impl RigidSystem {
         self.predict_all_of(&[body], false);
     }
 
-    /// Predicts the pairs of some bodies: all of them if their motions changed, else those not searched far enough.
+    /// Predicts the pairs of some bodies: all of them if their motions changed, else the quiet ones, whose search has
+    /// come to the end of the motions known before.
     pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
         self.pairs.begin_batch();
         let now = self.now;
@@ -272,18 +275,19 @@ impl RigidSystem {
     }
 }
 
-/// A disc in flight, at the time from which its pairs are searched.
+/// A disc in flight at the time from which its pairs are searched.
 struct DiscAt {
     parabola: Polynomial,
-    /// Radius and gap at which it fires [m].
+    /// Radius [m].
     radius: f64,
+    /// Gap [m] at which it fires.
     halo: f64,
-    /// Until when it surely stays in its box.
+    /// Time until which it surely stays in its box.
     stay: Time,
 }
 
-/// What is known of a pair from a time on while its motions are known, and until when it is clear; `None` if the search
-/// finds no answer.
+/// Prediction of a pair from a time on while its motions are known, and the time until which it is clear; `None` if the
+/// search finds no answer.
 #[inline]
 fn look_ahead(
     from: Time,

@@ -1,5 +1,4 @@
-//! What the search is told about features that touch: which to leave alone, and how far others may sink
-//! before they fire.
+//! Rules of the search for features that touch: which it skips, and how far others may sink before they fire.
 
 use super::pairs::PairId;
 use crate::rigid::event::cause::EventWork;
@@ -8,10 +7,11 @@ use crate::rigid::held::settle::DEEPEST;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{FeatureRule, pair_tolerances};
 
-/// Part of the accuracy by which a body that touches something fires later elsewhere: more than rounding.
+/// Distance by which a body that touches another fires later elsewhere, as a fraction of the accuracy: more than
+/// rounding.
 const SEAM_SHARE: f64 = 1.0 / 32.0;
 
-/// What is told to fire where it lies does not get so many times deeper.
+/// Depth, as a multiple of that at which a deep contact was to fire, from which it has gone round its body.
 const MUCH_DEEPER: f64 = 2.0;
 
 impl RigidSystem {
@@ -20,25 +20,25 @@ impl RigidSystem {
         self.settings.tolerances.sink()
     }
 
-    /// Gap [m] at which a contact without force fires that has a gap now.
+    /// Gap [m] at which a contact without force fires again, by its present gap [m].
     pub(crate) fn refire_gap(&self, gap: f64) -> f64 {
         (gap - self.sink()).min(self.settings.tolerances.target_gap)
     }
 
-    /// Gap [m] at which a contact fires that opens: where any pair does, however low the halos of its bodies.
-    /// When others are brought to where they are held it may be moved so deep that the search would take it
-    /// for the far side of a body, and it may come back before it is out: such a one fires where it lies.
+    /// Gap [m] at which an opening contact fires: the target of any pair, however low the halos of its bodies. A
+    /// contact may have been moved so deep, as others were brought to the gaps at which they are held, that the search
+    /// would take it for the far side of a body, and it may come back before it is out: it fires where it lies.
     fn returns_to(&self, touch: Touch) -> f64 {
         let [a, b] = [0, 1]
             .map(|side: usize| self.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
-        // In a hollow barely larger it never gets as far as others have to.
+        // In a hollow that is barely larger, a contact never opens as far as others have to.
         let target = pair_tolerances(a, b, &self.settings.tolerances).target_gap;
         let (gap, _) = self.gap_at(touch, self.now);
         if gap < -DEEPEST * target { gap } else { target }
     }
 
-    /// Tells the search which touching features to leave alone: those that are held, and, while they do not sink, those
-    /// that touch without force.
+    /// Sets the rules for the touching features of a region: the search skips those that are held or that a group
+    /// watches, and lets others sink before they fire.
     pub(crate) fn set_rules(&mut self, EventWork { region, settling, .. }: &EventWork) {
         let rest = self.rest_speed();
         self.take_rules(region);
@@ -52,8 +52,8 @@ impl RigidSystem {
             } else if settling.lets_pass(*touch) {
                 touch.lowered_to(self.grazing_gap(touch.bodies))
             } else {
-                // What fires although it does not close would do so again at once. It may sink no farther
-                // than its zone.
+                // A contact that fires although it does not close would do so again at once: it may sink, but no
+                // farther than its zone.
                 let stays = rate <= rest || (gap > least && self.fires_open(pair, touch.features));
                 touch.lowered_to(if stays { self.sinks_to(*touch, gap) } else { self.returns_to(*touch) })
             };
@@ -67,8 +67,7 @@ impl RigidSystem {
         self.give_back_deep();
     }
 
-    /// Drops what the search was told of the bodies of a region, and puts aside what it was told of contacts
-    /// that lie deep.
+    /// Drops the rules of the bodies of a region, and puts aside those of contacts that lie deep.
     fn take_rules(&mut self, region: &Region) {
         let deepest = self.deepest();
         self.search.deep.clear();
@@ -84,33 +83,33 @@ impl RigidSystem {
         }
     }
 
-    /// A contact that was moved so deep that it fires where it lies is not seen by an event of other bodies,
-    /// but goes on to do so until it is out.
+    /// Restores the rules of contacts that lie deep: one that fires where it lies is not seen by an event of other
+    /// bodies, but goes on to do so until it is out.
     fn give_back_deep(&mut self) {
         let deepest = self.deepest();
         for index in 0..self.search.deep.len() {
             let (pair, features, told) = self.search.deep[index];
             let touch = Touch { bodies: self.pairs.bodies(pair), features };
             let (gap, rate) = self.gap_at(touch, self.now);
-            // What lies deeper by far has gone round its body.
+            // A contact that lies deeper by far has gone round its body.
             if gap < deepest && gap > MUCH_DEEPER * told {
                 let target = if rate.abs() <= self.rest_speed() { self.refire_gap(gap) } else { gap };
-                // What was told of the same features in this event comes first, and counts.
+                // A rule that this event has made for the same features comes first, and counts.
                 self.pairs.change_rules(pair, |rules| rules.push(touch.lowered_to(target)));
             }
         }
     }
 
-    /// The gap [m] below which the search would take a contact for the far side of a body. Where contacts
-    /// carry impulses only, it looks as deep as they may sink.
+    /// Gap [m] below which the search would take a contact for the far side of a body. Where contacts carry impulses
+    /// only, it looks as deep as they may sink.
     fn deepest(&self) -> f64 {
         let with_forces = self.settings.impulse_step.is_none();
         if with_forces { -DEEPEST * self.settings.tolerances.target_gap } else { f64::NEG_INFINITY }
     }
 
-    /// Tells the search to leave alone the corners at the ends of the edges of a held contact, where they
-    /// would meet the other of its features: they are no nearer than the contact, until that has run off its
-    /// features and they take over. So it is with the edges on both sides of corners that are held tip on tip.
+    /// Makes the search skip the corners at the ends of the edges of a held contact against the other of its features:
+    /// they are no nearer than the contact, until that has run off its features and they take over. The same holds for
+    /// the edges on both sides of corners that are held tip on tip.
     fn leave_ends_alone(&mut self, pair: PairId, touch: &Touch) {
         let [a, b] = touch.features;
         let shapes = touch.bodies.map(|body| &self.flyers[body.index()].body().shape);
@@ -121,13 +120,13 @@ impl RigidSystem {
         let firsts = next_to_a.into_iter().flatten().map(|next| [next, b]);
         let seconds = next_to_b.into_iter().flatten().map(|next| [a, next]);
         self.pairs.change_rules(pair, |rules| {
-            // What is said of a pair of features first counts.
+            // Of several rules for the same features the first counts.
             rules.extend(firsts.chain(seconds).map(|features| FeatureRule { features, target: None }));
         });
     }
 
-    /// Lowers the contacts that fired again and again without time going by, and their neighbours, by so much more each
-    /// time: they lie nearer to where they fire than the search can tell.
+    /// Lowers the gaps at which contacts fire that did so again and again without time going by, and their neighbours,
+    /// by more each time: they lie nearer to these gaps than the search can tell.
     pub(crate) fn lower_insistent(&mut self, region: &Region) {
         let mut insistent = std::mem::take(&mut self.touched);
         insistent.clear();
@@ -146,7 +145,7 @@ impl RigidSystem {
                     rule.target = rule.target.map(|target| target - lower);
                 }
             });
-            // What cannot move is in no region that would raise it again.
+            // The halo of a body that cannot move would never be raised again: it is in no region.
             for body in self.pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
                 self.search.lanes[body.index()].halo -= lower;
             }
@@ -154,15 +153,15 @@ impl RigidSystem {
         self.touched = insistent;
     }
 
-    /// True if a rule says of two discs what holds of them without it.
+    /// True if a rule for two discs says only what holds without it.
     fn is_idle(&self, touch: &Touch, rule: &FeatureRule) -> bool {
         let target = self.settings.tolerances.target_gap;
         let mut lanes = touch.bodies.iter().map(|body| &self.search.lanes[body.index()]);
         rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
     }
 
-    /// Gives each body of a region the gap at which it fires: its target, or a little less than what it
-    /// touches already.
+    /// Sets the gap at which each body of a region fires: its target, or a little less than the gap of a contact that
+    /// it has.
     ///
     /// So a body that slides along at less than its target does not run against the seam of the next floor.
     fn set_halos(&mut self, region: &Region) {
