@@ -68,6 +68,34 @@ pub(crate) fn fall_after_rise(
     Some(close(above, (node(1, span), values[1]), span, f))
 }
 
+/// A part of a segment, between two offsets [s].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Part {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+impl Part {
+    /// All of a segment of the given span [s].
+    pub(crate) fn all(span: f64) -> Self {
+        Self { from: 0.0, to: span }
+    }
+
+    pub(crate) fn span(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// Offset [s] in the segment of a node of the part.
+    pub(crate) fn node(&self, index: usize) -> f64 {
+        if index + 1 == NODES { self.to } else { self.from + node(index, self.span()) }
+    }
+}
+
+/// Value at a fraction of a part of a segment of the quartic through the values at its nodes.
+pub(crate) fn interpolated(values: &[f64; NODES], fraction: f64) -> f64 {
+    Quartic::through(values).value(fraction * (NODES - 1) as f64 - MIDDLE_NODE)
+}
+
 /// Offset [s] of a node of a segment of the given span.
 pub(crate) fn node(index: usize, span: f64) -> f64 {
     if index + 1 == NODES { span } else { span * (index as f64 / (NODES - 1) as f64) }

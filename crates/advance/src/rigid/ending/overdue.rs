@@ -3,7 +3,7 @@
 //! zero, which such a contact does not make any more: it would pull from then on, or run along an edge that does not
 //! exist.
 
-use super::crossing::{NODES, fall_from_below};
+use super::crossing::{NODES, Part, fall_from_below};
 use super::earliest::Earliest;
 use super::watch::Watch;
 use crate::rigid::step::dynamics::Dynamics;
@@ -12,13 +12,13 @@ impl Dynamics<'_> {
     /// Offers the earliest fall of any row of a watch that is below zero at the start and falls on; it may do so along
     /// many segments.
     ///
-    /// * `samples`: values at the nodes, row by row;
+    /// * `samples`: values at the nodes of a part of the segment, row by row;
     /// * `below`: how far below zero each row was when that was first seen, 0 for the others; updated;
     /// * `rounding`: how far below zero a row may be by rounding alone.
     pub(super) fn find_overdue(
         &mut self,
         earliest: &mut Earliest,
-        (samples, below): (&[[f64; NODES]], &mut Vec<f64>),
+        (samples, part, below): (&[[f64; NODES]], Part, &mut Vec<f64>),
         watch: &Watch,
         rounding: impl Fn(&Self, usize) -> f64,
     ) {
@@ -32,11 +32,11 @@ impl Dynamics<'_> {
                 *below = -values[0];
             }
             let allowed = 2.0 * rounding(self, row).max(*below);
-            let fall = fall_from_below(values, self.group.span, allowed, |offset| {
-                (watch.place_for)(self, row, offset);
+            let fall = fall_from_below(values, part.span(), allowed, |offset| {
+                (watch.place_for)(self, row, part.from + offset);
                 (watch.read)(self, row)
             });
-            earliest.offer(fall, (watch.end)(row));
+            earliest.offer(fall.map(|offset| part.from + offset), (watch.end)(row));
         }
     }
 }

@@ -1,26 +1,18 @@
-//! Early ends of a group's segment: a contact force falls to zero, a contact runs off its features or, touched without
-//! force, sinks; stops that close and force laws that change branch are in `switches`.
+//! Early ends of a group's segment: a contact runs off its features or, touched without force, sinks; contact forces that
+//! fall to zero are in `releases`, stops that close and force laws that change branch in `switches`.
 //!
 //! Each is a function along the dense output whose first fall below zero is an event. Functions of positions are read
 //! at once, forces only when the time comes up to which none can vanish.
 
 use super::crossing::{
-    EARLY, NODES, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
+    EARLY, NODES, Part, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
 };
 use super::earliest::Earliest;
 use crate::ode::Ode;
-use crate::rigid::step::brief::Stepping;
 use crate::rigid::step::dynamics::Dynamics;
 use crate::rigid::step::group::{Group, SegmentEnd};
-use crate::rigid::step::rows::{HeldRow, RowSource};
+use crate::rigid::step::rows::RowSource;
 use crate::rigid::step::segment::StepControl;
-
-/// Force that counts as none, as a fraction of the loads of its bodies: more than the rounding of nearly redundant
-/// contacts.
-const FORCE_SHARE: f64 = 1e-9;
-
-/// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
-const PULL: f64 = 16.0;
 
 /// Change of the gap of a contact without force, as a fraction of the distance by which it may sink, up to which it
 /// stays where it is.
@@ -36,8 +28,6 @@ const MIDDLE: f64 = 0.5;
 /// Places in a step at which the errors of contacts are read: since errors often change sign in the middle, two more.
 const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
 
-/// Rate at which a force may begin to fall, as a multiple of its variation along a step.
-const STEEP: f64 = 4.0;
 /// Largest number of searches for an end of a rail's piece that comes before the one that was found.
 const MOST_ZOOMS: usize = 16;
 /// Fraction of the way to an end from which on another end is the same.
@@ -46,26 +36,18 @@ const EARLIER_BY: f64 = 1.0 - 1e-6;
 /// Functions of the rows along a segment, the first of which to fall below zero is an event.
 pub(super) struct Watch {
     /// Places the bodies at an offset [s], with all that reading any row needs.
-    place: fn(&mut Dynamics<'_>, f64),
+    pub(super) place: fn(&mut Dynamics<'_>, f64),
     /// Places the bodies on which one row depends at an offset [s].
     pub(super) place_for: fn(&mut Dynamics<'_>, usize, f64),
     /// Value of a row with the bodies in place.
     pub(super) read: fn(&Dynamics<'_>, usize) -> f64,
     /// Offset [s] at which a row that falls at an offset [s] does so in earnest, if at all; the bodies are in place
     /// there.
-    genuine: fn(&mut Dynamics<'_>, usize, f64) -> Option<f64>,
+    pub(super) genuine: fn(&mut Dynamics<'_>, usize, f64) -> Option<f64>,
     /// End of the segment by the fall of a row.
     pub(super) end: fn(usize) -> SegmentEnd,
 }
 
-/// Contact forces that fall to zero.
-const RELEASES: Watch = Watch {
-    place: |dynamics, offset| dynamics.evaluate_at(offset),
-    place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
-    read: |dynamics, row| dynamics.pressure(row),
-    genuine: |_, _, offset| Some(offset),
-    end: SegmentEnd::Release,
-};
 /// Contacts and points of rails that run off their features or pieces.
 const CHANGES: Watch = Watch {
     place: |dynamics, offset| dynamics.put_watched_at(offset),
@@ -89,7 +71,7 @@ const SINKINGS: Watch = Watch {
 /// Values of watched functions at the nodes, row by row; empty lists where nothing needs a watch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Samples {
-    forces: Vec<[f64; NODES]>,
+    pub(super) forces: Vec<[f64; NODES]>,
     rooms: Vec<[f64; NODES]>,
     heights: Vec<[f64; NODES]>,
     /// Heights soon after the start.
@@ -97,7 +79,7 @@ pub(crate) struct Samples {
 }
 
 /// Makes room for a number of rows.
-fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
+pub(super) fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
     list.clear();
     list.resize(rows, [0.0; NODES]);
 }
@@ -116,41 +98,6 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
-    /// before the offset of the look.
-    pub(crate) fn look_for_release(&mut self) {
-        let from = self.group.look.take().unwrap_or(0.0);
-        self.find_least_forces();
-        let mut forces = std::mem::take(&mut self.stage.samples.forces);
-        fill(&mut forces, self.group.rows.len());
-        for index in 0..NODES {
-            if index > 0 && index + 1 < NODES {
-                self.evaluate_at(node(index, self.group.span));
-            }
-            self.sample_forces(&mut forces, index);
-        }
-        let mut earliest = Earliest { found: self.pull_at_start(&forces).or(self.group.event) };
-        self.find_first(&mut earliest, &forces, &RELEASES);
-        let mut pulled = std::mem::take(&mut self.group.pulled);
-        self.find_overdue(&mut earliest, (&forces, &mut pulled), &RELEASES, |dynamics, row| {
-            PULL * dynamics.stage.least[row]
-        });
-        self.group.pulled = pulled;
-        self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
-        self.stage.samples.forces = forces;
-    }
-
-    /// Release of a contact that pulls by more than rounding as the group is made.
-    fn pull_at_start(&self, forces: &[[f64; NODES]]) -> Option<(f64, SegmentEnd)> {
-        let Group { start, made, .. } = *self.group;
-        if self.group.is_patient || start != made {
-            return None;
-        }
-        let pulls = |(values, least): (&[f64; NODES], &f64)| values[0] < -PULL * least;
-        let row = forces.iter().zip(&self.stage.least).position(pulls)?;
-        Some((0.0, SegmentEnd::Release(row)))
-    }
-
     /// Earliest event that is found without the forces of contacts.
     fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest = Earliest::default();
@@ -160,13 +107,14 @@ impl Dynamics<'_> {
         }
         self.find_early_sinking(&mut earliest, &samples);
         self.find_early_change(&mut earliest, &samples.rooms);
-        self.find_first(&mut earliest, &samples.rooms, &CHANGES);
+        let all = Part::all(self.group.span);
+        self.find_first(&mut earliest, (&samples.rooms, all), &CHANGES);
         let margin = self.physics.mechanism.change_margin();
         let mut overrun = std::mem::take(&mut self.group.overrun);
-        self.find_overdue(&mut earliest, (&samples.rooms, &mut overrun), &CHANGES, |_, _| margin);
+        self.find_overdue(&mut earliest, (&samples.rooms, all, &mut overrun), &CHANGES, |_, _| margin);
         self.group.overrun = overrun;
         self.find_earlier_ends(&mut earliest, &samples.rooms);
-        self.find_first(&mut earliest, &samples.heights, &SINKINGS);
+        self.find_first(&mut earliest, (&samples.heights, all), &SINKINGS);
         self.stage.samples = samples;
         for place in 0..self.group.stops.len() {
             let stop = self.group.stops[place];
@@ -186,29 +134,6 @@ impl Dynamics<'_> {
     fn are_still(&self, heights: &[[f64; NODES]]) -> bool {
         let still = STILL_SHARE * self.physics.mechanism.tolerances.sink();
         heights.iter().all(|sample| sample.iter().all(|height| (height - sample[0]).abs() <= still))
-    }
-
-    /// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
-    /// which is that of the body's acceleration plus the forces of all its rows.
-    fn find_least_forces(&mut self) {
-        let group = &*self.group;
-        let count = group.bodies.len();
-        let mut gross = std::mem::take(&mut self.stage.gross);
-        gross.clear();
-        gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
-            let at = 3 * (count + place);
-            self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
-        }));
-        for (index, sides) in group.sides.iter().enumerate() {
-            let force = group.forces[index].abs().max(group.end_forces[index].abs());
-            sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
-        }
-        self.stage.least.clear();
-        self.stage.least.extend(group.sides.iter().map(|sides| {
-            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
-            FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
-        }));
-        self.stage.gross = gross;
     }
 
     /// Largest error of held rows between the ends of the segment, where dense output is less exact, as a multiple of
@@ -246,26 +171,6 @@ impl Dynamics<'_> {
             let Ok(()) = self.derivative(offset, &trial, &mut rates);
         }
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
-    }
-
-    /// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
-    /// is so all along. A force is firm all along if its least value at the stages and both ends exceeds its variation,
-    /// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
-    /// stages to tell.
-    fn firm_part(&self) -> Option<f64> {
-        let Group { rows, forces, end_forces, .. } = &*self.group;
-        let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
-        let is_known =
-            self.group.stepping() != Stepping::Stiff && self.stage.force_ranges.len() == rows.len();
-        let part = |(index, _): (usize, &HeldRow)| {
-            let (start, end) = (forces[index], end_forces[index]);
-            let [least, largest] = if is_known { self.stage.force_ranges[index] } else { [start, end] };
-            let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
-            let is_firm = is_known && least > largest - least;
-            let part = if is_known && start > 0.0 { start / (STEEP * (largest - least)) } else { 0.0 };
-            (!is_firm).then_some(part)
-        };
-        contacts.filter_map(part).min_by(f64::total_cmp)
     }
 
     /// Samples at the nodes the functions of the rows that need no forces.
@@ -371,25 +276,17 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Samples the forces of all rows at a node, raised by the force that counts as none.
-    fn sample_forces(&self, samples: &mut [[f64; NODES]], index: usize) {
-        let forces = match index {
-            0 => &self.group.forces,
-            _ if index + 1 == NODES => &self.group.end_forces,
-            _ => &self.stage.forces,
-        };
-        for (((sample, force), least), row) in
-            samples.iter_mut().zip(forces).zip(&self.stage.least).zip(&self.group.rows)
-        {
-            sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
-        }
-    }
-
-    /// Offers the earliest fall of any row of a watch, if it comes before the end found so far.
+    /// Offers the earliest fall of any row of a watch in a part of the segment, of which the values at the nodes are given,
+    /// if it comes before the end found so far.
     ///
     /// Placing the bodies costs more than reading a row: once a fall is found, all rows are read there, and those that
     /// have not fallen by then need no search of their own.
-    fn find_first(&mut self, earliest: &mut Earliest, samples: &[[f64; NODES]], watch: &Watch) {
+    pub(super) fn find_first(
+        &mut self,
+        earliest: &mut Earliest,
+        (samples, part): (&[[f64; NODES]], Part),
+        watch: &Watch,
+    ) {
         if samples.is_empty() {
             return;
         }
@@ -407,11 +304,12 @@ impl Dynamics<'_> {
                 there.extend((0..samples.len()).map(read));
                 read_at = limit;
             }
-            let limit = limit.map(|offset| (offset, there[row]));
-            let fall = first_fall_before(values, self.group.span, limit, |offset| {
-                (watch.place_for)(self, row, offset);
+            let limit = limit.map(|offset| (offset - part.from, there[row]));
+            let fall = first_fall_before(values, part.span(), limit, |offset| {
+                (watch.place_for)(self, row, part.from + offset);
                 (watch.read)(self, row)
             });
+            let fall = fall.map(|offset| part.from + offset);
             let Some(offset) = fall.filter(|&offset| earliest.is_after(offset)) else { continue };
             (watch.place_for)(self, row, offset);
             earliest.offer((watch.genuine)(self, row, offset), (watch.end)(row));
@@ -489,77 +387,5 @@ impl Dynamics<'_> {
     fn idle_way(&self, row: usize) -> f64 {
         let row = &self.group.idle[row];
         self.physics.mechanism.way_to_end(row, &self.stage.movings).unwrap_or(f64::INFINITY)
-    }
-
-    /// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
-    fn pressure(&self, row: usize) -> f64 {
-        if self.group.rows[row].bilateral {
-            f64::INFINITY
-        } else {
-            self.stage.forces[row] + self.stage.least[row]
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::rigid::sources::Source;
-    use crate::rigid::step::group::SegmentEnd;
-    use crate::rigid::test_scene::resting_discs;
-    use halfgap_collision::BodyId;
-
-    /// Fraction of the step up to which a contact is firm, if its force [N] goes from `start` to `end`.
-    fn firm_part(start: f64, end: f64) -> Option<f64> {
-        let mut system = resting_discs(&[0.0]);
-        let mut group = system.groups.take(BodyId(1)).expect("it is held");
-        group.forces[0] = start;
-        group.end_forces[0] = end;
-        system.with_group(&mut group, |dynamics, _| {
-            dynamics.stage.clear_force_ranges(1);
-            dynamics.firm_part()
-        })
-    }
-
-    #[test]
-    fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
-        assert_eq!(firm_part(10.0, 9.0), None);
-        assert_eq!(firm_part(9.0, 10.0), None);
-        // It falls by 8 N along the step, and to begin with no more than four times as fast.
-        assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
-        assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
-        // A contact that starts without force is looked at at once.
-        assert_eq!(firm_part(0.0, 5.0), Some(0.0));
-        assert_eq!(firm_part(0.0, 0.0), Some(0.0));
-    }
-
-    #[test]
-    fn what_may_lose_its_force_is_looked_at_when_its_time_comes() {
-        let leader = BodyId(1);
-        let mut system = resting_discs(&[0.0]);
-        let mut group = system.groups.take(leader).expect("it is held");
-        // As if its force fell from twice its weight and were gone at the end.
-        group.forces[0] = 20.0;
-        group.end_forces[0] = -20.0;
-        system.with_group(&mut group, |dynamics, _| {
-            dynamics.stage.clear_force_ranges(1);
-            dynamics.find_event();
-        });
-        assert!(group.event.is_none());
-        assert_eq!(group.due(), group.start.plus(group.span / 8.0));
-        system.groups.put(group);
-        system.look_further(leader);
-        let group = system.group_of(leader).expect("it goes on");
-        let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
-        assert!(offset > 0.75 * group.span, "{offset} s");
-        assert_eq!(
-            system.queue.time_of(system.source_id(Source::Group(leader))),
-            Some(group.start.plus(offset))
-        );
-        // An event found for a time that has gone by happens now.
-        let mut group = system.groups.take(leader).expect("it goes on");
-        let late = 2.0 * group.span;
-        (group.event, group.look) = (None, Some(late));
-        system.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
-        assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
     }
 }

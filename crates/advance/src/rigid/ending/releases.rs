@@ -1,0 +1,247 @@
+//! Releases: contacts that lose their force within a group's segment.
+//!
+//! To know a force takes an evaluation of the group, so a release is looked for only when the time comes up to which
+//! none can happen. The segment is searched in one part, or in as many as the forces ask for.
+
+use super::crossing::{NODES, Part, interpolated};
+use super::earliest::Earliest;
+use super::watch::{Watch, fill};
+use crate::rigid::step::brief::Stepping;
+use crate::rigid::step::dynamics::Dynamics;
+use crate::rigid::step::group::{Group, SegmentEnd};
+use crate::rigid::step::rows::HeldRow;
+
+/// Force that counts as none, as a fraction of the loads of its bodies: more than the rounding of nearly redundant
+/// contacts.
+const FORCE_SHARE: f64 = 1e-9;
+/// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
+const PULL: f64 = 16.0;
+/// Rate at which a force may begin to fall, as a multiple of its variation along a step.
+const STEEP: f64 = 4.0;
+
+/// Fractions of a part of the segment at which forces are compared with the quartics through their samples: in the
+/// middles of the first and the last interval, where quartics err most.
+const BETWEEN_NODES: [f64; 2] = [1.0 / 8.0, 7.0 / 8.0];
+/// Difference there, as a fraction of the largest sample, up to which quartics show where forces vanish.
+const RESOLVED: f64 = 1e-3;
+/// Span of a part, as a fraction of the segment, that is not halved any more: forces jump there.
+const NARROWEST: f64 = 1e-8;
+/// Largest number of times that parts of one segment are halved, in all.
+const MOST_HALVINGS: usize = 10_000;
+
+/// Watch for contact forces that fall to zero.
+const RELEASES: Watch = Watch {
+    place: |dynamics, offset| dynamics.evaluate_at(offset),
+    place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
+    read: |dynamics, row| dynamics.pressure(row),
+    genuine: |_, _, offset| Some(offset),
+    end: SegmentEnd::Release,
+};
+
+impl Dynamics<'_> {
+    /// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
+    /// before the offset of the look.
+    pub(crate) fn look_for_release(&mut self) {
+        let from = self.group.look.take().unwrap_or(0.0);
+        self.find_least_forces();
+        let mut earliest = Earliest { found: self.pull_at_start().or(self.group.event) };
+        let mut forces = std::mem::take(&mut self.stage.samples.forces);
+        let mut pulled = std::mem::take(&mut self.group.pulled);
+        let mut part = Part::all(self.group.span);
+        let mut halvings = 0;
+        while earliest.is_after(part.from) {
+            self.sample_forces(&mut forces, part);
+            let narrowest = NARROWEST * self.group.span;
+            while halvings < MOST_HALVINGS && part.span() > narrowest && !self.is_resolved_by(&forces, part) {
+                part.to = part.node(NODES / 2);
+                halvings += 1;
+                self.sample_forces(&mut forces, part);
+            }
+            self.find_first(&mut earliest, (&forces, part), &RELEASES);
+            self.find_overdue(&mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
+                PULL * dynamics.stage.least[row]
+            });
+            if part.to >= self.group.span {
+                break;
+            }
+            // The next part may be twice as long.
+            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(self.group.span) };
+        }
+        self.group.pulled = pulled;
+        self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
+        self.stage.samples.forces = forces;
+    }
+
+    /// True if the quartics through the samples show all that contact forces do on a part of the segment. Only force laws
+    /// can make steps too long for that: of bodies that are held altogether, no error tells how their forces vary.
+    fn is_resolved_by(&mut self, forces: &[[f64; NODES]], part: Part) -> bool {
+        if self.group.laws.is_empty() {
+            return true;
+        }
+        let is_firm = |values: &[f64; NODES]| {
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            least > largest - least
+        };
+        let may_vanish = |values: &&[f64; NODES]| values[0].is_finite() && !is_firm(values);
+        if !forces.iter().any(|values| may_vanish(&values)) {
+            return true;
+        }
+        BETWEEN_NODES.into_iter().all(|fraction| {
+            self.evaluate_at(part.from + fraction * part.span());
+            forces.iter().enumerate().filter(|(_, values)| may_vanish(values)).all(|(row, values)| {
+                let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+                (self.pressure(row) - interpolated(values, fraction)).abs() <= RESOLVED * size
+            })
+        })
+    }
+
+    /// Release of a contact that pulls by more than rounding as the group is made.
+    fn pull_at_start(&self) -> Option<(f64, SegmentEnd)> {
+        let Group { start, made, .. } = *self.group;
+        if self.group.is_patient || start != made {
+            return None;
+        }
+        let pulls =
+            |((row, force), least): ((&HeldRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
+        let row = self.group.rows.iter().zip(&self.group.forces).zip(&self.stage.least).position(pulls)?;
+        Some((0.0, SegmentEnd::Release(row)))
+    }
+
+    /// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
+    /// is so all along. A force is firm all along if its least value at the stages and both ends exceeds its variation,
+    /// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
+    /// stages to tell; along steps that force laws have left too long, the variation does not tell the rate.
+    pub(super) fn firm_part(&self) -> Option<f64> {
+        let Group { rows, forces, end_forces, laws, .. } = &*self.group;
+        let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
+        let is_known =
+            self.group.stepping() != Stepping::Stiff && self.stage.force_ranges.len() == rows.len();
+        let part = |(index, _): (usize, &HeldRow)| {
+            let (start, end) = (forces[index], end_forces[index]);
+            let [least, largest] = if is_known { self.stage.force_ranges[index] } else { [start, end] };
+            let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
+            let is_firm = is_known && least > largest - least;
+            let is_slow = is_known && laws.is_empty() && start > 0.0;
+            let part = if is_slow { start / (STEEP * (largest - least)) } else { 0.0 };
+            (!is_firm).then_some(part)
+        };
+        contacts.filter_map(part).min_by(f64::total_cmp)
+    }
+
+    /// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
+    /// which is that of the body's acceleration plus the forces of all its rows.
+    fn find_least_forces(&mut self) {
+        let group = &*self.group;
+        let count = group.bodies.len();
+        let mut gross = std::mem::take(&mut self.stage.gross);
+        gross.clear();
+        gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
+            let at = 3 * (count + place);
+            self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
+        }));
+        for (index, sides) in group.sides.iter().enumerate() {
+            let force = group.forces[index].abs().max(group.end_forces[index].abs());
+            sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
+        }
+        self.stage.least.clear();
+        self.stage.least.extend(group.sides.iter().map(|sides| {
+            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
+            FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
+        }));
+        self.stage.gross = gross;
+    }
+
+    /// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.
+    fn sample_forces(&mut self, samples: &mut Vec<[f64; NODES]>, part: Part) {
+        fill(samples, self.group.rows.len());
+        for index in 0..NODES {
+            let offset = part.node(index);
+            let is_inside = offset > 0.0 && offset < self.group.span;
+            if is_inside {
+                self.evaluate_at(offset);
+            }
+            let forces = match offset {
+                _ if is_inside => &self.stage.forces,
+                0.0 => &self.group.forces,
+                _ => &self.group.end_forces,
+            };
+            let rows = self.group.rows.iter().zip(forces).zip(&self.stage.least);
+            for (sample, ((row, force), least)) in samples.iter_mut().zip(rows) {
+                sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
+            }
+        }
+    }
+
+    /// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
+    fn pressure(&self, row: usize) -> f64 {
+        if self.group.rows[row].bilateral {
+            f64::INFINITY
+        } else {
+            self.stage.forces[row] + self.stage.least[row]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::sources::Source;
+    use crate::rigid::step::group::SegmentEnd;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    /// Fraction of the step up to which a contact is firm, if its force [N] goes from `start` to `end`.
+    pub(super) fn firm_part(start: f64, end: f64) -> Option<f64> {
+        let mut system = resting_discs(&[0.0]);
+        let mut group = system.groups.take(BodyId(1)).expect("it is held");
+        group.forces[0] = start;
+        group.end_forces[0] = end;
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.firm_part()
+        })
+    }
+
+    #[test]
+    fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
+        assert_eq!(firm_part(10.0, 9.0), None);
+        assert_eq!(firm_part(9.0, 10.0), None);
+        // It falls by 8 N along the step, and to begin with no more than four times as fast.
+        assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
+        assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
+        // A contact that starts without force is looked at at once.
+        assert_eq!(firm_part(0.0, 5.0), Some(0.0));
+        assert_eq!(firm_part(0.0, 0.0), Some(0.0));
+    }
+
+    #[test]
+    fn what_may_lose_its_force_is_looked_at_when_its_time_comes() {
+        let leader = BodyId(1);
+        let mut system = resting_discs(&[0.0]);
+        let mut group = system.groups.take(leader).expect("it is held");
+        // As if its force fell from twice its weight and were gone at the end.
+        group.forces[0] = 20.0;
+        group.end_forces[0] = -20.0;
+        system.with_group(&mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.find_event();
+        });
+        assert!(group.event.is_none());
+        assert_eq!(group.due(), group.start.plus(group.span / 8.0));
+        system.groups.put(group);
+        system.look_further(leader);
+        let group = system.group_of(leader).expect("it goes on");
+        let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
+        assert!(offset > 0.75 * group.span, "{offset} s");
+        assert_eq!(
+            system.queue.time_of(system.source_id(Source::Group(leader))),
+            Some(group.start.plus(offset))
+        );
+        // An event found for a time that has gone by happens now.
+        let mut group = system.groups.take(leader).expect("it goes on");
+        let late = 2.0 * group.span;
+        (group.event, group.look) = (None, Some(late));
+        system.with_group(&mut group, |dynamics, _| dynamics.look_for_release());
+        assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
+    }
+}
