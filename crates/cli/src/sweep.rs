@@ -9,7 +9,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{output, table};
 use halfgap::scene::{SceneError, SceneSource, VariedScene};
-use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
+use halfgap::{Outcome, Record, RunPlan, RunResult, World, csv_field, run};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -191,12 +191,12 @@ fn lines(sweep: &Sweep) -> String {
 /// Everything but the wall time, in digits that read back as the same bits: equal sweeps write equal files. Of a run
 /// that was refused all but its value and status is empty.
 fn csv(sweep: &Sweep) -> String {
-    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", quoted(&sweep.field));
+    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", csv_field(&sweep.field));
     let known = sweep.runs.iter().find_map(|run| run.result.as_ref());
     let bodies = known.map_or(&[][..], |result| &result.bodies);
     for (name, _) in bodies {
         for quantity in QUANTITIES {
-            let _ = write!(text, ",{}", quoted(&format!("{name}.{quantity}")));
+            let _ = write!(text, ",{}", csv_field(&format!("{name}.{quantity}")));
         }
     }
     text.push('\n');
@@ -220,14 +220,5 @@ fn write_result(text: &mut String, result: &RunResult) {
         for number in [place.x, place.y, state.angle, speed.x, speed.y, state.angular_velocity] {
             let _ = write!(text, ",{number:?}");
         }
-    }
-}
-
-/// A field of CSV, in quotes where it needs them.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }

@@ -83,7 +83,7 @@ pub use halfgap_geometry as geometry;
 pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
-pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording};
+pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};
 #[cfg(feature = "scene")]
 pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
