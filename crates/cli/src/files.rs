@@ -47,7 +47,8 @@ fn picture_name(index: usize) -> String {
     format!("picture-{index:04}.svg")
 }
 
-/// Removes the pictures from index `count` on, left by an earlier run with more of them, lest they seem to be of this run.
+/// Removes the pictures from index `count` on, left by an earlier run with more of them, lest they seem to be of this
+/// run.
 fn remove_further(folder: &Path, count: usize) -> Result<(), Failure> {
     let left = (count..).map(|index| folder.join(picture_name(index))).take_while(|path| path.exists());
     for path in left {

@@ -118,8 +118,8 @@ fn solve(method: Choice, problem: &Problem, next: Option<&Problem>) -> Outcome {
     Outcome { solution, result, microseconds, microseconds_warm }
 }
 
-/// Returns the least time of some repetitions \[µs\], or `known` if that is less. Work slower than a second, or failing, is
-/// not repeated.
+/// Returns the least time of some repetitions \[µs\], or `known` if that is less. Work slower than a second, or
+/// failing, is not repeated.
 fn fastest(known: f64, mut work: impl FnMut() -> Result<(), SolveError>) -> f64 {
     let mut least = known;
     for _ in 0..REPETITIONS {

@@ -79,7 +79,7 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     Ok(sweep.end(values.len()))
 }
 
-/// Runs all values but those that are left when somebody interrupts.
+/// Runs all values, except those left after an interruption.
 fn run_all(
     values: &[f64],
     varied: &VariedScene,
@@ -139,8 +139,8 @@ impl SweepRun {
     }
 }
 
-/// Writes to standard error: each warning at the first run that has it, findings and errors with the value of their run,
-/// and the number of runs not made after an interruption.
+/// Writes to standard error: each warning at the first run that has it, findings and errors with the value of their
+/// run, and the number of runs not made after an interruption.
 fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     let mut told = BTreeSet::new();
     for SweepRun { value, result, error, warnings } in &sweep.runs {
@@ -186,8 +186,8 @@ fn lines(sweep: &Sweep) -> String {
     text
 }
 
-/// Returns all results as CSV, in digits that read back as the same bits and without wall times: equal sweeps write equal
-/// files. A refused run has its value and status only; its other fields are empty.
+/// Returns all results as CSV, in digits that read back as the same bits and without wall times: equal sweeps write
+/// equal files. A refused run has its value and status only; its other fields are empty.
 fn csv(sweep: &Sweep) -> String {
     let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", csv_field(&sweep.field));
     let known = sweep.runs.iter().find_map(|run| run.result.as_ref());

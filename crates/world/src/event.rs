@@ -9,8 +9,8 @@ use halfgap_collision::{BodyId, BodyState, ConnectorId};
 pub enum Event {
     /// Bodies collided, or a connector pulled tight.
     Impact(Impact),
-    /// A contact begins: two bodies rest or slide on each other, a rope or stop is taut, or the point of a rail rests in
-    /// a corner against one side of it.
+    /// A contact begins: two bodies rest or slide on each other, a rope or stop is taut, or the point of a rail rests
+    /// in a corner against one side of it.
     ContactBegins(ContactEvent),
     /// A contact, taut connector or rest in a corner ends.
     ContactEnds(ContactEvent),

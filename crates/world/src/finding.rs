@@ -1,7 +1,7 @@
 //! Broken invariants of a run: connectors that are off, overlaps, and energy books that do not close.
 //!
-//! A simulation that goes wrong mostly ends in numbers that look like any others. These invariants can be checked without
-//! knowing the answer, now and then and at the end of every run.
+//! A simulation that goes wrong mostly ends in numbers that look like any others. These invariants can be checked
+//! without knowing the answer, now and then and at the end of every run.
 
 use crate::ledger::Books;
 use crate::near::NearPairs;
@@ -23,8 +23,8 @@ const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 const GAPS: f64 = 1.0;
 /// Factor on the errors of connectors and the overlaps allowed where steps of a given length may err by any amount.
 const ROUGHLY: f64 = 10.0;
-/// Where the settings promise nothing: error allowed in a connector, as a fraction of the largest coordinate, and in the
-/// books, as a fraction of the energy in play. More would be plain to see.
+/// Where the settings promise nothing: error allowed in a connector, as a fraction of the largest coordinate, and in
+/// the books, as a fraction of the energy in play. More would be plain to see.
 const PLAINLY: f64 = 1e-2;
 /// Overlap allowed where contacts carry no forces, as a multiple of the room that bodies have to sink between impulses.
 const SINKING: f64 = 1.25;
@@ -79,16 +79,16 @@ pub enum Finding {
         /// The energy in play [J].
         turned_over: f64,
     },
-    /// Projections onto contacts and connectors changed the energy by more than errors of steps; near a position where a
-    /// linkage can go on in several ways this may be a jump.
+    /// Projections onto contacts and connectors changed the energy by more than errors of steps; near a position where
+    /// a linkage can go on in several ways this may be a jump.
     Projected {
         /// Size of the change [J].
         energy: f64,
         /// The energy in play [J].
         turned_over: f64,
     },
-    /// Captures, which stop slow or too frequent contacts without elasticity, removed a large part of the energy: some of
-    /// these contacts were real impacts.
+    /// Captures, which stop slow or too frequent contacts without elasticity, removed a large part of the energy: some
+    /// of these contacts were real impacts.
     Captured {
         /// Energy removed [J].
         energy: f64,
@@ -338,8 +338,8 @@ impl World {
         (is_blow && !self.is_slow_asked_for()).then_some(Finding::Captured { energy, turned_over, slow })
     }
 
-    /// True if captures are wanted whatever they take: the caller has given the speed that counts as slow, or the target
-    /// gap, within which bounces come to rest, or contacts carry impulses only.
+    /// True if captures are wanted whatever they take: the caller has given the speed that counts as slow, or the
+    /// target gap, within which bounces come to rest, or contacts carry impulses only.
     fn is_slow_asked_for(&self) -> bool {
         let Sentry { slow_is_given, gap_is_given, .. } = self.sentry;
         slow_is_given || gap_is_given || self.rigid_settings().impulse_step.is_some()
@@ -464,7 +464,7 @@ mod tests {
         for (depth, time) in [(0.5, 1.0), (0.7, 2.0), (0.6, 3.0)] {
             findings.add(overlap(depth, time));
         }
-        // What holds again stays told.
+        // A finding stays although the overlap is over.
         assert_eq!(findings.at_end(&world, 0.0), [overlap(0.7, 2.0)]);
     }
 
@@ -480,7 +480,7 @@ mod tests {
         builder.add_gravity(body, DVec2::new(0.0, -10.0));
         let mut world = builder.build().expect("it hangs");
         world.advance_to(10.0, &mut |_| ()).expect("it swings");
-        // Nobody promised that it would stay.
+        // Without stabilization a drift is no finding.
         assert_eq!(world.findings(10.0), []);
         let mut findings = Vec::new();
         world.connectors_off(0.0, &mut findings);

@@ -60,11 +60,11 @@ impl Intervention {
 }
 
 impl World {
-    /// Changes velocities of bodies at the present time, all in one event; of two changes of one body the second adds to
-    /// the first. Connectors and contacts against which the bodies then move respond by the world's impact law, in an
-    /// [`Impact`](crate::Impact) that is reported: an impulse on the lowest block of a stack reaches all of it, and a
-    /// velocity that connectors do not allow does not come about. Give velocities that belong together, such as those of
-    /// a linkage, in one call.
+    /// Changes velocities of bodies at the present time, all in one event; of two changes of one body the second adds
+    /// to the first. Connectors and contacts against which the bodies then move respond by the world's impact law, in
+    /// an [`Impact`](crate::Impact) that is reported: an impulse on the lowest block of a stack reaches all of it, and
+    /// a velocity that connectors do not allow does not come about. Give velocities that belong together, such as those
+    /// of a linkage, in one call.
     ///
     /// Steps are computed ahead. A force law whose parameters you changed (say a mouse spring) takes effect at the next
     /// intervention on one of its bodies; setting the present velocity is enough.

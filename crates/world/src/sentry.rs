@@ -1,8 +1,8 @@
 //! The sentry: stops a world whose connectors, overlaps or energy books are out of bounds.
 //!
-//! Small broken invariants ([`Finding`]) are reported at the end of a run. After a connector has come apart, bodies lie in
-//! one another, or energy has come from nowhere, all further motion is that of another scene: the advance ends with an
-//! error there. The sentry looks where an advance stops, as often as costs next to nothing.
+//! Small broken invariants ([`Finding`]) are reported at the end of a run. After a connector has come apart, bodies lie
+//! in one another, or energy has come from nowhere, all further motion is that of another scene: the advance ends with
+//! an error there. The sentry looks where an advance stops, as often as costs next to nothing.
 
 use crate::finding::Finding;
 use crate::ledger::{Books, Turnover};
@@ -42,8 +42,8 @@ pub(crate) struct Sentry {
     looks: f64,
     /// Whether none of those looks was left out; false without a planned duration.
     pub(crate) is_watchful: bool,
-    /// Whether the last advance ended with a look that found no fault. Connectors are together and bodies apart then, for
-    /// nothing moves without another advance.
+    /// Whether the last advance ended with a look that found no fault. Connectors are together and bodies apart then,
+    /// for nothing moves without another advance.
     pub(crate) is_sound: bool,
     /// The fault found, after which the world cannot go on.
     found: Option<RunError>,
@@ -102,7 +102,8 @@ impl World {
         self.sentry.found.clone().map_or(Ok(()), Err)
     }
 
-    /// Checks the world after an advance, if the advance ended with an error or enough has happened since the last look.
+    /// Checks the world after an advance, if the advance ended with an error or enough has happened since the last
+    /// look.
     ///
     /// # Errors
     /// [`RunError::Astray`] for a fault; else the error of the advance.
@@ -168,7 +169,7 @@ mod tests {
     const LATER: f64 = 20.0;
     const LATER_STILL: f64 = 40.0;
 
-    /// A pendulum that has swung for a while, and what its rod is called.
+    /// A pendulum that has swung for a while.
     fn pendulum() -> World {
         let mut builder = WorldBuilder::new(WorldSettings::default());
         let shape = Shape::disc(0.5).expect("a fine radius");
@@ -190,7 +191,7 @@ mod tests {
     fn a_connector_that_is_off_ends_the_advance() {
         let mut world = pendulum();
         let ConnectorKind::Rod { a, b, .. } = world.connectors[0].kind else { panic!("it is a rod") };
-        // What is looked at is longer than what holds the bob.
+        // The sentry measures a longer rod than the one that holds the bob.
         world.connectors[0] = rod(a, b, 1.0 + 1e-3);
         let outcome = world.advance_to(LATER_STILL, &mut |_| ());
         let Err(RunError::Astray { time, finding: Finding::ConnectorOff { error, .. } }) = &outcome else {
@@ -231,7 +232,7 @@ mod tests {
         assert!(!world.sentry.is_sound, "nobody knows");
     }
 
-    /// A disc that is about to bounce off a floor, where all that it does counts as slow.
+    /// A disc that is about to bounce off a floor, in a world where every speed that it has counts as slow.
     fn slow_disc() -> World {
         let overrides = ToleranceOverrides { velocity_tol: Some(10.0), ..ToleranceOverrides::default() };
         let settings = WorldSettings { overrides, duration: Some(1.0), ..WorldSettings::default() };
@@ -295,7 +296,7 @@ mod tests {
 
     #[test]
     fn what_was_turned_over_before_the_first_look_counts() {
-        // The disc falls by 0.5 m and lies there: nothing moves when somebody looks.
+        // The disc falls by 0.5 m and lies there: nothing moves at the time of a look.
         let mut world = slow_disc();
         world.start.energy += 1e-5;
         world.advance_to(1.0, &mut |_| ()).expect("so little of 5 J is rounding");
@@ -305,7 +306,7 @@ mod tests {
 
     #[test]
     fn who_looks_often_is_strict() {
-        // What is usual here is some 10 J, but so far next to nothing is turned over.
+        // The usual energy here is some 10 J, but so far next to nothing of it is in play.
         for (first, is_astray) in [(0.02, true), (0.1, false)] {
             let mut world = slow_disc();
             world.advance_to(0.0, &mut |_| ()).expect("the first look");

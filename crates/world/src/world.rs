@@ -84,8 +84,6 @@ pub struct Inertia {
 }
 
 /// Bodies in motion, made by a [`WorldBuilder`](crate::WorldBuilder) or from a scene.
-///
-/// Methods that take a body panic if the world has no such body.
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) system: RigidSystem,
@@ -398,8 +396,8 @@ impl World {
     }
 
     /// Advances like [`advance_to`](Self::advance_to), but stops after the first event for which `on_event` returns
-    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. All reports of that moment are still
-    /// delivered; a later call continues as if there had been no stop.
+    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. All reports of that moment are
+    /// still delivered; a later call continues as if there had been no stop.
     ///
     /// # Errors
     /// Those of [`advance_to`](Self::advance_to).
@@ -442,8 +440,8 @@ impl World {
         on_event(&self.told)
     }
 
-    /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system that
-    /// had failed before: its last impact has been reported then.
+    /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system
+    /// that had failed before: its last impact has been reported then.
     pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
         if let Some(impact) = self.system.untold_impact() {
             write_impact(&mut self.told, impact);

@@ -34,8 +34,8 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
-    /// A coordinate or a velocity is so large that its powers overflow, or a coordinate so large that its rounding hides
-    /// the smallest body.
+    /// A coordinate or a velocity is so large that its powers overflow, or a coordinate so large that its rounding
+    /// hides the smallest body.
     #[error("body \"{body}\": {quantity} must be at most {largest:e} in size, got {value:e}")]
     TooLarge {
         /// Name of the body.

@@ -31,8 +31,8 @@ pub(super) fn add_all(builder: &mut WorldBuilder, bodies: &Bodies<'_>) -> Result
     Ok(())
 }
 
-/// Returns the elasticity of a connector that gives none. Ropes and stops have the lesser elasticity of their bodies, like
-/// two bodies that meet.
+/// Returns the elasticity of a connector that gives none. Ropes and stops have the lesser elasticity of their bodies,
+/// like two bodies that meet.
 fn default_elasticity(bodies: &Bodies<'_>, data: &ConnectorData) -> f64 {
     let of_body =
         |point: &PointData| bodies.data(&point.body).map_or(LIMITING_ELASTICITY, |body| body.elasticity);

@@ -46,7 +46,8 @@ pub(super) fn add(
     Ok(())
 }
 
-/// Makes the law. A fixed body attracts with its given mass; without one it takes no part, or is refused if it is named.
+/// Makes the law. A fixed body attracts with its given mass; without one it takes no part, or is refused if it is
+/// named.
 fn mutual_gravity(
     builder: &WorldBuilder,
     (bodies, force): (&Bodies<'_>, &ForceData),

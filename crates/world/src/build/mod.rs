@@ -18,8 +18,8 @@ impl World {
     /// Builds the world of a scene.
     ///
     /// # Errors
-    /// [`SceneError`] for values that break a rule, fields that are not simulated yet, impossible shapes, and bodies that
-    /// overlap at the start; the error names the field.
+    /// [`SceneError`] for values that break a rule, fields that are not simulated yet, impossible shapes, and bodies
+    /// that overlap at the start; the error names the field.
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
         scene.validate_world()?;
         scene.check_supported()?;
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
     use crate::scene::SceneFormat;
 
-    /// A scene with all force laws, built although not all of it is simulated yet.
+    /// The bodies of a scene to which tests add force laws.
     const FORCES: &str = r#"
         format = "halfgap-scene-1"
         title = "Forces"
@@ -267,7 +267,7 @@ mod tests {
         assert!((velocity_tol(40.0) / velocity_tol(10.0) - 2.0).abs() < 1e-12);
     }
 
-    /// What the scene builds to although not all of it is simulated yet.
+    /// The world of a scene, or the error of building it, without the check for fields that are not simulated yet.
     fn built(text: &str) -> Result<World, SceneError> {
         let scene = Scene::parse(text, SceneFormat::Toml).unwrap_or_else(|error| panic!("{error}"));
         collect(&scene)?.build().map_err(|error| located(error, &scene))

@@ -123,8 +123,8 @@ impl WorldBuilder {
         self.laws[body.index()].acceleration += acceleration;
     }
 
-    /// Adds damping to a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m], with
-    /// `linear` in N s/m and `angular` in N m s. Does nothing to a fixed body.
+    /// Adds damping to a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m],
+    /// with `linear` in N s/m and `angular` in N m s. Does nothing to a fixed body.
     ///
     /// # Panics
     /// If no such body was added.
@@ -241,8 +241,8 @@ impl WorldBuilder {
         })
     }
 
-    /// Warning if a fixed step is too long for the damping of a body, whose motion then grows where it is integrated. Free
-    /// flight is in closed form and not affected.
+    /// Warning if a fixed step is too long for the damping of a body, whose motion then grows where it is integrated.
+    /// Free flight is in closed form and not affected.
     fn step_warning(&self) -> Option<String> {
         let settings = &self.settings;
         let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
@@ -303,8 +303,8 @@ impl WorldBuilder {
         }
     }
 
-    /// Returns the force and torque of all laws on each body at the start. Refuses laws that are not finite, or act on a
-    /// body that they do not list.
+    /// Returns the force and torque of all laws on each body at the start. Refuses laws that are not finite, or act on
+    /// a body that they do not list.
     fn wrenches(&self) -> Result<Vec<Wrench>, WorldError> {
         let moving: Vec<_> = self.bodies.iter().map(|body| Moving::from(&body.state)).collect();
         let now = Snapshot::new(self.settings.start_time, &moving);
@@ -372,7 +372,7 @@ impl WorldBuilder {
     }
 }
 
-/// What the start accepts and aims at.
+/// Returns the errors that the start accepts, and the thresholds that it is to reach.
 fn start_rules<'a>(
     settings: &WorldSettings,
     excluded: &'a [(BodyId, BodyId)],

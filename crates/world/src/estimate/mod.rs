@@ -32,8 +32,8 @@ pub struct ErrorEstimate {
     pub tolerance: f64,
     /// Tolerance of the tighter run [-].
     pub tighter_tolerance: f64,
-    /// Target gaps of both runs [m]. Where coordinates allow no smaller one, the second is twice the first: the share of
-    /// the error that comes from the gap is in proportion to the gap.
+    /// Target gaps of both runs [m]. Where coordinates allow no smaller one, the second is twice the first: the share
+    /// of the error that comes from the gap is in proportion to the gap.
     pub target_gaps: [f64; 2],
     /// Last time at which both runs were compared [s].
     pub compared_until: f64,

@@ -10,8 +10,8 @@ const FACTOR: f64 = 100.0;
 const FIXED_STEP_FACTOR: f64 = 10.0;
 /// Tightest tolerance [-], a few roundings a step; below it nothing becomes more exact.
 const TIGHTEST: f64 = 1e-15;
-/// Factor by which the target gap shrinks at least, or else grows instead: its share of the error is in proportion to the
-/// gap, so that either way the difference is at least half the error.
+/// Factor by which the target gap shrinks at least, or else grows instead: its share of the error is in proportion to
+/// the gap, so that either way the difference is at least half the error.
 const GAP_FACTOR: f64 = 2.0;
 
 /// Returns the scene of a world at a tighter tolerance; thresholds that it gives shrink by the same factor.

@@ -21,8 +21,8 @@ pub struct MutualGravity {
 }
 
 impl MutualGravity {
-    /// Makes the law of a strength G [m^3/(kg s^2)] between movable and fixed bodies, each with its mass [kg], with a name
-    /// for messages.
+    /// Makes the law of a strength G [m^3/(kg s^2)] between movable and fixed bodies, each with its mass [kg], with a
+    /// name for messages.
     #[must_use]
     pub fn new(
         name: impl Into<String>,
@@ -34,8 +34,8 @@ impl MutualGravity {
         Self { name: name.into(), strength, bodies, masses, movable: movable.len() }
     }
 
-    /// Calls `visit` for each pair of bodies, with their places in the list, the offset from the first to the second [m],
-    /// and G m1 m2 [N m^2]; pairs at one point are left out.
+    /// Calls `visit` for each pair of bodies, with their places in the list, the offset from the first to the second
+    /// [m], and G m1 m2 [N m^2]; pairs at one point are left out.
     fn visit_pairs(&self, now: &Snapshot<'_>, mut visit: impl FnMut([usize; 2], DVec2, f64)) {
         for i in 0..self.movable {
             let position = now.body(self.bodies[i]).pose.position;
@@ -132,7 +132,7 @@ mod tests {
         states[1].position = states[0].position;
         let sums = wrenches(&law(), &states);
         assert!(sums.iter().all(|sum| sum.force.is_finite()));
-        // What is left is the third body.
+        // Only the third body attracts.
         let third = MutualGravity::new("", 1.5, &[(BodyId(0), 2.0)], &[(BodyId(2), 50.0)]);
         assert_eq!(sums[0], wrenches(&third, &states)[0]);
     }

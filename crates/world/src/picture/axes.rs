@@ -23,7 +23,8 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Makes axes for the given times and values, widened where they have no extent, on a plot of the given height [px].
+    /// Makes axes for the given times and values, widened where they have no extent, on a plot of the given height
+    /// [px].
     pub(super) fn new(times: (f64, f64), values: (f64, f64), plot_height: f64) -> Self {
         let values = widened(values);
         let margin = 0.05 * (values.1 - values.0);

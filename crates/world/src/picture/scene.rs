@@ -14,8 +14,8 @@ use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeMap;
 
-/// Distance beyond the moving bodies within which fixed bodies are shown whole, as a fraction of the size of the box that
-/// the moving bodies cover.
+/// Distance beyond the moving bodies within which fixed bodies are shown whole, as a fraction of the size of the box
+/// that the moving bodies cover.
 const NEAR: f64 = 1.5;
 /// Distance beyond the moving bodies up to which larger fixed bodies are shown, as a fraction of that size.
 const SURROUNDINGS: f64 = 0.35;

@@ -80,7 +80,8 @@ fn polyline(points: impl Iterator<Item = (f64, f64)>) -> String {
     data
 }
 
-/// Draws the connectors and springs in a frame of a recording, but for rails and stops: ropes with dashes, rods without.
+/// Draws the connectors and springs in a frame of a recording, but for rails and stops: ropes with dashes, rods
+/// without.
 pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, frame: &Frame, view: &View) {
     let place_of = |anchor: &Anchor| view.to_page(place_of(world, recording, frame, anchor));
     for connector in world.connectors() {

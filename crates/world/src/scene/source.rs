@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// Largest size of a JSON file [bytes]; larger ones are refused unread. Scenes of 100,000 bodies fit.
 const LARGEST_JSON: u64 = 64 << 20;
-/// Largest size of a TOML file [bytes]; larger ones are refused unread. TOML is written by hand, and its parser needs up
-/// to fifty times as much memory.
+/// Largest size of a TOML file [bytes]; larger ones are refused unread. TOML is written by hand, and its parser needs
+/// up to fifty times as much memory.
 const LARGEST_TOML: u64 = 8 << 20;
 
 /// Text format of a scene.

@@ -8,8 +8,8 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Connector, ConnectorKind, ConnectorSample, Tolerances};
 use halfgap_contact::{DualActiveSet, InverseInertia, Problem, Row, Settings, Solution, Solver};
 
-/// Contradiction between dependent connectors, as a fraction of the largest gap, that a round may leave to the next: gaps
-/// are curved, so those of a linkage with more bars than it needs agree only to second order.
+/// Contradiction between dependent connectors, as a fraction of the largest gap, that a round may leave to the next:
+/// gaps are curved, so those of a linkage with more bars than it needs agree only to second order.
 const INCONSISTENCY: f64 = 1e-2;
 /// Largest angle [rad] by which a round turns a body: beyond it, gaps are curved by too much.
 const LARGEST_TURN: f64 = 0.1;
@@ -35,8 +35,8 @@ pub(super) fn correct_positions(
     apply(bodies, &corrections)
 }
 
-/// Moves the bodies so that the `held` gaps come to their target, from either side, and others are lifted where they are
-/// too small. Returns as [`correct_positions`] does.
+/// Moves the bodies so that the `held` gaps come to their target, from either side, and others are lifted where they
+/// are too small. Returns as [`correct_positions`] does.
 pub(super) fn bring_to_target(
     bodies: &mut [StartParts],
     held: &[Collision],
@@ -93,9 +93,9 @@ fn join<'a>(
     })
 }
 
-/// Changes the velocities so that no bilateral connector comes apart. Returns the connector that came apart fastest, and
-/// its rate [m/s]. Where connectors contradict each other, velocities are left as they are if no connector comes apart
-/// faster than the speed that counts as slow.
+/// Changes the velocities so that no bilateral connector comes apart. Returns the connector that came apart fastest,
+/// and its rate [m/s]. Where connectors contradict each other, velocities are left as they are if no connector comes
+/// apart faster than the speed that counts as slow.
 pub(super) fn correct_velocities(
     bodies: &mut [StartParts],
     named: &[Named],

@@ -1,14 +1,15 @@
-//! Corrections at the start of a run: gaps that are too small are lifted to the target gap, connectors that are a little
-//! off are put together, and velocities are made to fit the connectors; deeper overlaps and larger errors are refused.
+//! Corrections at the start of a run: gaps that are too small are lifted to the target gap, connectors that are a
+//! little off are put together, and velocities are made to fit the connectors; deeper overlaps and larger errors are
+//! refused.
 //!
-//! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the
-//! target and closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity
-//! problem A f + b >= 0, f >= 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in
-//! the displacement, so this is repeated until they fit, in steps along which they are not curved by much.
-//! `tight` lists the pairs that cannot be lifted: they keep their gap, and all others are lifted from their given
-//! positions. `regain` brings back gaps that the least displacement carries beyond their target: the result is the least
-//! displacement that puts all lifted gaps at their target. `touching` finds the places where bodies touch, `joined` the
-//! rows of connectors, `correction` solves for displacements and for velocities.
+//! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the target and
+//! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >=
+//! 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is
+//! repeated until they fit, in steps along which they are not curved by much. `tight` lists the pairs that cannot be
+//! lifted: they keep their gap, and all others are lifted from their given positions. `regain` brings back gaps that
+//! the least displacement carries beyond their target: the result is the least displacement that puts all lifted gaps
+//! at their target. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction`
+//! solves for displacements and for velocities.
 
 mod correction;
 mod joined;
@@ -33,10 +34,10 @@ use touching::{
 const MOST_ROUNDS: u32 = 12;
 /// Largest number of further rounds that go only a fraction of the way, lest bodies turn by too much.
 const MOST_SHORT_ROUNDS: u32 = 100;
-/// Fraction of the connectors' error above which what a full round leaves is as little as can be had.
+/// Fraction of the connectors' error that a full round must at least remove; else the error counts as irreducible.
 const LEAST_GAIN: f64 = 0.5;
-/// Longest way of a body, as a multiple of the sum of what all gaps lack. A body that goes farther has been carried past
-/// the end of a face: to first order faces have no ends.
+/// Longest way of a body, as a multiple of the sum of what all gaps lack. A body that goes farther has been carried
+/// past the end of a face: to first order faces have no ends.
 const FARTHEST: f64 = 10.0;
 /// Longest way of a body, as a fraction of its reach, if that is more.
 const FARTHEST_OF_REACH: f64 = 0.1;
@@ -197,7 +198,8 @@ fn widen(
     tight.widen(bodies, connectors, &records)
 }
 
-/// True if the connectors are together: to rounding, or, where rounds gain nothing more, within the contradiction allowed.
+/// True if the connectors are together: to rounding, or, where rounds gain nothing more, within the contradiction
+/// allowed.
 fn fits(error: f64, has_stalled: bool, rules: &StartRules<'_>) -> bool {
     error <= rules.rounding || (has_stalled && error <= rules.contradiction)
 }

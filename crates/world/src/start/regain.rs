@@ -9,8 +9,8 @@ use super::{MOST_ROUNDS, StartParts, StartRules, ways};
 use crate::near::NearPairs;
 use halfgap_collision::{BodyState, Collision, Connector};
 
-/// Brings the lifted gaps to their target, from both sides, if some of them lie beyond it. Leaves the bodies as they are
-/// if none does, or if that is not possible. `given` holds the bodies before they were lifted.
+/// Brings the lifted gaps to their target, from both sides, if some of them lie beyond it. Leaves the bodies as they
+/// are if none does, or if that is not possible. `given` holds the bodies before they were lifted.
 pub(super) fn regain_touches(
     bodies: &mut [StartParts],
     (lifted, given): (&[Touch], &[BodyState]),

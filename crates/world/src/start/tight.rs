@@ -1,5 +1,5 @@
-//! Pairs that connectors, or other bodies, keep from being lifted, such as a wheel on a fixed axle that just touches its
-//! floor. They keep their given gap, if they do not overlap.
+//! Pairs that connectors, or other bodies, keep from being lifted, such as a wheel on a fixed axle that just touches
+//! its floor. They keep their given gap, if they do not overlap.
 
 use super::StartParts;
 use super::correction::can_lift;

@@ -43,8 +43,8 @@ pub(super) fn deep_overlap(
     deep.next()
 }
 
-/// Returns records of all places where bodies touch, including overlaps no deeper than the overlap accepted at the start
-/// plus the `ways` [m] that both bodies have been moved since.
+/// Returns records of all places where bodies touch, including overlaps no deeper than the overlap accepted at the
+/// start plus the `ways` [m] that both bodies have been moved since.
 pub(super) fn touching(
     bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
@@ -76,8 +76,8 @@ pub(super) fn record_of(
     record_features([&moment(bodies, a), &moment(bodies, b)], features, rules.tolerances, 0.0)
 }
 
-/// Features that touched in the rounds of a correction so far. A body lifted at one corner comes down on another: if the
-/// first were forgotten, the next round would lower it again as far as it lifts the second, and so on.
+/// Features that touched in the rounds of a correction so far. A body lifted at one corner comes down on another: if
+/// the first were forgotten, the next round would lower it again as far as it lifts the second, and so on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KnownTouches(Vec<Touch>);
 
