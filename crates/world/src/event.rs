@@ -65,7 +65,7 @@ pub struct ImpactRow {
 pub struct Impact {
     /// Time of the impact [s].
     pub time: f64,
-    /// Places of the impact, with their impulses.
+    /// Rows that carried an impulse.
     pub rows: Vec<ImpactRow>,
     /// Change of the kinetic energy [J], negative where energy was lost.
     pub energy_change: f64,
