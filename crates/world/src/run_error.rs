@@ -223,7 +223,8 @@ impl RunError {
         }
     }
 
-    /// Time at which the run stopped [s]; `None` for a request that was refused before anything moved.
+    /// Time at which the run stopped [s]; `None` for a request that was refused before anything moved, and for
+    /// [`RunError::Advance`].
     #[must_use]
     pub fn time(&self) -> Option<f64> {
         match self {

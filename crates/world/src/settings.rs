@@ -61,7 +61,8 @@ pub struct WorldSettings {
 /// Integrator of motion under forces, where it has no closed form.
 ///
 /// With the adaptive ones, a group of coupled bodies whose forces are stiff goes over to implicit steps on its own
-/// (Radau IIA of order 5), as long as these cost less; groups of more than 100 bodies do not.
+/// (Radau IIA of order 5), as long as these cost less; groups whose state has more than 600 numbers (100 free bodies)
+/// do not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Integrator {
