@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 /// Exact, fast 2D rigid-body mechanics.
 ///
-/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early: what was recorded is
-/// written.
+/// Exit codes: 0 done; 1 a check failed; 2 the input is wrong; 3 the simulation stopped early, with the recording up to
+/// then written.
 #[derive(Debug, Parser)]
 #[command(name = "halfgap", version)]
 pub(crate) struct Args {
@@ -19,11 +19,11 @@ pub(crate) struct Args {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Run a scene, report how it ended, and record it if asked to.
+    /// Run a scene, report its final state, and record it if asked to.
     Run(RunOptions),
     /// Run scenes that have expected states, and compare.
     Check(CheckOptions),
-    /// Run a scene many times, one of its numbers varied, on all cores.
+    /// Run a scene many times, with one of its numbers varied, on all cores.
     Sweep(SweepOptions),
     /// Solve one contact problem from a file and explain the answer.
     Solve(SolveArgs),
@@ -33,11 +33,10 @@ pub(crate) enum Command {
 pub(crate) struct RunOptions {
     /// The scene, a .toml or .json file.
     pub(crate) scene: PathBuf,
-    /// Write the recording (CSV and JSON) and pictures (SVG) to this folder; if Ctrl-C stops the run early, what it has by
-    /// then.
+    /// Write the recording (CSV and JSON) and pictures (SVG) to this folder, also when Ctrl-C stops the run.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Also write so many pictures of times in between to that folder.
+    /// Also write N pictures, evenly spaced in time, to that folder.
     #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
     pub(crate) pictures: usize,
     /// Print one JSON object instead of the table.
@@ -49,10 +48,10 @@ pub(crate) struct RunOptions {
     /// Duration in seconds, instead of the scene's.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
-    /// Run the scene again at a tighter tolerance, and print by how much the answers differ.
+    /// Run the scene again at a tighter tolerance, and print the differences.
     #[arg(long)]
     pub(crate) estimate_error: bool,
-    /// No progress bar and no table; an error estimate is printed all the same.
+    /// Print no progress bar and no table, only the error estimate if asked for.
     #[arg(long)]
     pub(crate) quiet: bool,
 }
@@ -74,20 +73,20 @@ pub(crate) struct CheckOptions {
 pub(crate) struct SweepOptions {
     /// The scene, a .toml or .json file.
     pub(crate) scene: PathBuf,
-    /// The number to vary and its values: N of them from A to B, evenly, ends included. FIELD is a place in
-    /// the scene, such as body.ball.elasticity, body[0].position[1] or run.tolerance.
+    /// The number to vary and its values: N of them from A to B, evenly spaced, ends included. FIELD is the path of a
+    /// number in the scene, such as body.ball.elasticity, body[0].position[1] or run.tolerance.
     #[arg(long, value_name = "FIELD=A..B/N", allow_hyphen_values = true)]
     pub(crate) vary: Vary,
-    /// Write the table with the states at the end to this CSV file.
+    /// Write the table, with the final states, to this CSV file.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print one JSON object with all results instead of the table.
     #[arg(long)]
     pub(crate) json: bool,
-    /// So many runs at a time; by default as many as there are cores.
+    /// Number of runs at a time; by default one for each core.
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
-    /// No progress bar and no table.
+    /// Print no progress bar and no table.
     #[arg(long)]
     pub(crate) quiet: bool,
 }

@@ -1,4 +1,4 @@
-//! `halfgap check`: runs scenes that say what they expect.
+//! `halfgap check`: runs scenes with expected states and compares.
 
 use crate::args::CheckOptions;
 use crate::failure::{End, Failure, describe};
@@ -48,7 +48,7 @@ fn check_file(path: &Path, tolerance: Option<f64>) -> Result<CheckReport, SceneE
     let source = SceneSource::read(path)?;
     let mut scene = source.parse()?;
     if scene.expected.is_empty() {
-        let nothing = "missing field `expected`: the scene says nothing that could be checked";
+        let nothing = "missing field `expected`: there is nothing to check";
         return Err(source.locate(SceneError::new(FieldPath::top(), nothing)));
     }
     if let Some(tolerance) = tolerance {
@@ -79,7 +79,7 @@ fn unusable(path: &Path, error: &SceneError) -> FileReport {
     FileReport { report, file, usable: false }
 }
 
-/// One line, and one more for each thing that did not come true.
+/// Returns a line for the file, and one for each failed expectation.
 fn lines(file: &FileReport) -> String {
     let report = &file.report;
     let word = match (file.usable, report.ok) {

@@ -1,4 +1,4 @@
-//! How a command ends, and the messages when it ends badly.
+//! Ends of commands with their exit codes, and messages of failures.
 
 use halfgap::scene::SceneError;
 use std::fmt::Write;
@@ -6,7 +6,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// How a command ended, apart from errors.
+/// End of a command, apart from failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// Everything was done.
@@ -30,7 +30,7 @@ impl From<End> for ExitCode {
     }
 }
 
-/// What kept a command from its work.
+/// Failure that kept a command from its work.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The scene or an option is wrong.
@@ -45,7 +45,7 @@ pub(crate) enum Failure {
 
 impl Failure {
     pub(crate) fn exit_code(&self) -> u8 {
-        // What cannot be written to is a wrong option.
+        // An output that cannot be written counts as a wrong option.
         2
     }
 
@@ -70,7 +70,7 @@ impl From<SceneError> for Failure {
     }
 }
 
-/// The message of an error with the line it is about.
+/// Returns the message of an error, with the line of the file and a mark at the column.
 pub(crate) fn describe(error: &SceneError) -> String {
     let mut text = format!("error: {error}");
     if let (Some(position), Some(excerpt)) = (error.position(), error.excerpt()) {

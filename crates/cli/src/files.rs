@@ -8,12 +8,12 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Makes the folder, before the run, so that a run is not lost to a bad path.
+/// Makes the folder before the run, so that a run is not lost to a bad path.
 pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.to_path_buf(), error))
 }
 
-/// Writes everything; beside start and end, so many `pictures` of times in between.
+/// Writes all files, with pictures of the start, the end, and `pictures` times in between.
 pub(crate) fn write_all(
     folder: &Path,
     world: &World,
@@ -66,7 +66,8 @@ fn picture_name(index: usize) -> String {
     format!("picture-{index:04}.svg")
 }
 
-/// Removes the pictures from a number on, which an earlier run of more has left: they would seem to be of this one.
+/// Removes the pictures from index `count` on, left by an earlier run with more of them, lest they seem to be of this
+/// run.
 fn remove_further(folder: &Path, count: usize) -> Result<(), Failure> {
     let left = (count..).map(|index| folder.join(picture_name(index))).take_while(|path| path.exists());
     for path in left {
@@ -75,7 +76,7 @@ fn remove_further(folder: &Path, count: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-/// So many of the frames between the first and the last, evenly over the run; all if there are no more.
+/// Returns `count` frames between the first and the last, evenly over the run; all of them if there are fewer.
 fn evenly(frames: &[Frame], count: usize) -> impl Iterator<Item = &Frame> {
     let last = frames.len().saturating_sub(1);
     let count = count.min(last.saturating_sub(1));

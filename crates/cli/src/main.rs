@@ -1,8 +1,8 @@
 //! The `halfgap` command: runs, varies and checks scene files, and solves contact problems.
 //!
-//! `args` declares the command line; each subcommand is a module of its own (`run`, `check`, `sweep` with
-//! `vary`, `solve`) that returns how it ended, `failure` turns what went wrong into messages and exit codes,
-//! `output` writes to standard output, `interrupt` hears who wants it to stop.
+//! `args` declares the command line; each subcommand is a module of its own (`run` with `files`, `check`, `sweep` with
+//! `vary`, `solve`), `failure` makes messages and exit codes, `table` the tables, `output` writes to standard output,
+//! `progress` shows the progress bar, `interrupt` handles Ctrl-C and SIGTERM.
 
 mod args;
 mod check;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use std::io::{self, Write};
 
-/// Writes a text to standard output; that nobody reads on (as in `halfgap ... | head`) is no error.
+/// Writes a text to standard output. A closed pipe, as in `halfgap ... | head`, is no error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

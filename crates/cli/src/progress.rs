@@ -1,12 +1,12 @@
-//! The progress bar: on a terminal only.
+//! The progress bar, shown on a terminal only.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr, stdout};
 
-/// Steps of the bar.
+/// Number of steps of the bar.
 const STEPS: u64 = 1000;
 
-/// A bar on standard error, or nothing if it is not wanted or output goes elsewhere than to a terminal.
+/// A bar on standard error, hidden if it is not wanted, or if standard error or output is not a terminal.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
@@ -26,7 +26,7 @@ impl Progress {
         Self { bar }
     }
 
-    /// Shows that a part, 0 to 1, is done.
+    /// Shows the fraction done, 0 to 1.
     pub(crate) fn set(&self, part: f64) {
         if let Some(bar) = &self.bar {
             bar.set_position((part * STEPS as f64) as u64);

@@ -1,4 +1,4 @@
-//! `halfgap run`: runs a scene and reports how it ended.
+//! `halfgap run`: runs a scene, reports its final state, and writes its recording.
 
 use crate::args::RunOptions;
 use crate::failure::{End, Failure};
@@ -21,7 +21,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     for warning in world.warnings() {
         eprintln!("warning: {}: {warning}", options.scene.display());
     }
-    // Without a folder nothing is recorded that could be lost: a signal ends the command at once, as it always does.
+    // Without a folder there is no recording to lose: a signal ends the command at once, as usual.
     let interrupt = if options.out.is_some() { Interrupt::listen() } else { Interrupt::default() };
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
@@ -41,7 +41,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         result.error_estimate = Some(estimate.map_err(|error| source.locate(error))?);
     }
     progress.finish();
-    // What cannot be written is told last: the rest is not lost with it.
+    // A failure to write is reported last, so that the results are not lost with it.
     let written = options.out.as_ref().map_or(Ok(()), |folder| {
         files::write_all(folder, &world, &report.recording, &result, options.pictures)
     });
@@ -56,7 +56,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         eprintln!("warning: {}: {finding}", options.scene.display());
     }
     if let Some(error) = &report.error {
-        eprintln!("error: {}: stopped early at t = {} s: {error}", options.scene.display(), result.time);
+        eprintln!("error: {}: stopped early: {error}", options.scene.display());
     }
     if let (Ok(true), Some(folder)) = (&problem, &options.out) {
         let path = folder.join(files::PROBLEM);

@@ -1,4 +1,4 @@
-//! `halfgap solve`: one contact problem from a file, its answer explained to a person or printed as JSON.
+//! `halfgap solve`: solves one contact problem from a file, and explains the answer or prints it as JSON.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -12,12 +12,12 @@ use halfgap_contact::{
     Solution, SolutionFile, SolveError, Solver, WarmStart,
 };
 
-/// Rows printed in full; of larger problems those that carry most force.
+/// Largest number of rows printed; of larger problems, those with the largest forces.
 const SHOWN_ROWS: usize = 40;
-/// Repetitions of a solve, of which the fastest counts.
+/// Number of repetitions of a solve, of which the fastest counts.
 const REPETITIONS: usize = 5;
 
-/// What to solve and how.
+/// Options of `halfgap solve`.
 #[derive(Debug, Args)]
 pub(crate) struct SolveArgs {
     /// A problem in the format halfgap-contact-1.
@@ -30,7 +30,7 @@ pub(crate) struct SolveArgs {
     json: bool,
 }
 
-/// Methods by the names they have in files.
+/// Methods by their names in files.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 #[value(rename_all = "snake_case")]
 enum Choice {
@@ -53,7 +53,7 @@ impl Choice {
     }
 }
 
-/// A solve with its times.
+/// A solution, or error, with the times of the solve.
 struct Outcome {
     solution: Solution,
     result: Result<(), SolveError>,
@@ -79,15 +79,12 @@ pub(crate) fn run(args: &SolveArgs) -> Result<End, Failure> {
     Ok(if outcome.result.is_ok() { End::Done } else { End::Stopped })
 }
 
-/// The file, its problem and that of the next step.
+/// Reads the file, its problem and, if it has `b_next`, that of the next step.
 fn read(args: &SolveArgs) -> Result<(ContactFile, Problem, Option<Problem>), String> {
     let text = std::fs::read_to_string(&args.problem).map_err(|error| error.to_string())?;
     let file = ContactFile::parse(&text).map_err(|error| error.to_string())?;
     for field in ContactFile::unknown_fields(&text) {
-        eprintln!(
-            "warning: {}: there is no field `{field}`: it is left out of account",
-            args.problem.display()
-        );
+        eprintln!("warning: {}: there is no field `{field}`: it is ignored", args.problem.display());
     }
     let problem = file.problem().map_err(|error| error.to_string())?;
     let next = match &file.b_next {
@@ -121,7 +118,8 @@ fn solve(method: Choice, problem: &Problem, next: Option<&Problem>) -> Outcome {
     Outcome { solution, result, microseconds, microseconds_warm }
 }
 
-/// The least time of some repetitions \[µs\], or `known` if that is less; slow and failing work is not repeated.
+/// Returns the least time of some repetitions \[µs\], or `known` if that is less. Work slower than a second, or
+/// failing, is not repeated.
 fn fastest(known: f64, mut work: impl FnMut() -> Result<(), SolveError>) -> f64 {
     let mut least = known;
     for _ in 0..REPETITIONS {
@@ -159,7 +157,7 @@ fn json(method: Choice, problem: &Problem, outcome: &Outcome) -> String {
     serde_json::to_string(&file).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
 }
 
-/// The answer in words.
+/// Returns the answer in words.
 fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
     let title = file.title.as_deref().unwrap_or("contact problem");
     let bilateral = problem.bilateral().iter().filter(|b| **b).count();
@@ -172,8 +170,8 @@ fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
                 parts.map(|(row, z)| format!("{row} ({z:.3})")).take(SHOWN_ROWS).collect();
             let _ = writeln!(
                 text,
-                "INFEASIBLE: {proof}.\nThe rows below, in these parts, move against each other whatever the forces \
-                 (rounding {:.0e}):\n  {}",
+                "INFEASIBLE: {proof}.\nThe rows below, with the weights in parentheses, move against each other whatever the \
+                 forces (rounding {:.0e}):\n  {}",
                 proof.leakage,
                 rows.join(", ")
             );
@@ -186,7 +184,7 @@ fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
     text
 }
 
-/// Whether the answer is what the file expects, as far as it does.
+/// Compares the answer with the expectations of the file.
 fn compare(text: &mut String, file: &ContactFile, outcome: &Outcome) {
     let found = match &outcome.result {
         Ok(()) => Some(true),
@@ -248,13 +246,13 @@ fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {
 fn times(outcome: &Outcome) -> String {
     match outcome.microseconds_warm {
         Some(warm) => {
-            format!("{:.1} µs from nothing, {warm:.1} µs warm for the next step", outcome.microseconds)
+            format!("{:.1} µs cold, {warm:.1} µs warm for the next step", outcome.microseconds)
         }
         None => format!("{:.1} µs", outcome.microseconds),
     }
 }
 
-/// The residuals in words.
+/// Returns the residuals in words.
 fn judgement(solution: &Solution) -> String {
     let Residuals { natural, growth, backward } = solution.residuals;
     let exact = natural <= Settings::default().natural_residual;
@@ -262,15 +260,15 @@ fn judgement(solution: &Solution) -> String {
     text += if exact {
         "the answer is exact to rounding."
     } else if solution.inconsistency > 0.0 {
-        "what contacts that contradict each other leave."
+        "left over because contacts contradict each other."
     } else {
-        "forces are so large beside the offsets that rounding shows."
+        "rounding shows, because the forces are so much larger than the offsets."
     };
     let _ = write!(text, "\nGrowth {growth:.1e}, backward residual {backward:.1e}.");
     if solution.inconsistency > 0.0 {
         let _ = write!(
             text,
-            "\nDependent rows contradict each other by {:.1e} of the largest offset; solved by least squares.",
+            "\nDependent rows contradict each other by {:.1e} of the largest offset; the answer is that of least squares.",
             solution.inconsistency
         );
     }

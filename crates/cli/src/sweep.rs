@@ -1,7 +1,7 @@
-//! `halfgap sweep`: runs a scene many times, one of its numbers varied.
+//! `halfgap sweep`: runs a scene many times, with one of its numbers varied.
 //!
-//! Runs share nothing, so they go to all cores at once, and each gives the bits that it gives alone. A value of
-//! which no world can be made, as one at which bodies overlap, is a run that was refused: the others are told.
+//! Runs share nothing, so they go to all cores at once, and each gives the same bits as alone. A value from which no
+//! world can be built, say because bodies overlap, is reported as a refused run; the other runs are not affected.
 
 use crate::args::SweepOptions;
 use crate::failure::{End, Failure};
@@ -9,7 +9,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{output, table};
 use halfgap::scene::{SceneError, SceneSource, VariedScene};
-use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
+use halfgap::{Outcome, Record, RunPlan, RunResult, World, csv_field, run};
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -20,19 +20,19 @@ use std::io::Write as _;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The status of a value of which no world can be made.
+/// Status of a value from which no world can be built.
 const REFUSED: &str = "refused";
-/// What the table says of each body.
+/// Quantities of each body in the table: SI units and radians, `w` for the angular velocity.
 const QUANTITIES: [&str; 6] = ["x", "y", "angle", "vx", "vy", "w"];
 
 /// One run of the sweep.
 #[derive(Debug, Serialize)]
 struct SweepRun {
     value: f64,
-    /// What came of it, unless it was refused.
+    /// Result of the run, unless it was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     result: Option<RunResult>,
-    /// Why it stopped early, or was refused, if it was.
+    /// Message of the error that stopped the run early or refused it.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(skip)]
@@ -51,12 +51,12 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     let source = SceneSource::read(&options.scene)?;
     let varied = VariedScene::new(source.clone(), &options.vary.field)?;
     let values = options.vary.values();
-    // All are read before one runs: a value out of range is found at once.
+    // All scenes are read before the first runs, so that a value out of range is found at once.
     let scenes = values.iter().map(|&value| varied.with(value));
     let scenes = scenes.map(|scene| scene.map(|scene| scene.title)).collect::<Result<BTreeSet<_>, _>>()?;
     let title = scenes.first().cloned().unwrap_or_default();
     let interrupt = Interrupt::listen();
-    // Nor are they lost to a bad path.
+    // The file is made before the runs, which a bad path would lose.
     let file = match &options.out {
         Some(path) => Some((path, File::create(path).map_err(|error| Failure::Write(path.clone(), error))?)),
         None => None,
@@ -79,7 +79,7 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     Ok(sweep.end(values.len()))
 }
 
-/// Runs all values but those that are left when somebody interrupts.
+/// Runs all values, except those left after an interruption.
 fn run_all(
     values: &[f64],
     varied: &VariedScene,
@@ -120,7 +120,7 @@ fn run_scene(value: f64, varied: &VariedScene, interrupt: &Interrupt) -> SweepRu
 }
 
 impl Sweep {
-    /// How a sweep of so many values ends.
+    /// Returns the end of a sweep of `values` values.
     fn end(&self, values: usize) -> End {
         let is_done = |run: &SweepRun| run.status() == Outcome::Done.name();
         if self.runs.iter().any(|run| run.result.is_none()) {
@@ -139,8 +139,8 @@ impl SweepRun {
     }
 }
 
-/// Warnings, each where it comes first, and why runs stopped early or were refused, with the value of the run;
-/// how many were not made, if somebody interrupted.
+/// Writes to standard error: each warning at the first run that has it, findings and errors with the value of their
+/// run, and the number of runs not made after an interruption.
 fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     let mut told = BTreeSet::new();
     for SweepRun { value, result, error, warnings } in &sweep.runs {
@@ -152,9 +152,7 @@ fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
             eprintln!("warning: {at}: {finding}");
         }
         match (result, error) {
-            (Some(result), Some(error)) => {
-                eprintln!("error: {at}: stopped early at t = {} s: {error}", result.time);
-            }
+            (Some(_), Some(error)) => eprintln!("error: {at}: stopped early: {error}"),
             (None, Some(error)) => eprintln!("error: {at}: {error}"),
             (_, None) => {}
         }
@@ -164,7 +162,7 @@ fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     }
 }
 
-/// What a person wants to see of each run.
+/// Returns the table: a line for each run.
 fn lines(sweep: &Sweep) -> String {
     let heads = ["status", "time [s]", "energy change [J]", "impacts", "steps"];
     let mut text = format!("{:>20}", sweep.field);
@@ -188,15 +186,15 @@ fn lines(sweep: &Sweep) -> String {
     text
 }
 
-/// Everything but the wall time, in digits that read back as the same bits: equal sweeps write equal files. Of a run
-/// that was refused all but its value and status is empty.
+/// Returns all results as CSV, in digits that read back as the same bits and without wall times: equal sweeps write
+/// equal files. A refused run has its value and status only; its other fields are empty.
 fn csv(sweep: &Sweep) -> String {
-    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", quoted(&sweep.field));
+    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", csv_field(&sweep.field));
     let known = sweep.runs.iter().find_map(|run| run.result.as_ref());
     let bodies = known.map_or(&[][..], |result| &result.bodies);
     for (name, _) in bodies {
         for quantity in QUANTITIES {
-            let _ = write!(text, ",{}", quoted(&format!("{name}.{quantity}")));
+            let _ = write!(text, ",{}", csv_field(&format!("{name}.{quantity}")));
         }
     }
     text.push('\n');
@@ -220,14 +218,5 @@ fn write_result(text: &mut String, result: &RunResult) {
         for number in [place.x, place.y, state.angle, speed.x, speed.y, state.angular_velocity] {
             let _ = write!(text, ",{number:?}");
         }
-    }
-}
-
-/// A field of CSV, in quotes where it needs them.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
     }
 }

@@ -1,17 +1,17 @@
-//! The table that `halfgap run` prints.
+//! The table that `halfgap run` prints, and numbers in tables.
 
 use halfgap::{Difference, ErrorEstimate, Ledger, RunResult};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// More bodies than this are not listed one by one; `--json` and `--out` list all.
+/// Largest number of bodies listed; `--json` and `--out` list all.
 const MOST_BODIES: usize = 60;
-/// Longest name that is not cut.
+/// Largest length of a name; longer ones are cut.
 const LONGEST_NAME: usize = 24;
 /// Sizes, in the unit of the column, that are written without an exponent.
 const PLAIN: Range<f64> = 1e-3..1e5;
 
-/// States, energies and counters.
+/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate.
 pub(crate) fn of_result(result: &RunResult) -> String {
     let mut text = format!("{}: {} at t = {} s\n\n", result.scene, result.status.name(), result.time);
     push_states(&mut text, result);
@@ -23,7 +23,7 @@ pub(crate) fn of_result(result: &RunResult) -> String {
     text + &of_estimate(result)
 }
 
-/// By how much a tighter run differs; nothing if that was not asked for.
+/// Returns the error estimate; an empty text if none was asked for.
 pub(crate) fn of_estimate(result: &RunResult) -> String {
     let mut text = String::new();
     if let Some(estimate) = &result.error_estimate {
@@ -81,7 +81,7 @@ fn push_summary(text: &mut String, result: &RunResult) {
     }
 }
 
-/// What changed the energy, as far as anything did, and what is left of that.
+/// Adds the changes of the energy that are not 0, and the error of the integration.
 fn push_ledger(text: &mut String, ledger: &Ledger) {
     let fixed = [
         ("impacts", ledger.impacts),
@@ -111,16 +111,16 @@ fn push_estimate(text: &mut String, estimate: &ErrorEstimate) {
     let _ = writeln!(text, "  {:14} {times} ({impacts} impacts against {of_tighter})", "event times");
     match (estimate.chaotic, estimate.trusted_until) {
         (true, Some(time)) => {
-            let _ = writeln!(text, "  chaotic: the answer is worth something until {time:.4} s, no longer");
+            let _ = writeln!(text, "  chaotic: states are meaningful until {time:.4} s only");
         }
         (true, None) => {
             let _ =
-                writeln!(text, "  chaotic: the error grows faster than any tolerance could follow for long");
+                writeln!(text, "  chaotic: the error grows too fast for any tolerance to hold it for long");
         }
         (false, Some(time)) => {
             let _ = writeln!(
                 text,
-                "  the answer is worth something until {time:.4} s: the tolerance is too loose for more"
+                "  states are meaningful until {time:.4} s only; a tighter tolerance extends that"
             );
         }
         (false, None) => {}
@@ -138,7 +138,7 @@ fn push_difference(text: &mut String, when: &str, difference: &Difference) {
     );
 }
 
-/// Ten digits: enough to read, few enough to compare by eye.
+/// Formats a number to nine digits after the point, or eight with an exponent: few enough to compare by eye.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || PLAIN.contains(&size) { format!("{value:.9}") } else { format!("{value:.8e}") }

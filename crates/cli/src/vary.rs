@@ -1,9 +1,9 @@
-//! What `halfgap sweep --vary` says: a field and the values it takes.
+//! The option `--vary` of `halfgap sweep`: a field and its values.
 
 use halfgap::scene::FieldPath;
 use std::str::FromStr;
 
-/// More runs than this are a slip of the finger.
+/// Largest number of runs; more are taken for a mistake.
 const MOST_VALUES: usize = 10_000_000;
 
 /// A field and evenly spaced values.
@@ -16,7 +16,7 @@ pub(crate) struct Vary {
 }
 
 impl Vary {
-    /// The values in order; the ends are as given, to the last bit.
+    /// Returns the values in order; the ends are as given, to the last bit.
     pub(crate) fn values(&self) -> Vec<f64> {
         let last = self.count - 1;
         let value = |index: usize| match index {

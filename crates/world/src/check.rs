@@ -1,4 +1,4 @@
-//! Compares a run with the states that its scene expects.
+//! Comparison of a run with the states that its scene expects.
 
 use crate::finding::Finding;
 use crate::recording::{Frame, Recording};
@@ -9,12 +9,12 @@ use glam::DVec2;
 use halfgap_collision::BodyState;
 use serde::Serialize;
 
-/// How far a run is from what its scene expects.
+/// Differences of a run from the states that its scene expects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CheckReport {
     /// Title of the scene.
     pub scene: String,
-    /// Everything expected came true.
+    /// Whether the run reached every expected state within its tolerances.
     pub ok: bool,
     /// Largest difference of a position [m] or an angle [rad]; `None` if none was compared.
     pub position_error: Option<f64>,
@@ -22,14 +22,14 @@ pub struct CheckReport {
     pub velocity_error: Option<f64>,
     /// Largest difference of an energy change, or excess over its bound [J]; `None` if none was compared.
     pub energy_error: Option<f64>,
-    /// What did not come true, each with time, body and quantity.
+    /// One message for each expectation that failed, with time, body and quantity.
     pub why: Vec<String>,
-    /// What does not hold at the end, whatever was expected.
+    /// Broken invariants of the run, whatever was expected.
     #[serde(skip)]
     pub findings: Vec<Finding>,
 }
 
-/// Runs the world of a scene up to its last expected time and compares.
+/// Runs the world of a scene up to its last expected time and compares it with the expected states.
 pub fn check(world: &mut World, scene: &Scene) -> CheckReport {
     let mut order: Vec<&ExpectedData> = scene.expected.iter().collect();
     order.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -141,7 +141,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// The state of a body in a frame; a fixed one is where it always is.
+    /// State of a body in a frame, or of a fixed body, which frames leave out.
     fn find_state(&self, frame: &Frame, name: &str) -> Option<BodyState> {
         let body = self.world.find(name)?;
         let place = self.recording.place(body);

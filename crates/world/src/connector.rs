@@ -1,4 +1,4 @@
-//! Connectors as a world is built from them.
+//! Connectors to be added to a world, and their names in messages.
 
 use halfgap_collision::{Connector, ConnectorKind};
 
@@ -7,26 +7,26 @@ use halfgap_collision::{Connector, ConnectorKind};
 pub struct ConnectorSpec {
     /// The connector.
     pub connector: Connector,
-    /// The bodies collide with each other although a pin or slot joins them.
+    /// Whether the bodies collide with each other even if a pin or slot joins them.
     pub collide: bool,
-    /// Body b (else a) is moved to satisfy the connector before the start.
+    /// Whether body b, or body a if b is missing or fixed, is moved to satisfy the connector before the start.
     pub align: bool,
 }
 
 impl ConnectorSpec {
-    /// A connector whose bodies collide as their kind has it, and stay where they are given.
+    /// Makes a connector with the defaults: bodies joined by a pin or slot do not collide, and none is aligned.
     #[must_use]
     pub fn new(connector: Connector) -> Self {
         Self { connector, collide: false, align: false }
     }
 
-    /// True if the bodies are not to collide with each other: those that a pin or slot joins, unless they are to.
+    /// True if the connector keeps its bodies from colliding: a pin or slot without `collide`.
     pub(crate) fn keeps_from_colliding(&self) -> bool {
         matches!(self.connector.kind, ConnectorKind::Pin { .. } | ConnectorKind::Slot { .. }) && !self.collide
     }
 }
 
-/// The word for a kind of connector in messages.
+/// Returns the name of a kind of connector in messages and scene files.
 pub(crate) fn kind_name(kind: &ConnectorKind) -> &'static str {
     match kind {
         ConnectorKind::Pin { .. } => "pin",

@@ -1,23 +1,23 @@
-//! What a world tells while it advances: impacts, and contacts that begin and end.
+//! Events that a world reports while it advances: impacts, and contacts that begin and end.
 
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, ConnectorId};
 
-/// Something that happened at one moment.
+/// An event at one moment of the motion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event {
     /// Bodies collided, or a connector pulled tight.
     Impact(Impact),
-    /// From now on two bodies rest on each other, a connector that can be slack is taut, or the point of a rail
-    /// rests in a corner, by one side of it.
+    /// A contact begins: two bodies rest or slide on each other, a rope or stop is taut, or the point of a rail rests
+    /// in a corner against one side of it.
     ContactBegins(ContactEvent),
-    /// From now on they do so no longer.
+    /// A contact, taut connector or rest in a corner ends.
     ContactEnds(ContactEvent),
 }
 
 impl Event {
-    /// When [s].
+    /// Time of the event [s].
     #[must_use]
     pub fn time(&self) -> f64 {
         match self {
@@ -26,7 +26,7 @@ impl Event {
         }
     }
 
-    /// The impact, if it is one.
+    /// The impact; `None` for other events.
     #[must_use]
     pub fn impact(&self) -> Option<&Impact> {
         match self {
@@ -36,67 +36,70 @@ impl Event {
     }
 }
 
-/// One place at which two bodies collided.
+/// One place of an impact, with its impulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactRow {
     /// The body that the normal points to.
     pub primary: BodyId,
     /// The body that the normal points out of.
     pub normal_body: BodyId,
-    /// The connector that the row is of; `None` for bodies that touch.
+    /// The connector whose row this is; `None` for bodies that touch.
     pub connector: Option<ConnectorId>,
-    /// Where [m].
+    /// World position [m] at which the impulse acts on the primary body.
     pub point: DVec2,
     /// Unit normal, from the normal body to the primary one.
     pub normal: DVec2,
-    /// Gap [m].
+    /// Gap along the normal [m], negative where bodies overlap.
     pub gap: f64,
-    /// Rate of the gap before [m/s], negative when closing.
+    /// Rate of the gap before the impact [m/s], negative when closing.
     pub velocity_before: f64,
-    /// Rate of the gap after [m/s].
+    /// Rate of the gap after the impact [m/s], negative when closing.
     pub velocity_after: f64,
-    /// Impulse on the primary body along the normal [N s]; the other body gets the opposite, at that place but for
-    /// what [`ContactForce`] says of slots.
+    /// Impulse on the primary body along the normal [N s], negative only in bilateral connectors; the other body gets
+    /// the opposite, at the same point except in slots (see [`ContactForce`]).
     pub impulse: f64,
 }
 
-/// An impact: everything that collided at one moment.
+/// An impact: all collisions of one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impact {
-    /// When [s].
+    /// Time of the impact [s].
     pub time: f64,
-    /// Where, and how hard.
+    /// Rows that carried an impulse.
     pub rows: Vec<ImpactRow>,
-    /// Change of the kinetic energy [J].
+    /// Change of the kinetic energy [J], negative where energy was lost.
     pub energy_change: f64,
     /// States of the movable bodies that took part, after the impact.
     pub states: Vec<(BodyId, BodyState)>,
 }
 
-/// The force of one row between two bodies: a contact, or one direction of a connector. Of a slot whose direction is
-/// fixed in the world it acts on the second body at that one's own anchor.
+/// The force of one row between two bodies: a contact, or one direction of a connector.
+///
+/// In a slot whose direction is fixed in the world, the force on the second body acts at that body's own anchor instead
+/// of at `point`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce {
     /// The body that the normal points to, and the one that it points out of; [`BodyId::WORLD`] for the background.
     pub bodies: [BodyId; 2],
-    /// The connector; `None` for bodies that touch.
+    /// The connector whose row this is; `None` for bodies that touch.
     pub connector: Option<ConnectorId>,
-    /// Where [m].
+    /// World position [m] at which the force acts on the first body.
     pub point: DVec2,
-    /// Unit normal.
+    /// Unit normal, from `bodies[1]` to `bodies[0]`.
     pub normal: DVec2,
-    /// Force on the first body along the normal [N]; the other body gets the opposite.
+    /// Force on `bodies[0]` along the normal [N], negative only in bilateral connectors; `bodies[1]` gets the opposite.
     pub force: f64,
 }
 
-/// A contact that begins or ends, with its force just then.
+/// A contact that begins or ends, with its force at that moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEvent {
-    /// When [s].
+    /// Time of the event [s].
     pub time: f64,
-    /// Between whom, where and how strong.
+    /// Bodies, place and force of the contact.
     pub contact: ContactForce,
-    /// How long [s] the bounces would have gone on that were too slow or too low to be resolved, of a single
-    /// contact that begins: the time of rest is this much later.
+    /// Time [s], 2 e v/(a(1-e)), that the bounces left out as too small to resolve would have taken, with elasticity e,
+    /// closing speed v at the last impact and acceleration a: the true time of rest is `time + bouncing`. Only for a
+    /// single contact that begins with an impact.
     pub bouncing: Option<f64>,
 }

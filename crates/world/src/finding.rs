@@ -1,7 +1,7 @@
-//! What a run must not keep to itself: whether where it is, and its books, hold together.
+//! Broken invariants of a run: connectors that are off, overlaps, and energy books that do not close.
 //!
-//! A simulation that goes wrong mostly ends in numbers that look like any others. What can be known without knowing the
-//! answer is looked at here, now and then and at the end of every run: connectors, overlaps, and the energy.
+//! A simulation that goes wrong mostly ends in numbers that look like any others. These invariants can be checked
+//! without knowing the answer, now and then and at the end of every run.
 
 use crate::ledger::Books;
 use crate::near::NearPairs;
@@ -12,110 +12,121 @@ use crate::world::World;
 use crate::world_error::ConnectorName;
 use halfgap_collision::{BodyId, ConnectorId};
 
-/// How far off a connector may be, in tolerances and in roundings of the largest coordinate.
+// The energy in play is the largest sum seen of the kinetic energy, the change of the potential energy and the work of
+// force laws.
+
+/// Error allowed in a connector, in tolerances of the largest coordinate.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
+/// Error allowed in a connector for rounding, as a fraction of the largest coordinate.
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
-/// How deep bodies may overlap, in target gaps.
+/// Overlap allowed, in target gaps.
 const GAPS: f64 = 1.0;
-/// Where steps have a given length, and err by what they err, so many times as much may be off, and bodies
-/// may overlap so much more deeply.
+/// Factor on the errors of connectors and the overlaps allowed where steps of a given length may err by any amount.
 const ROUGHLY: f64 = 10.0;
-/// Where nothing is promised: part of the largest coordinate by which a connector may be off, and of the
-/// energy turned over that the books may lack. Anybody would see more.
+/// Where the settings promise nothing: error allowed in a connector, as a fraction of the largest coordinate, and in
+/// the books, as a fraction of the energy in play. More would be plain to see.
 const PLAINLY: f64 = 1e-2;
-/// So many times the room that bodies have to sink between impulses may be used up, where contacts carry no forces.
+/// Overlap allowed where contacts carry no forces, as a multiple of the room that bodies have to sink between impulses.
 const SINKING: f64 = 1.25;
-/// How much of the energy turned over the books may lack, in errors of a step and in roundings of the energies.
+/// Error allowed in the books, in errors of a step relative to the energy in play.
 const BOOKS_ERRORS: f64 = 1e3;
+/// Error allowed in the books for rounding, as a fraction of the energies.
 const BOOKS_ROUNDINGS: f64 = 1e6 * f64::EPSILON;
-/// Books that lack so many tolerances, and one more for every other step, are another scene's.
+/// Error of the books beyond which the run is astray, in tolerances of the energy in play.
 const ASTRAY: f64 = 5e3;
+/// Further error of the books allowed for each step, in tolerances of the energy in play.
 const ASTRAY_PER_STEP: f64 = 0.5;
-/// What forces do along so many target gaps is not told from rounding: far from the origin gaps are as wide
-/// as that asks for, and each event may err by a part of one.
+/// Error allowed in the books, in works of the forces along a target gap: far from the origin rounding makes gaps wide,
+/// and each event may err by a fraction of one.
 const ROUGH: f64 = 3e4;
-/// Part of the energy that is usual in a scene for which the energy turned over is taken at least.
+/// Least value of the energy in play, as a fraction of the energy that is usual in the scene.
 const SELDOM: f64 = 1e-2;
-/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin
-/// slowly. More is a blow that was taken for one. So much, too, projections may take where it is given what is slow.
+/// Fraction of the energy in play that captures may take, beside the error allowed in the books. Contacts begin slowly:
+/// where more is taken, a real impact was taken for a slow contact. Where `velocity_tol` is given, projections may take
+/// as much.
 const CAPTURED: f64 = 5e-2;
 
-/// Something that does not hold in a run.
+/// A broken invariant of a run.
+///
+/// `turned_over` is the energy in play: see [`World::findings`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Finding {
     /// A connector is off.
     ConnectorOff {
-        /// Which.
+        /// The connector.
         connector: ConnectorName,
-        /// How far [m].
+        /// Error of the connector [m].
         error: f64,
-        /// When that was seen [s].
+        /// Time at which the error was seen [s].
         time: f64,
     },
     /// Two bodies overlap.
     Overlap {
-        /// Name of the one.
+        /// Name of one body.
         first: String,
-        /// Name of the other.
+        /// Name of the other body.
         second: String,
-        /// How deep [m].
+        /// Depth of the overlap [m].
         depth: f64,
-        /// When that was seen [s].
+        /// Time at which the overlap was seen [s].
         time: f64,
     },
-    /// Energy came or went that nothing accounts for.
+    /// The energy books do not close: a change of the energy has no booked cause.
     OpenBooks {
-        /// How much [J].
+        /// Size of the change [J].
         error: f64,
-        /// The energy turned over [J].
+        /// The energy in play [J].
         turned_over: f64,
     },
-    /// To move bodies back onto what holds them made or took energy: that is to be errors of steps and no more, but near a place
-    /// where a linkage could go on in several ways it may be a jump.
+    /// Projections onto contacts and connectors changed the energy by more than errors of steps; near a position where
+    /// a linkage can go on in several ways this may be a jump.
     Projected {
-        /// How much [J].
+        /// Size of the change [J].
         energy: f64,
-        /// The energy turned over [J].
+        /// The energy in play [J].
         turned_over: f64,
     },
-    /// What counts as slow is not, or as a storm: what was stopped without elasticity took a good part of all
-    /// energy.
+    /// Captures, which stop slow or too frequent contacts without elasticity, removed a large part of the energy: some
+    /// of these contacts were real impacts.
     Captured {
-        /// How much [J].
+        /// Energy removed [J].
         energy: f64,
-        /// The energy turned over [J].
+        /// The energy in play [J].
         turned_over: f64,
-        /// The speed [m/s] below which a collision is a contact.
+        /// Speed [m/s] below which a collision is a contact.
         slow: f64,
     },
 }
 
-impl std::fmt::Display for Finding {
+/// A finding without its time, for errors that have one of their own.
+struct WithoutTime<'a>(&'a Finding);
+
+impl std::fmt::Display for WithoutTime<'_> {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::ConnectorOff { connector, error, time } => {
-                write!(out, "at {} s {connector} is off by {} m", Rounded(*time), Rounded(*error))
+        match self.0 {
+            Finding::ConnectorOff { connector, error, .. } => {
+                write!(out, "{connector} is off by {} m", Rounded(*error))
             }
-            Self::Overlap { first, second, depth, time } => {
-                let (time, depth) = (Rounded(*time), Rounded(*depth));
-                write!(out, "at {time} s \"{first}\" and \"{second}\" overlap by {depth} m")
+            Finding::Overlap { first, second, depth, .. } => {
+                write!(out, "\"{first}\" and \"{second}\" overlap by {} m", Rounded(*depth))
             }
-            Self::OpenBooks { error, turned_over } => write!(
+            Finding::OpenBooks { error, turned_over } => write!(
                 out,
-                "the energy books do not close: {} J of {} J turned over are not accounted for",
+                "the energy books do not close: {} J of {} J in play are not accounted for",
                 Rounded(*error),
                 Rounded(*turned_over)
             ),
-            Self::Projected { energy, turned_over } => write!(
+            Finding::Projected { energy, turned_over } => write!(
                 out,
-                "moving bodies back onto what holds them changed {} J of {} J turned over",
+                "projections onto contacts and connectors changed the energy by {} J of {} J in play",
                 Rounded(*energy),
                 Rounded(*turned_over)
             ),
-            Self::Captured { energy, turned_over, slow } => write!(
+            Finding::Captured { energy, turned_over, slow } => write!(
                 out,
-                "what was stopped as slower than velocity_tol, {} m/s, or as too frequent took {} J of {} J turned over",
+                "stopping slow (< {} m/s) or too frequent contacts removed {} J of {} J in play; lower `tolerance`, or set \
+                 `velocity_tol` if that is wanted",
                 Rounded(*slow),
                 Rounded(*energy),
                 Rounded(*turned_over)
@@ -124,7 +135,16 @@ impl std::fmt::Display for Finding {
     }
 }
 
-/// What was found in the course of a run, each thing once: when it was worst.
+impl std::fmt::Display for Finding {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Self::ConnectorOff { time, .. } | Self::Overlap { time, .. } = self {
+            write!(out, "at {} s ", Rounded(*time))?;
+        }
+        WithoutTime(self).fmt(out)
+    }
+}
+
+/// Findings in the course of a run, each connector and pair of bodies once, when it was worst.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     found: Vec<Finding>,
@@ -132,8 +152,7 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// Looks whether connectors are together and bodies apart, unless the sentry has just done so and found
-    /// that they are.
+    /// Checks whether connectors are together and bodies apart, unless the sentry has just found that they are.
     pub(crate) fn look(&mut self, world: &World) {
         if world.sentry.is_sound {
             return;
@@ -152,7 +171,7 @@ impl Findings {
         }
     }
 
-    /// All that was found, and whether the energy books close at the end.
+    /// Returns all findings, with those at the end and in the energy books.
     pub(crate) fn at_end(mut self, world: &World, turned_over: f64) -> Vec<Finding> {
         self.look(world);
         world.look_at_books(&Books::from(&world.ledger()), turned_over, &mut self.found);
@@ -161,6 +180,12 @@ impl Findings {
 }
 
 impl Finding {
+    /// Formats the finding without its time.
+    pub(crate) fn without_time(&self) -> impl std::fmt::Display + '_ {
+        WithoutTime(self)
+    }
+
+    /// True for two findings about one connector, or about one pair of bodies.
     fn is_of_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::ConnectorOff { connector: a, .. }, Self::ConnectorOff { connector: b, .. }) => a == b,
@@ -172,7 +197,7 @@ impl Finding {
         }
     }
 
-    /// What is no number is worst.
+    /// True if the finding is worse than another; NaN is worst.
     fn is_worse_than(&self, other: &Self) -> bool {
         let size = |finding: &Self| match finding {
             Self::ConnectorOff { error: size, .. }
@@ -186,11 +211,11 @@ impl Finding {
 }
 
 impl World {
-    /// Looks whether connectors are together, bodies are apart, and the energy books close, as the settings
-    /// promise; where they promise nothing, whether that is plain to see. Empty if all is well.
+    /// Checks whether connectors are together, bodies are apart, and the energy books close, to the accuracy that the
+    /// settings promise, or roughly where they promise none. Returns an empty list if all is well.
     ///
-    /// `turned_over` is the energy [J] that the run has moved: the largest kinetic energy, change of the
-    /// potential energy and work of force laws that was seen.
+    /// `turned_over` is the energy in play [J]: the largest sum of the kinetic energy, the change of the potential
+    /// energy since the start and the work of force laws that was seen in the run.
     #[must_use]
     pub fn findings(&self, turned_over: f64) -> Vec<Finding> {
         Findings::default().at_end(self, turned_over)
@@ -202,9 +227,8 @@ impl World {
         self.connectors_off(if is_projected { self.leniency() * share } else { PLAINLY }, findings);
     }
 
-    /// Connectors that are off by more than a part of the largest coordinate; ropes and stops count as taut
-    /// within their zone, and where contacts carry impulses only, by as much as bodies sink in a step and are
-    /// put back.
+    /// Lists connectors that are off by more than a fraction of the largest coordinate. Ropes and stops count as taut
+    /// within their target zone and, where contacts carry impulses only, within the depth that bodies sink in a step.
     fn connectors_off(&self, share: f64, findings: &mut Vec<Finding>) {
         if self.connectors().is_empty() {
             return;
@@ -233,12 +257,12 @@ impl World {
         }
     }
 
-    /// Overlaps of all but some pairs.
+    /// Lists overlaps of all pairs but the excluded ones.
     fn overlaps(&self, excluded: &[(BodyId, BodyId)], near: &mut NearPairs, findings: &mut Vec<Finding>) {
         let allowed = self.leniency() * GAPS * self.tolerances().target_gap;
         let pose = |body: BodyId| self.state(body).pose();
-        // What lies in both of two boxes is no deeper in either than these overlap by along one of their sides:
-        // bricks that lie flush overlap by rounding.
+        // Two bodies overlap by no more than their boxes do along either side, and bricks that lie flush overlap by
+        // rounding: boxes shrunk by half of the allowed depth leave out what need not be measured.
         let core = |body: BodyId| self.shape(body).bounds_at(&pose(body)).grown(-0.5 * allowed);
         let boxes = self.bodies().map(|body| (core(body), self.is_fixed(body)));
         for &(a, b) in near.find(boxes, excluded) {
@@ -252,12 +276,12 @@ impl World {
         }
     }
 
-    /// Looks whether the books close, and what projections and captures have taken.
+    /// Checks whether the books close, and how much energy projections and captures have taken.
     fn look_at_books(&self, books: &Books, turned_over: f64, findings: &mut Vec<Finding>) {
         let of_steps = BOOKS_ERRORS * self.rigid_settings().steps.local_error;
         let share = if self.keeps_to_tolerance() { of_steps } else { PLAINLY };
-        // Errors of steps are relative to what is usual, as is rounding; where nothing moves or falls, that
-        // is of what rounding moves.
+        // Errors of steps and rounding are relative to the usual energy; where nothing moves or falls, to that of
+        // motion by rounding.
         let scales = &self.sentry.scales;
         let least = SELDOM * scales.usual;
         let is_told = |energy: &f64| {
@@ -267,7 +291,7 @@ impl World {
         };
         let open = Some(books.error().abs()).filter(is_told);
         findings.extend(open.map(|error| Finding::OpenBooks { error, turned_over }));
-        // Projections stop what counts as slow, too, and without contact forces put back what has sunk.
+        // Projections stop slow contacts, too, and without contact forces they put back sunk bodies.
         let is_blow = |energy: &f64| exceeds(*energy, books, turned_over.max(least), CAPTURED);
         let projected = Some(books.projections.abs()).filter(|energy| {
             let puts_back = self.rigid_settings().impulse_step.is_some();
@@ -281,13 +305,13 @@ impl World {
         }
     }
 
-    /// Whether the books are open by far more than what is told, or captures take a good part of all energy.
-    /// Who looks seldom does not see all energy that is turned over: in part it is taken for what is usual in
-    /// such a scene.
+    /// Returns a finding if the books are open by far more than [`World::findings`] reports, or captures have taken a
+    /// large part of the energy. A sentry that looks seldom does not see all of the energy in play: it takes it for at
+    /// least a fraction of the usual energy of the scene.
     pub(crate) fn books_astray(&self, books: &Books, turned_over: f64) -> Option<Finding> {
         let Sentry { scales, is_watchful, .. } = &self.sentry;
         if scales.usual == 0.0 {
-            // Where nothing moves or falls, there is only rounding.
+            // Nothing moves or falls: all energy is rounding.
             return None;
         }
         let share = (ASTRAY + ASTRAY_PER_STEP * self.steps() as f64) * self.tolerance();
@@ -306,39 +330,39 @@ impl World {
         self.captured(books, [turned_over; 2], allowed)
     }
 
-    /// Whether captures have taken a good part of the energy turned over, which is taken for the second of two
-    /// numbers [J], and more than is allowed [J] beside what interventions have put in: gentle pushes are slow.
+    /// Returns a finding if captures have taken a large part of the energy in play `taken_for` [J], and more than
+    /// `allowed` [J] beside the energy that interventions have put in: gentle pushes are slow.
     fn captured(&self, books: &Books, [turned_over, taken_for]: [f64; 2], allowed: f64) -> Option<Finding> {
         let (energy, slow) = (-books.captures, self.tolerances().velocity_tol);
         let is_blow = energy > CAPTURED * taken_for + books.given.max(0.0) + allowed;
         (is_blow && !self.is_slow_asked_for()).then_some(Finding::Captured { energy, turned_over, slow })
     }
 
-    /// Whether the user says what counts as slow, or how near bodies are that touch, in which what bounces by less has come
-    /// to rest, or contacts carry impulses only: then what is stopped is to be.
+    /// True if captures are wanted whatever they take: the caller has given the speed that counts as slow, or the
+    /// target gap, within which bounces come to rest, or contacts carry impulses only.
     fn is_slow_asked_for(&self) -> bool {
         let Sentry { slow_is_given, gap_is_given, .. } = self.sentry;
         slow_is_given || gap_is_given || self.rigid_settings().impulse_step.is_some()
     }
 
-    /// So many times as much is put up with.
+    /// Factor on the errors of connectors and the overlaps allowed.
     fn leniency(&self) -> f64 {
         if self.keeps_to_tolerance() { 1.0 } else { ROUGHLY }
     }
 
-    /// False where steps of a given length err by what they err, or nothing is projected.
+    /// False where steps of a given length may err by any amount, or states are not projected.
     pub(crate) fn keeps_to_tolerance(&self) -> bool {
         let settings = self.rigid_settings();
         settings.projection && settings.method.is_adaptive()
     }
 }
 
-/// What rounding may make of books [J].
+/// Error [J] of the books that may be rounding.
 fn books_rounding(books: &Books, turned_over: f64) -> f64 {
     BOOKS_ROUNDINGS * (turned_over + books.now.potential.abs() + books.start.abs())
 }
 
-/// True if an energy [J] is no number, or more than a part of the energy turned over [J] and more than rounding.
+/// True if an energy [J] is NaN, or more than a fraction of the energy in play [J] plus rounding.
 fn exceeds(energy: f64, books: &Books, turned_over: f64, share: f64) -> bool {
     energy.is_nan() || energy > share * turned_over + books_rounding(books, turned_over)
 }
@@ -364,7 +388,7 @@ mod tests {
         let books = Books { now, start: 5.0, booked: -0.9, ..Books::default() };
         let error = books.error().abs();
         assert!(!exceeds(error, &books, 4.0, 0.05) && exceeds(error, &books, 4.0, 0.01));
-        let expected = "the energy books do not close: 0.1 J of 4 J turned over are not accounted for";
+        let expected = "the energy books do not close: 0.1 J of 4 J in play are not accounted for";
         assert_eq!(Finding::OpenBooks { error, turned_over: 4.0 }.to_string(), expected);
     }
 
@@ -381,7 +405,10 @@ mod tests {
             findings.iter().map(Finding::to_string).collect::<Vec<_>>()
         };
         assert_eq!(told(1e-9), Vec::<String>::new());
-        assert_eq!(told(-1.0), ["moving bodies back onto what holds them changed 1 J of 10 J turned over"]);
+        assert_eq!(
+            told(-1.0),
+            ["projections onto contacts and connectors changed the energy by 1 J of 10 J in play"]
+        );
     }
 
     #[test]
@@ -437,7 +464,7 @@ mod tests {
         for (depth, time) in [(0.5, 1.0), (0.7, 2.0), (0.6, 3.0)] {
             findings.add(overlap(depth, time));
         }
-        // What holds again stays told.
+        // A finding stays although the overlap is over.
         assert_eq!(findings.at_end(&world, 0.0), [overlap(0.7, 2.0)]);
     }
 
@@ -453,7 +480,7 @@ mod tests {
         builder.add_gravity(body, DVec2::new(0.0, -10.0));
         let mut world = builder.build().expect("it hangs");
         world.advance_to(10.0, &mut |_| ()).expect("it swings");
-        // Nobody promised that it would stay.
+        // Without stabilization a drift is no finding.
         assert_eq!(world.findings(10.0), []);
         let mut findings = Vec::new();
         world.connectors_off(0.0, &mut findings);

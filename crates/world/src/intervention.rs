@@ -1,4 +1,4 @@
-//! What a user does to a world while it runs: velocities and impulses. What is built in is in `builder`.
+//! Changes of velocity from outside while a world runs: velocities and impulses that the caller gives to bodies.
 
 use crate::builder::LARGEST;
 use crate::event::Event;
@@ -9,10 +9,10 @@ use halfgap_advance::rigid::VelocityChange;
 use halfgap_collision::{BodyId, BodyState};
 use std::ops::ControlFlow;
 
-/// Something that is done to a body at one moment; where it is does not change.
+/// A change of a body's velocity at one moment, made by the caller; positions do not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Intervention {
-    /// It moves with this velocity from now on.
+    /// Sets the velocity of a body.
     Velocity {
         /// The body.
         body: BodyId,
@@ -21,7 +21,7 @@ pub enum Intervention {
         /// Angular velocity, counter-clockwise [rad/s].
         angular_velocity: f64,
     },
-    /// An impulse acts on it.
+    /// Applies an impulse to a body at a point.
     Impulse {
         /// The body.
         body: BodyId,
@@ -30,7 +30,7 @@ pub enum Intervention {
         /// The point at which it acts [m], in world coordinates.
         point: DVec2,
     },
-    /// It is turned by an impulse that does not push it.
+    /// Applies an angular impulse to a body, which changes its angular velocity alone.
     AngularImpulse {
         /// The body.
         body: BodyId,
@@ -60,18 +60,17 @@ impl Intervention {
 }
 
 impl World {
-    /// Does something to bodies at the present time, all at once and in the order given. Connectors and
-    /// contacts against which they then move respond by the world's impact law, as an
-    /// [`Impact`](crate::Impact) that is told of: an impulse on the lowest of a stack is felt by all of it,
-    /// and a velocity that connectors do not allow does not come about. Velocities that belong together, as
-    /// those of a linkage, are given in one call.
+    /// Changes velocities of bodies at the present time, all in one event; of two changes of one body the second adds
+    /// to the first. Connectors and contacts against which the bodies then move respond by the world's impact law, in
+    /// an [`Impact`](crate::Impact) that is reported: an impulse on the lowest block of a stack reaches all of it, and
+    /// a velocity that connectors do not allow does not come about. Give velocities that belong together, such as those
+    /// of a linkage, in one call.
     ///
-    /// A force law whose numbers somebody outside changes, as that of a spring by which a mouse drags, acts as it is
-    /// then from the next intervention on one of its bodies on, even if that gives it the velocity that it has:
-    /// steps are made ahead.
+    /// Steps are computed ahead. A force law whose parameters you changed (say a mouse spring) takes effect at the next
+    /// intervention on one of its bodies; setting the present velocity is enough.
     ///
-    /// Thresholds and steps follow the scales of the world as it was built: say so there if what comes is much faster
-    /// ([`WorldSettings::usual_speed`](crate::WorldSettings::usual_speed)).
+    /// Thresholds and steps follow the scales of the world as it was built. If interventions will make bodies much
+    /// faster, say so in [`WorldSettings::usual_speed`](crate::WorldSettings::usual_speed).
     ///
     /// ```
     /// use halfgap::geometry::{DVec2, Shape};
@@ -89,9 +88,9 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// A body that is fixed, or not there, a number that is not finite, or a change of a velocity by more than
-    /// 1e60: then nothing is done. The impact,
-    /// or the forces after it, cannot be found: then there is no going on, as after such an error of
+    /// [`RunError::NoSuchBody`], [`RunError::Immovable`] for a fixed body, [`RunError::BadIntervention`] for a number
+    /// that is not finite or a change of a velocity by more than 1e60 m/s or rad/s: nothing is done then. Another error
+    /// if the impact, or the forces after it, cannot be found: the world cannot go on then, as after such an error of
     /// [`advance_to`](Self::advance_to).
     pub fn intervene(
         &mut self,
@@ -135,14 +134,14 @@ impl World {
         Ok(())
     }
 
-    /// Refuses velocities that are larger than those from which a world can be built.
+    /// Refuses changes of velocity larger than the velocities from which a world can be built.
     fn check_change(&self, change: &VelocityChange) -> Result<(), RunError> {
         let VelocityChange { body, velocity, angular_velocity } = *change;
         let is_sound = velocity.abs().max_element().max(angular_velocity.abs()) <= LARGEST;
         if is_sound { Ok(()) } else { Err(RunError::BadIntervention { body: self.name(body).to_owned() }) }
     }
 
-    /// What interventions, each after those before it, change of the velocities.
+    /// Changes of the velocities by interventions, each applied after those before it.
     fn changes_by(&self, interventions: &[Intervention]) -> Vec<VelocityChange> {
         let mut changes: Vec<VelocityChange> = Vec::with_capacity(interventions.len());
         for intervention in interventions {

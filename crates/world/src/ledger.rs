@@ -1,30 +1,31 @@
-//! Where the energy of a run went.
+//! The energy ledger: changes of the energy of a run by their causes.
 
 use crate::world::Energy;
 
-/// Every joule since the start, by what changed it.
+/// Changes of the energy since the start [J], by their causes; negative where energy was lost.
 ///
-/// Kinetic plus potential energy is the energy at the start plus all changes; what the booked ones leave of that is the
-/// error of the integration.
+/// The present energy less that at the start is the sum of the booked changes plus the error of the integration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
-    /// Kinetic and potential energy now.
+    /// Present kinetic and potential energy.
     pub now: Energy,
-    /// Total energy at the start, after the corrections there [J].
+    /// Total energy at the start [J], after the corrections there.
     pub start: f64,
-    /// What the corrections at the start have changed the total by [J]: not a part of the changes since.
+    /// Change of the total energy by the corrections at the start [J], which precede `start` and are not among the
+    /// booked changes.
     pub start_correction: f64,
-    /// Impacts [J].
+    /// Change by impacts [J], negative where energy was lost.
     pub impacts: f64,
-    /// Slow contacts caught without elasticity [J].
+    /// Change by captures [J], a loss: slow contacts whose closing speed was stopped without elasticity.
     pub captures: f64,
-    /// Projections onto contacts and connectors [J].
+    /// Change by projections onto contacts and connectors [J], negative where energy was lost.
     pub projections: f64,
-    /// [Interventions](crate::World::intervene) [J]: what they change before anything responds to them.
+    /// Change by [interventions](crate::World::intervene) [J], before contacts and connectors respond to them; negative
+    /// where they slow bodies down.
     pub interventions: f64,
-    /// Work of linear and angular damping [J].
+    /// Work of linear and angular damping [J], a loss.
     pub damping: f64,
-    /// Work of each force law that has no potential, in the order of the laws [J].
+    /// Work of each force law that has no potential, in the order of the laws.
     pub laws: Vec<LawWork>,
 }
 
@@ -32,48 +33,48 @@ pub struct Ledger {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "scene", derive(serde::Serialize))]
 pub struct LawWork {
-    /// What the law is called.
+    /// Name of the law.
     pub law: String,
-    /// Its work since the start [J].
+    /// Work of the law since the start [J], negative where it took energy.
     pub work: f64,
 }
 
 impl Ledger {
-    /// All changes that are booked [J].
+    /// Returns the sum of all booked changes [J].
     #[must_use]
     pub fn booked(&self) -> f64 {
         let laws: f64 = self.laws.iter().map(|law| law.work).sum();
         self.impacts + self.captures + self.projections + self.interventions + self.damping + laws
     }
 
-    /// What remains: the error of the integration [J].
+    /// Returns the error of the integration [J]: the change of the energy since the start less the booked changes.
     #[must_use]
     pub fn integration_error(&self) -> f64 {
         Books::from(self).error()
     }
 }
 
-/// Sums of the ledger: enough to tell whether the books close.
+/// Sums of the ledger, from which it follows whether the books close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Books {
-    /// Kinetic and potential energy now.
+    /// Present kinetic and potential energy.
     pub(crate) now: Energy,
     /// Total energy at the start [J].
     pub(crate) start: f64,
-    /// All changes that are booked [J].
+    /// Sum of all booked changes [J].
     pub(crate) booked: f64,
-    /// That of captures among them [J].
+    /// Booked change by captures [J].
     pub(crate) captures: f64,
-    /// That of projections among them [J].
+    /// Booked change by projections [J].
     pub(crate) projections: f64,
-    /// What interventions have put in [J].
+    /// Booked change by interventions [J].
     pub(crate) given: f64,
     /// Sum of the sizes of the works of force laws that have no potential [J].
     pub(crate) works: f64,
 }
 
 impl Books {
-    /// What remains: the error of the integration [J].
+    /// Error of the integration [J]: the change since the start less the booked changes.
     pub(crate) fn error(&self) -> f64 {
         (self.now.total() - self.start) - self.booked
     }
@@ -87,11 +88,11 @@ impl From<&Ledger> for Books {
     }
 }
 
-/// The energy that a run has turned over, as far as somebody looked.
+/// The energy in play in a run, as far as it was looked at: see [`World::findings`](crate::World::findings).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turnover {
     start_potential: f64,
-    /// The largest sum of kinetic energy, change of the potential energy, and work of force laws that was seen [J].
+    /// Largest sum seen of the kinetic energy, the change of the potential energy and the work of force laws [J].
     pub(crate) energy: f64,
 }
 
@@ -105,7 +106,7 @@ impl Turnover {
         self.energy = self.energy.max(books.now.kinetic + lifted + books.works);
     }
 
-    /// Notes a kinetic energy [J] that there was in between.
+    /// Notes a kinetic energy [J] between two looks.
     pub(crate) fn note_kinetic(&mut self, kinetic: f64) {
         self.energy = self.energy.max(kinetic);
     }

@@ -1,10 +1,10 @@
 //! Exact, fast 2D rigid-body mechanics with true circular arcs.
 //!
-//! A [`World`] is bodies in motion: built in code by a [`WorldBuilder`], or (feature `scene`, on by default)
-//! from a scene file. It advances from event to event: what is read in between changes nothing. Bodies fly,
-//! collide, rest and slide on each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move
-//! them; [`Event`]s tell of impacts and of contacts that begin and end, [`World::intervene`] strikes bodies,
-//! [`World::contact_forces`] of what holds, [`World::ledger`] of where the energy went. Friction is not
+//! A [`World`] is a set of bodies in motion, built in code by a [`WorldBuilder`] or (feature `scene`, on by default)
+//! from a scene file. It advances from event to event; reading it in between changes nothing. Bodies fly,
+//! collide, rest and slide on each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move them.
+//! [`Event`]s report impacts and contacts that begin or end; [`World::contact_forces`] gives the forces that hold,
+//! [`World::ledger`] where the energy went; [`World::intervene`] changes velocities from outside. Friction is not
 //! simulated yet.
 //!
 //! *Invariant*: this crate prints nothing, and leaves geometry, collisions, contacts and events to the layers below.
@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! On wasm the default feature `qp` wants wasm-bindgen; all else does not.
+//! On wasm the default feature `qp` needs wasm-bindgen; the rest of the crate does not.
 
 #![forbid(unsafe_code)]
 
@@ -83,12 +83,12 @@ pub use halfgap_geometry as geometry;
 pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
-pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording};
+pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};
 #[cfg(feature = "scene")]
-pub use result::{EnergyResult, Outcome, RunResult, StatisticsResult};
+pub use result::{EnergyResult, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
 pub use run::{Progress, Record, RunPlan, RunReport, run, unwatched};
-pub use run_error::{RunError, Status};
+pub use run_error::{Outcome, RunError};
 pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
 pub use world_error::{ConnectorName, WorldError};

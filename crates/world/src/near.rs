@@ -1,9 +1,9 @@
-//! Which bodies are near each other, and may collide: found from their boxes alone, without what the advance remembers.
+//! Pairs of bodies whose boxes overlap, found from the boxes alone, without the memory of the advance.
 
 use halfgap_collision::BodyId;
 use halfgap_geometry::Aabb;
 
-/// Finds pairs of bodies that are near each other, and keeps its room for the next time.
+/// Finds pairs of bodies that are near each other; reuses its buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NearPairs {
     boxes: Vec<Boxed>,
@@ -11,7 +11,7 @@ pub(crate) struct NearPairs {
     pairs: Vec<(BodyId, BodyId)>,
 }
 
-/// A body in its box, with the sides of that along the axis of the sweep [m].
+/// A body and its box, with the extent of the box along the axis of the sweep [m].
 #[derive(Clone, Copy, Debug)]
 struct Boxed {
     from: f64,
@@ -22,8 +22,8 @@ struct Boxed {
 }
 
 impl NearPairs {
-    /// Pairs of bodies whose boxes overlap, sorted; not those of two fixed bodies, nor those that pass
-    /// through each other. For each body its box, and whether it is fixed.
+    /// Returns the pairs of bodies whose boxes overlap, sorted, without pairs of two fixed bodies and without the
+    /// excluded ones. `boxes` gives for each body its box, and whether it is fixed.
     ///
     /// A sweep along the longer side of the scene: D. Baraff, "Dynamic simulation of non-penetrating rigid
     /// bodies", thesis, Cornell University 1992, 8.2.
@@ -53,7 +53,7 @@ impl NearPairs {
         &self.pairs
     }
 
-    /// Lists the boxes in the order in which the sweep comes to them.
+    /// Lists the boxes in the order of the sweep.
     fn list(&mut self, boxes: impl Iterator<Item = (Aabb, bool)>) {
         self.boxes.clear();
         self.boxes.extend((0..).zip(boxes).map(|(index, (bounds, is_fixed))| Boxed {

@@ -1,20 +1,21 @@
-//! How deep two shapes overlap.
+//! Depth of the overlap of two shapes.
 
 use glam::DVec2;
 use halfgap_geometry::{Edge, GapSample, Pose, Ray, Relation, Shape, edge_crossings};
 use std::f64::consts::TAU;
 
-/// Points at which an edge is looked at, beside its ends and the places where it could touch.
+/// Number of evenly spaced sample points of an edge, beside the middles of its pieces and the touching points.
 const SAMPLES: u32 = 16;
-/// Part of the reach of a shape by which a ray into it starts within its outline.
+/// Distance inside the outline at which a ray into a shape starts, as a fraction of the shape's reach.
 const STEP_IN: f64 = 1e-9;
 
-/// The largest distance [m] of a point of one outline inside the other shape from that shape's outline; `None` if the
-/// shapes are apart.
+/// Returns the depth [m] of an overlap: the largest distance, from the other shape's outline, of a point of one outline
+/// that lies in the other shape. `None` if the shapes are apart.
 ///
-/// Exact for a shallow overlap, whose deepest point is a vertex or the touching point of a pair of features. Of others it
-/// is the depth of some point of each piece of an outline that lies in the other shape, however short that is. Of shapes
-/// that cover each other, outline on outline, a point well inside of each counts: by how much it lies in both.
+/// Exact for a shallow overlap, whose deepest point is a vertex or the touching point of a pair of features. For a deep
+/// one it is a lower bound, from sample points on every piece of an outline that lies in the other shape, however short
+/// the piece. Where the shapes cover each other, outline on outline, a point well inside each counts, with its depth in
+/// both.
 pub(crate) fn overlap_depth(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Option<f64> {
     if a.relation(pose_a, b, pose_b) == Relation::Apart {
         return None;
@@ -34,7 +35,7 @@ pub(crate) fn overlap_depth(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) 
     Some(crossed.max(covered))
 }
 
-/// How deep [m] a point well inside a shape lies in both this one and another; 0 if it is outside of that.
+/// Depth [m] of a point well inside a shape in both that shape and the other; 0 if it lies outside the other.
 fn covered_depth((shape, pose): (&Shape, &Pose), (other, other_pose): (&Shape, &Pose)) -> f64 {
     let Some(inner) = inner_point(shape) else { return 0.0 };
     let in_other = other_pose.point_to_body(pose.point_to_world(inner));
@@ -42,7 +43,7 @@ fn covered_depth((shape, pose): (&Shape, &Pose), (other, other_pose): (&Shape, &
     depths[0].min(depths[1]).max(0.0)
 }
 
-/// A point inside a shape: half the way from the middle of its longest edge straight to the other side.
+/// A point inside a shape: halfway from the middle of its longest edge straight across to the other side.
 fn inner_point(shape: &Shape) -> Option<DVec2> {
     let edge = shape.edges().max_by(|p, q| p.length().total_cmp(&q.length()))?;
     let middle = point_along(edge, 0.5);
@@ -81,7 +82,7 @@ fn outline_points<'a>(edges: &'a [Edge], others: &'a [Edge]) -> impl Iterator<It
     })
 }
 
-/// Which part of an edge lies before a point on it.
+/// Fraction of an edge that lies before a point on it, 0 to 1.
 fn part_at(edge: &Edge, point: DVec2) -> f64 {
     let part = match edge {
         Edge::Line(line) => (point - line.from()).dot(line.direction()) / line.length(),
@@ -107,7 +108,7 @@ fn point_along(edge: &Edge, part: f64) -> DVec2 {
 mod tests {
     use super::*;
 
-    /// How deep a bar of a length and width [m], turned about the middle of a shape and moved, lies in it.
+    /// Depth [m] to which a bar of a length and width [m], at a pose, lies in a shape.
     fn depth_of_bar(shape: &Shape, length: f64, width: f64, pose: Pose) -> f64 {
         let bar = Shape::block(length, width).expect("a bar");
         overlap_depth(shape, &Pose::IDENTITY, &bar, &pose).expect("they cross")

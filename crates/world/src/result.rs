@@ -1,100 +1,63 @@
-//! The result of a run in short, and as JSON of the format `halfgap-result-1`.
+//! The summary of a run, and its JSON form, format `halfgap-result-1`.
 
 use crate::estimate::ErrorEstimate;
 use crate::finding::Finding;
 use crate::ledger::Ledger;
 use crate::recording::Recording;
 use crate::run::RunReport;
-use crate::run_error::Status;
+use crate::run_error::{Outcome, RunError};
 use crate::world::{Statistics, World};
 use halfgap_collision::BodyState;
 use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
 
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// It reached its end.
-    Done,
-    /// It could not go on.
-    Stuck,
-    /// No forces satisfy the constraints.
-    Infeasible,
-    /// Somebody stopped it on the way.
-    Interrupted,
-}
-
-impl Outcome {
-    /// The word for it in results.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Stuck => "stuck",
-            Self::Infeasible => "infeasible",
-            Self::Interrupted => "interrupted",
-        }
-    }
-}
-
-impl From<Status> for Outcome {
-    fn from(status: Status) -> Self {
-        match status {
-            Status::Stuck => Self::Stuck,
-            Status::Infeasible => Self::Infeasible,
-            Status::Interrupted => Self::Interrupted,
-        }
-    }
-}
-
-/// The end of a run: states, energy, counters.
+/// Summary of a run: outcome, final states, energies and counters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunResult {
     /// Title of the scene.
     pub scene: String,
-    /// How it ended.
+    /// Outcome of the run.
     pub status: Outcome,
-    /// When it ended [s].
+    /// Time at the end [s].
     pub time: f64,
-    /// States of the movable bodies by name, in the order of the scene.
+    /// Final states of the movable bodies by name, in the order of the scene.
     pub bodies: Vec<(String, BodyState)>,
-    /// Energies.
+    /// Energies at start and end.
     pub energy: EnergyResult,
-    /// Counters.
+    /// Counters and wall time.
     pub statistics: StatisticsResult,
-    /// Where the energy went.
+    /// Changes of the energy by their causes.
     pub ledger: Ledger,
-    /// What does not hold at the end.
+    /// Broken invariants; see [`RunReport::findings`].
     pub findings: Vec<Finding>,
-    /// How far it is from the truth, if that was estimated.
+    /// Estimate of the error, if one was made.
     pub error_estimate: Option<ErrorEstimate>,
 }
 
 /// Energy at start and end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EnergyResult {
-    /// Total at the start [J].
+    /// Total energy at the start [J].
     pub start: f64,
-    /// Kinetic at the end [J].
+    /// Kinetic energy at the end [J].
     pub kinetic: f64,
-    /// Potential at the end [J].
+    /// Potential energy at the end [J].
     pub potential: f64,
-    /// Total at the end [J].
+    /// Total energy at the end [J].
     pub total: f64,
 }
 
-/// Counters of a run, and its time.
+/// Counters of a run, and its wall time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StatisticsResult {
-    /// The world's own.
+    /// Counters of the world.
     pub world: Statistics,
-    /// Time [s] spent on stepping alone, where there is a clock.
+    /// Wall time of stepping alone [s]; `None` on platforms without a clock.
     pub wall_seconds: Option<f64>,
 }
 
 impl RunResult {
-    /// The result of a run that has just ended.
+    /// Summarizes a run that has just ended.
     #[must_use]
     pub fn new(world: &World, report: &RunReport) -> Self {
         let recording: &Recording = &report.recording;
@@ -102,7 +65,7 @@ impl RunResult {
         let energy = world.energy();
         Self {
             scene: recording.title.clone(),
-            status: report.error.as_ref().map_or(Outcome::Done, |error| error.status().into()),
+            status: report.error.as_ref().map_or(Outcome::Done, RunError::outcome),
             time: world.time(),
             bodies: recording.movable.iter().map(state).collect(),
             energy: EnergyResult {
@@ -118,7 +81,7 @@ impl RunResult {
         }
     }
 
-    /// One JSON object; numbers have the shortest form that reads back as the same bits.
+    /// Returns the summary as one JSON object; numbers have the shortest form that reads back as the same bits.
     #[must_use]
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("a result is strings and numbers only")
@@ -146,7 +109,7 @@ impl Serialize for RunResult {
     }
 }
 
-/// A map in the order of the scene, which sorted maps would lose.
+/// Serializes the bodies as a map in the order of the scene, which sorted maps would lose.
 struct BodiesJson<'a>(&'a [(String, BodyState)]);
 
 impl Serialize for BodiesJson<'_> {
@@ -194,7 +157,7 @@ impl Serialize for StatisticsResult {
     }
 }
 
-/// All sums in J; what was booked, and the error that remains.
+/// Serializes energies and booked changes [J], and the error of the integration.
 impl Serialize for Ledger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut ledger =

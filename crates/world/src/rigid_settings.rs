@@ -1,14 +1,14 @@
-//! What the advance is told, from the settings of a world and its scales.
+//! Settings of the advance, from the settings of a world and its scales.
 
 use crate::settings::{Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, Scales, StepControl};
 use halfgap_collision::{SearchSettings, Tolerances};
 
-/// The corner of a body that turns while it falls may be faster than its centre.
+/// Factor on the sinking of a centre in one step: the corner of a body that turns may sink faster than its centre.
 const SINKING: f64 = 4.0;
 
-/// The settings of the advance, with the thresholds of touching that [`tolerances`] gives.
+/// Returns the settings of the advance, with the thresholds of touching from [`tolerances`].
 pub(crate) fn rigid_settings(
     settings: &WorldSettings,
     scales: &Scales,
@@ -30,7 +30,7 @@ pub(crate) fn rigid_settings(
     }
 }
 
-/// The thresholds of touching: as derived, where they are not given.
+/// Returns the thresholds of touching: those given in the settings, the others derived from the tolerance.
 pub(crate) fn tolerances(settings: &WorldSettings, scales: &Scales) -> Tolerances {
     let derived = scales.tolerances(settings.tolerance);
     let ToleranceOverrides { target_gap, accuracy, velocity_tol } = settings.overrides;
@@ -42,13 +42,13 @@ pub(crate) fn tolerances(settings: &WorldSettings, scales: &Scales) -> Tolerance
     }
 }
 
-/// How far [m] a slow contact may sink in one step, where contacts carry impulses only.
+/// Largest distance [m] by which a slow contact may sink in one step, where contacts carry impulses only; else 0.
 fn sinking(settings: &WorldSettings, tolerances: &Tolerances, scales: &Scales) -> f64 {
     let step = settings.fixed_step().filter(|_| !settings.contacts);
     step.map_or(0.0, |step| SINKING * (tolerances.velocity_tol + scales.acceleration * step) * step)
 }
 
-/// The method of an integrator.
+/// The integration method behind a setting.
 pub(crate) fn method(integrator: Integrator) -> Method {
     match integrator {
         Integrator::Dop853 => Method::Dop853,

@@ -1,11 +1,11 @@
-//! Numbers in messages: as many digits as tell something to a person.
+//! Numbers in messages, to three digits.
 
 use std::fmt::{Display, Formatter, Result};
 
-/// From here to there numbers are written out, others with a power of ten.
+/// Sizes of numbers that are written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-3..1e6;
 
-/// A number of which three digits are shown.
+/// A number that displays with three digits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rounded(pub(crate) f64);
 

@@ -11,22 +11,22 @@ use crate::world::{Energy, World};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// An output this part of a step before the end is the end.
+/// Fraction of an output step before the end within which an output time is taken for the end.
 const LAST_STEP_SHARE: f64 = 1e-6;
-/// Part of a run after which its progress is told where no output is kept: the clock is read as often, which
+/// Fraction of a run between two reports of its progress where no outputs are kept. The clock is read as often, which
 /// in a run of a few impacts costs as much as they do.
 const PROGRESS_SHARE: f64 = 1.0 / 50.0;
 
-/// What a run keeps.
+/// Selects what a run records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
     /// States and forces at all output times, and all events.
     Everything,
-    /// The states at start and end.
+    /// States and forces at the start and the end; no events.
     Ends,
 }
 
-/// Until when to run, and what to keep on the way.
+/// End time of a run, output times, and what to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunPlan {
     /// Title of the scene.
@@ -35,16 +35,16 @@ pub struct RunPlan {
     pub start_time: f64,
     /// Time at the end [s].
     pub end_time: f64,
-    /// Time between output times [s].
+    /// Interval between output times [s].
     pub output_step: f64,
-    /// What to keep.
+    /// Selects what to record.
     pub record: Record,
-    /// Times [s] between start and end, ascending, at which states are wanted besides; see [`RunReport::stops`].
+    /// Further times [s], ascending from start to end, whose states are reported in [`RunReport::stops`].
     pub stops: Vec<f64>,
 }
 
 impl RunPlan {
-    /// The plan that a scene asks for.
+    /// Returns the plan that a scene asks for.
     #[must_use]
     pub fn of_scene(scene: &Scene, record: Record) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl RunPlan {
         }
     }
 
-    /// Says why the plan cannot be followed, if so.
+    /// Checks that times are finite and in order, and the output step positive.
     fn check(&self) -> Result<(), RunError> {
         let bad = |field, rule, value| Err(RunError::BadPlan { field, rule, value });
         for (field, value) in [("start_time", self.start_time), ("end_time", self.end_time)] {
@@ -81,7 +81,7 @@ impl RunPlan {
         Ok(())
     }
 
-    /// Output time `index` [s]: the end once there is no other left.
+    /// Returns output time `index` [s]; after the last one, the end.
     fn output_time(&self, index: u64) -> f64 {
         let step = match self.record {
             Record::Everything => self.output_step,
@@ -93,38 +93,38 @@ impl RunPlan {
     }
 }
 
-/// How a run went, complete or not.
+/// Report on a run, complete or not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunReport {
-    /// States and impacts.
+    /// States, forces and events recorded.
     pub recording: Recording,
     /// The states at the plan's stops, as far as the run got.
     pub stops: Vec<Frame>,
     /// Energy at the start.
     pub start_energy: Energy,
-    /// Why it stopped early, if it did.
+    /// Error that stopped the run early, if one did.
     pub error: Option<RunError>,
-    /// What does not hold at the end, or where it stopped; where all is recorded, what was seen not to hold
-    /// on the way, too.
+    /// Broken invariants at the end, or where the run stopped; with [`Record::Everything`] also those seen on the way.
     pub findings: Vec<Finding>,
-    /// Time [s] spent on stepping alone; `None` where the platform has no clock, as wasm32-unknown-unknown.
+    /// Wall time of stepping alone [s]; `None` on platforms without a clock, such as wasm32-unknown-unknown.
     pub wall_seconds: Option<f64>,
 }
 
-/// Is told at the start, at each event and at each output which part of a run is done, 0 to 1, and says whether
-/// it goes on.
+/// Called with the fraction done (0 to 1) at the start, at each event and each output; return
+/// [`ControlFlow::Break`] to stop.
 pub type Progress<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// The [`Progress`] of whom it does not concern.
-pub fn unwatched(_part: f64) -> ControlFlow<()> {
+/// A [`Progress`] that never stops the run.
+pub fn unwatched(_fraction: f64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Runs a world as planned; [`RunError::Interrupted`] if `progress` breaks it off.
+/// Runs a world as planned.
 ///
-/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped. A plan
-/// with an output step that is not positive, or stops out of order, is reported as an error before anything
-/// moves.
+/// A run that stops early keeps what was recorded, and its last frame is the world where it stopped. The error is in
+/// [`RunReport::error`]: [`RunError::Interrupted`] if `progress` stopped the run; [`RunError::BadPlan`], before
+/// anything moves, for an output step that is not positive or times out of order; else that of
+/// [`World::advance_while`].
 pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunReport {
     let mut recording = Recording::new(plan.title.clone(), world);
     recording.frames.push(recording.frame_of(world));
@@ -137,7 +137,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
         ControlFlow::Break(()) => Err(RunError::Interrupted { time }),
     };
     let mut output = 1;
-    // Not the world's own time, which is free to differ from the target by rounding.
+    // The planned time: the world's own may differ from it by rounding.
     let mut now = plan.start_time;
     let mut turnover = Turnover::new(start_energy);
     let mut findings = Findings::default();
@@ -156,7 +156,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
         }
         if error.is_none() && target == output_time {
             output += 1;
-            // Who has arrived needs not be stopped.
+            // A run that has reached its end is complete, whatever the callback answers.
             error = goes_on(now).err().filter(|_| now < plan.end_time);
         }
         turnover.note(&Books::from(&world.ledger()));
@@ -164,7 +164,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
         }
-        // The sentry looks as often, but not where steps err by what they err.
+        // The sentry checks as often, but not where steps of a given length may err by any amount.
         if wanted && done(now, plan) >= looks / LOOKS {
             findings.look(world);
             looks += 1.0;
@@ -189,7 +189,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
     }
 }
 
-/// Records the world, unless its last frame has this time already.
+/// Adds a frame of the world, unless the last frame has the present time already.
 fn push_new(recording: &mut Recording, world: &World) {
     if recording.frames.last().is_none_or(|frame| frame.time < world.time()) {
         recording.frames.push(recording.frame_of(world));
@@ -200,17 +200,17 @@ fn done(time: f64, plan: &RunPlan) -> f64 {
     ((time - plan.start_time) / (plan.end_time - plan.start_time)).clamp(0.0, 1.0)
 }
 
-/// What the clock says; `None` where there is none, and asking would panic.
+/// Reads the clock; `None` on platforms without one, where reading it would panic.
 fn clock() -> Option<Instant> {
     let has_clock = cfg!(not(all(target_family = "wasm", target_os = "unknown")));
     has_clock.then(Instant::now)
 }
 
-/// Advances a world, collects its events and measures the time that takes.
+/// Advances a world, collects its events and measures the wall time of that.
 struct Stepper {
     impacts: Vec<Impact>,
     contacts: Vec<ContactRecord>,
-    /// As long as there is a clock.
+    /// Wall time so far; `None` without a clock.
     wall: Option<Duration>,
     record: Record,
 }

@@ -1,4 +1,4 @@
-//! Why a run stopped early, in the words of the world: with the names of bodies.
+//! Errors that stop a run early, with the names of bodies, and the outcomes of runs.
 
 use crate::builder::LARGEST;
 use crate::finding::Finding;
@@ -7,73 +7,89 @@ use halfgap_advance::rigid::{AdvanceError, Between};
 use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, Problem, SolveError};
 
-/// So many names are shown in a message; the error itself has all of them.
+/// Largest number of names shown in a message; the error itself has all of them.
 const MOST_NAMES: usize = 12;
 
-/// How a run that stopped early is summed up.
+/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// The advance cannot go on.
+#[cfg_attr(feature = "scene", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+pub enum Outcome {
+    /// The run reached its end.
+    Done,
+    /// The advance could not go on.
     Stuck,
-    /// The contact problem has no solution.
+    /// No contact forces or impulses satisfy the constraints.
     Infeasible,
-    /// Somebody stopped it on the way.
+    /// The caller stopped the run.
     Interrupted,
 }
 
-/// Why a run stopped early.
+impl Outcome {
+    /// Name in results: "done", "stuck", "infeasible" or "interrupted".
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stuck => "stuck",
+            Self::Infeasible => "infeasible",
+            Self::Interrupted => "interrupted",
+        }
+    }
+}
+
+/// Error that stopped a run early, or refused a request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
     /// An impact cannot be resolved.
     #[error("at {time} s in an impact of {}: {source}{}", quoted(bodies), on_row(between))]
     Impact {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Names of the bodies that take part.
         bodies: Vec<String>,
         /// Names of the two bodies of the row that the source names.
         between: Option<[String; 2]>,
-        /// Why not.
+        /// Error of the impact law.
         source: ImpactError,
     },
-    /// The same two bodies collide again and again without any time going by.
+    /// Two bodies collide again and again without any time going by.
     #[error(
         "stuck at {time} s: \"{primary}\" and \"{normal}\" collided {events} times without any time going by"
     )]
     Stuck {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Name of one body.
         primary: String,
         /// Name of the other body.
         normal: String,
-        /// How many times.
+        /// Number of collisions.
         events: u32,
     },
     /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink,
     /// and collide again and again within a step.
     #[error(
-        "at {time} s \"{primary}\" and \"{normal}\" are pressed into each other and collide without end: {events} times within a \
-         time_step of {} s, a shorter one lets them sink less",
+        "at {time} s \"{primary}\" and \"{normal}\" are pressed into each other and collide without end: {events} times \
+         within a `time_step` of {} s; a shorter one lets them sink less",
         Rounded(*step)
     )]
     Pressed {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Name of one body.
         primary: String,
         /// Name of the other body.
         normal: String,
-        /// How many times those collided that had sunk.
+        /// Number of collisions of bodies that had sunk.
         events: u32,
-        /// After how long what has sunk is put back [s].
+        /// Interval after which sunk bodies are put back [s].
         step: f64,
     },
     /// The forces of contacts and connectors cannot be found.
     #[error("at {time} s in the contacts of {}: {source}{}", quoted(bodies), on_row(between))]
     Contacts {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Names of the bodies that take part.
         bodies: Vec<String>,
@@ -81,13 +97,13 @@ pub enum RunError {
         between: Option<[String; 2]>,
         /// The problem that was to be solved last: accelerations [m/s^2] of the rows by their forces [N].
         problem: Box<Problem>,
-        /// Why not.
+        /// Error of the contact solver.
         source: Box<SolveError>,
     },
-    /// The integrator's step has fallen to nothing.
+    /// The integrator's step has fallen to nothing: forces grow beyond all bounds or are not numbers.
     #[error("at {time} s the step of {} fell to {step:e} s{}", quoted(bodies), under(laws))]
     StepCollapsed {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Length of the step [s].
         step: f64,
@@ -96,89 +112,89 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Steps of a method without an error estimate have made bodies beyond all measure fast.
+    /// Errors of an integrator with fixed steps have grown until bodies were fast beyond all measure.
     #[error(
-        "by {time} s errors of steps have made {} {} m/s fast: `time_step` is too long for an `integrator` that does not \
-         look at them",
+        "at {time} s integration errors grew: {} reached {} m/s; use a shorter `time_step` or an adaptive `integrator`",
         quoted(bodies),
         Rounded(*speed)
     )]
     RanAway {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Speed of the fastest point [m/s].
         speed: f64,
         /// Names of the bodies that share the step.
         bodies: Vec<String>,
     },
-    /// Forces vary over so short a length that rounding of coordinates, or the gap that contacts have, makes energy of
-    /// nothing.
+    /// Forces vary over so short a length that rounding of coordinates, or the gap of contacts, would create or destroy
+    /// energy.
     #[error(
-        "at {time} s the forces of {} on {} vary over {length:e} m: rounding of the coordinates, or the gap of bodies in \
-         contact, makes more of that than the tolerance allows",
+        "at {time} s the forces of {} on {} vary over {length:e} m, too short a length for the rounding of the coordinates or \
+         the gap of bodies in contact at this tolerance; keep the bodies farther apart, or nearer the origin",
         quoted(laws),
         quoted(bodies)
     )]
     Unresolved {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
-        /// Length [m] over which forces vary by as much as they are.
+        /// Length [m] over which forces vary by their own size.
         length: f64,
         /// Names of the two bodies that are so near each other, or of all that share the step.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// Steps have become so short that those for all the time that is to be simulated would never come to an
-    /// end, and nothing happens meanwhile. The world is as it should be at that time: who asks for less may go on.
+    /// Steps have become so short that the planned time would take hopelessly many, and no events happen meanwhile. The
+    /// state at that time is sound: an advance over a shorter duration may go on.
     #[error(
-        "at {time} s {} goes on in steps of {} s{}: for {} s that would be {} of them",
+        "at {time} s the steps of {} are only {} s long{}; the {} s asked for would take {} of them (see `duration`)",
         quoted(bodies), Rounded(*step), under(laws), Rounded(*duration), Rounded(duration / step)
     )]
     Crawls {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
         /// Mean length of the last steps [s].
         step: f64,
-        /// How long is to be simulated [s].
+        /// Duration to be simulated [s].
         duration: f64,
         /// Names of the bodies that share the steps.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// The world does not hold together any more: what it would go on with is not what the scene asks for.
-    #[error("stopped at {time} s, as it does not hold together any more: {finding}")]
+    /// Connectors have come apart, bodies overlap, or the energy books do not close: further motion would not be that
+    /// of the scene.
+    #[error("at {time} s the world no longer holds together: {}", finding.without_time())]
     Astray {
-        /// When [s].
+        /// Time of the error [s].
         time: f64,
-        /// What does not hold.
+        /// The broken invariant.
         finding: Finding,
     },
-    /// Who follows the run wanted it to stop.
+    /// The callback of the run stopped it.
     #[error("interrupted at {time} s")]
     Interrupted {
-        /// When [s].
+        /// Time of the interruption [s].
         time: f64,
     },
     /// The time to advance to is infinite, or not a number.
     #[error("cannot advance to a time that is not a finite number")]
     NotATime,
-    /// There is no such body to do something to.
+    /// An intervention names the background, or a body that the world does not have.
     #[error("there is no body {} in this world", body.0)]
     NoSuchBody {
         /// The body.
         body: BodyId,
     },
-    /// Nothing can be done to a fixed body.
+    /// An intervention names a fixed body, which nothing moves.
     #[error("body \"{body}\" is fixed: nothing moves it")]
     Immovable {
         /// Name of the body.
         body: String,
     },
-    /// What is to be done to a body is not finite, or too large; nothing was done.
+    /// An intervention has numbers that are not finite, or too large; nothing was done.
     #[error(
-        "what is done to body \"{body}\" must be finite, and change its velocities by {LARGEST:e} at most"
+        "an intervention on body \"{body}\" must be finite, and change its velocities by {LARGEST:e} at most"
     )]
     BadIntervention {
         /// Name of the body.
@@ -187,33 +203,34 @@ pub enum RunError {
     /// A plan cannot be followed; nothing was run.
     #[error("the plan's {field} must be {rule}, got {value} s")]
     BadPlan {
-        /// Which of its numbers.
+        /// Name of the field.
         field: &'static str,
-        /// What it must be.
+        /// Rule that its value breaks.
         rule: &'static str,
-        /// What it is [s].
+        /// The value [s].
         value: f64,
     },
-    /// The advance stopped for a reason that has no name here.
+    /// Any other error of the advance.
     #[error(transparent)]
     Advance(AdvanceError),
 }
 
 impl RunError {
-    /// How the run is summed up.
+    /// The outcome of a run that this error ended.
     #[must_use]
-    pub fn status(&self) -> Status {
+    pub fn outcome(&self) -> Outcome {
         match self {
             Self::Contacts { source, .. } if matches!(**source, SolveError::Infeasible(_)) => {
-                Status::Infeasible
+                Outcome::Infeasible
             }
-            Self::Impact { source: ImpactError::Infeasible { .. }, .. } => Status::Infeasible,
-            Self::Interrupted { .. } => Status::Interrupted,
-            _ => Status::Stuck,
+            Self::Impact { source: ImpactError::Infeasible { .. }, .. } => Outcome::Infeasible,
+            Self::Interrupted { .. } => Outcome::Interrupted,
+            _ => Outcome::Stuck,
         }
     }
 
-    /// When it stopped [s].
+    /// Time at which the run stopped [s]; `None` for a request that was refused before anything moved, and for
+    /// [`RunError::Advance`].
     #[must_use]
     pub fn time(&self) -> Option<f64> {
         match self {
@@ -277,17 +294,17 @@ impl RunError {
     }
 }
 
-/// The force laws that may be to blame.
+/// The force laws of an error, as the end of a clause.
 fn under(laws: &[String]) -> String {
     if laws.is_empty() { String::new() } else { format!(" under the forces of {}", quoted(laws)) }
 }
 
-/// Names in a message: all of a few, the first of many.
 /// Names the two bodies of the row that a message has named by its index.
 fn on_row(between: &Option<[String; 2]>) -> String {
     between.as_ref().map_or_else(String::new, |[a, b]| format!("; the row is of \"{a}\" and \"{b}\""))
 }
 
+/// Names in a message, in quotes: all of a few, the first of many.
 fn quoted(names: &[String]) -> String {
     let (shown, rest) = names.split_at(names.len().min(MOST_NAMES));
     let shown = shown.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
@@ -298,7 +315,7 @@ fn quoted(names: &[String]) -> String {
 mod tests {
     use super::{MOST_NAMES, RunError};
 
-    /// The message of a step of so many bodies that has fallen to nothing.
+    /// The message of a collapsed step of a number of bodies.
     fn message(bodies: usize) -> String {
         let bodies = (0..bodies).map(|index| format!("disc {index}")).collect();
         RunError::StepCollapsed { time: 1.5, step: 1e-15, bodies, laws: Vec::new() }.to_string()

@@ -1,9 +1,8 @@
-//! The sentry: stops a world that does not hold together any more.
+//! The sentry: stops a world whose connectors, overlaps or energy books are out of bounds.
 //!
-//! What a run finds out about itself ([`Finding`]) is told at its end. But a connector that has come apart,
-//! bodies that lie in one another, or energy from nowhere mean that all that follows is another scene's:
-//! there the advance ends with an error. It is looked at where an advance stops, as often as costs next to
-//! nothing.
+//! Small broken invariants ([`Finding`]) are reported at the end of a run. After a connector has come apart, bodies lie
+//! in one another, or energy has come from nowhere, all further motion is that of another scene: the advance ends with
+//! an error there. The sentry looks where an advance stops, as often as costs next to nothing.
 
 use crate::finding::Finding;
 use crate::ledger::{Books, Turnover};
@@ -14,56 +13,57 @@ use crate::world::World;
 use halfgap_advance::rigid::Ledger as Booked;
 use halfgap_collision::Moving;
 
-/// Segments of motion from one look to the next, beside one for each body.
+/// Number of segments of motion from one look to the next, beside one for each body.
 const SEGMENTS: u64 = 16;
-/// Where it is known how long the world will run, it is looked at so many times on the way, however few
-/// segments it makes.
+/// Number of looks over the planned duration, if there is one, however few segments the run has.
 pub(crate) const LOOKS: f64 = 50.0;
-/// A stop that rounding puts this part of the time between two looks before such a time is one, too.
+/// Fraction of the interval between such looks by which a stop may, by rounding, come too early for one.
 const EARLY: f64 = 1e-6;
 
-/// What the sentry remembers, and room for its looks.
+/// Memory of the sentry, and buffers for its looks.
 #[derive(Clone, Debug)]
 pub(crate) struct Sentry {
-    /// The relative accuracy asked for.
+    /// Relative accuracy asked for [-].
     pub(crate) tolerance: f64,
-    /// When the world starts, and how long it will run [s]; 0 if that is not known.
+    /// Time at the start [s].
     start: f64,
+    /// Planned duration [s]; 0 if it is not known.
     pub(crate) duration: f64,
     pub(crate) scales: EnergyScales,
-    /// The user says what counts as slow.
+    /// Whether the caller has given the speed that counts as slow.
     pub(crate) slow_is_given: bool,
-    /// The user says at which gap bodies touch.
+    /// Whether the caller has given the target gap.
     pub(crate) gap_is_given: bool,
-    /// Since the start.
+    /// The energy in play since the start.
     pub(crate) turnover: Turnover,
-    /// Segments that had been started at the last look.
+    /// Number of segments that had been started at the last look.
     looked: u64,
-    /// How many of the looks of a known duration are behind, and whether none of them was left out.
+    /// Number of the looks over the planned duration that are behind.
     looks: f64,
+    /// Whether none of those looks was left out; false without a planned duration.
     pub(crate) is_watchful: bool,
-    /// The last advance ended with a look, which found connectors together and bodies apart: they are so
-    /// still, for nothing moves without another advance.
+    /// Whether the last advance ended with a look that found no fault. Connectors are together and bodies apart then,
+    /// for nothing moves without another advance.
     pub(crate) is_sound: bool,
-    /// What it has found, after which there is no going on.
+    /// The fault found, after which the world cannot go on.
     found: Option<RunError>,
     room: Room,
 }
 
-/// Energies [J] of a scene.
+/// Scales of the energy of a scene [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct EnergyScales {
-    /// What is usual in such a scene; 0 where nothing moves.
+    /// Usual energy of the scene; 0 where nothing moves.
     pub(crate) usual: f64,
-    /// The work of its forces at the start along a target gap.
+    /// Work of the forces at the start along a target gap.
     pub(crate) rough: f64,
-    /// The work of its forces within the tolerance of its bodies' sizes, and the energy of a speed that is rounding.
+    /// Work of the forces within the tolerance of the bodies' sizes, and energy of a speed that is rounding.
     pub(crate) lost: f64,
-    /// Rounding of what the start was corrected by: velocities that were taken away are not left as zeros.
+    /// Rounding of the correction at the start: velocities that it took away do not become exact zeros.
     pub(crate) left: f64,
 }
 
-/// Room for looks, used again and again.
+/// Buffers for looks.
 #[derive(Clone, Debug, Default)]
 struct Room {
     booked: Booked,
@@ -72,7 +72,7 @@ struct Room {
 }
 
 impl Sentry {
-    /// For a scene of such energies.
+    /// Makes the sentry of a scene with the given energies.
     pub(crate) fn new(settings: &WorldSettings, scales: EnergyScales) -> Self {
         let duration = settings.duration.unwrap_or_default();
         Self {
@@ -94,18 +94,19 @@ impl Sentry {
 }
 
 impl World {
-    /// What the sentry has found before.
+    /// Checks whether the sentry has stopped the world before.
     ///
     /// # Errors
-    /// It has found something: there is no going on.
+    /// The fault that it has found.
     pub(crate) fn ask_guard(&self) -> Result<(), RunError> {
         self.sentry.found.clone().map_or(Ok(()), Err)
     }
 
-    /// Looks at what must hold after an advance, if it ended with an error, or enough has happened since the last time.
+    /// Checks the world after an advance, if the advance ended with an error or enough has happened since the last
+    /// look.
     ///
     /// # Errors
-    /// It does not; else that of the advance.
+    /// [`RunError::Astray`] for a fault; else the error of the advance.
     pub(crate) fn stand_guard<T>(&mut self, outcome: Result<T, RunError>) -> Result<T, RunError> {
         let segments = self.steps();
         let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
@@ -133,7 +134,7 @@ impl World {
         }
     }
 
-    /// What has gone wrong beyond repair, if anything.
+    /// Returns the first fault beyond repair, if there is one.
     fn astray(&self, books: &Books, near: &mut NearPairs) -> Option<Finding> {
         let mut found = Vec::new();
         self.find_connectors_off(&mut found);
@@ -141,7 +142,7 @@ impl World {
         found.into_iter().next().or_else(|| self.books_astray(books, self.sentry.turnover.energy))
     }
 
-    /// Whether the time of one of the looks of a known duration has come.
+    /// True if the time of one of the looks over the planned duration has come.
     fn is_look_due(&mut self) -> bool {
         let now = self.time();
         let sentry = &mut self.sentry;
@@ -168,7 +169,7 @@ mod tests {
     const LATER: f64 = 20.0;
     const LATER_STILL: f64 = 40.0;
 
-    /// A pendulum that has swung for a while, and what its rod is called.
+    /// A pendulum that has swung for a while.
     fn pendulum() -> World {
         let mut builder = WorldBuilder::new(WorldSettings::default());
         let shape = Shape::disc(0.5).expect("a fine radius");
@@ -190,7 +191,7 @@ mod tests {
     fn a_connector_that_is_off_ends_the_advance() {
         let mut world = pendulum();
         let ConnectorKind::Rod { a, b, .. } = world.connectors[0].kind else { panic!("it is a rod") };
-        // What is looked at is longer than what holds the bob.
+        // The sentry measures a longer rod than the one that holds the bob.
         world.connectors[0] = rod(a, b, 1.0 + 1e-3);
         let outcome = world.advance_to(LATER_STILL, &mut |_| ());
         let Err(RunError::Astray { time, finding: Finding::ConnectorOff { error, .. } }) = &outcome else {
@@ -198,9 +199,9 @@ mod tests {
         };
         assert_eq!(*time, LATER_STILL);
         assert!((error - 1e-3).abs() < 1e-9, "{error}");
-        let start = "stopped at 40 s, as it does not hold together any more: at 40 s connector 0 (rod of \"world\" and \"bob\") is off by 0.001 m";
-        assert!(outcome.as_ref().is_err_and(|error| error.to_string() == start));
-        // There is no going on, as after any other error, but what is past is past.
+        let message = "at 40 s the world no longer holds together: connector 0 (rod of \"world\" and \"bob\") is off by 0.001 m";
+        assert!(outcome.as_ref().is_err_and(|error| error.to_string() == message));
+        // The error is repeated, as any other, except for a time that is past.
         assert_eq!(world.advance_to(LATER_STILL + 1.0, &mut |_| ()), outcome);
         let stop = Intervention::Velocity { body: BodyId(0), velocity: DVec2::ZERO, angular_velocity: 0.0 };
         assert_eq!(world.intervene(&[stop], &mut |_| ()), outcome);
@@ -231,7 +232,7 @@ mod tests {
         assert!(!world.sentry.is_sound, "nobody knows");
     }
 
-    /// A disc that is about to bounce off a floor, where all that it does counts as slow.
+    /// A disc that is about to bounce off a floor, in a world where every speed that it has counts as slow.
     fn slow_disc() -> World {
         let overrides = ToleranceOverrides { velocity_tol: Some(10.0), ..ToleranceOverrides::default() };
         let settings = WorldSettings { overrides, duration: Some(1.0), ..WorldSettings::default() };
@@ -295,7 +296,7 @@ mod tests {
 
     #[test]
     fn what_was_turned_over_before_the_first_look_counts() {
-        // The disc falls by 0.5 m and lies there: nothing moves when somebody looks.
+        // The disc falls by 0.5 m and lies there: nothing moves at the time of a look.
         let mut world = slow_disc();
         world.start.energy += 1e-5;
         world.advance_to(1.0, &mut |_| ()).expect("so little of 5 J is rounding");
@@ -305,7 +306,7 @@ mod tests {
 
     #[test]
     fn who_looks_often_is_strict() {
-        // What is usual here is some 10 J, but so far next to nothing is turned over.
+        // The usual energy here is some 10 J, but so far next to nothing of it is in play.
         for (first, is_astray) in [(0.02, true), (0.1, false)] {
             let mut world = slow_disc();
             world.advance_to(0.0, &mut |_| ()).expect("the first look");

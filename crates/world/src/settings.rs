@@ -1,80 +1,87 @@
-//! How a world is to be simulated.
+//! Settings of a world: accuracy, thresholds of touching, impact law, integrator.
 
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
-/// Relative accuracy asked for unless said otherwise.
+/// Default of [`WorldSettings::tolerance`] [-].
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;
-/// The step [s] where it is fixed, unless said otherwise.
+/// Default length [s] of fixed steps.
 const DEFAULT_FIXED_STEP: f64 = 0.025;
 
-/// Thresholds that the user gives in place of the derived ones.
+/// Thresholds of touching, each given instead of being derived from the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToleranceOverrides {
     /// Gap [m] at which an approaching pair fires.
     pub target_gap: Option<f64>,
-    /// Half-width [m] of the target zone.
+    /// Half-width [m] of the target zone, less than the target gap.
     pub accuracy: Option<f64>,
-    /// Normal speed [m/s] below which a collision is a contact.
+    /// Normal speed [m/s] below which bodies that meet come into contact without an impact.
     pub velocity_tol: Option<f64>,
 }
 
-/// How a world is to be simulated.
+/// Settings of a world, fixed when it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldSettings {
     /// Time at the start [s].
     pub start_time: f64,
-    /// How long the world will run [s], if that is known: steps that would never come to its end are told as
-    /// an error. No less than a single advance asks for.
+    /// Planned length of the run [s]; lets hopelessly short steps end in [`RunError::Crawls`](crate::RunError::Crawls).
+    /// The longer of this and the present `advance_to` counts.
     pub duration: Option<f64>,
-    /// Relative accuracy asked for.
+    /// Relative accuracy asked for [-], above 0 and at most 1.
     pub tolerance: f64,
-    /// A speed [m/s] that is usual in the world, where its start does not tell: thresholds and errors of
-    /// velocity are relative to it, or to what the start tells if that is more.
+    /// Typical speed [m/s] of the world, for worlds whose start does not show it: thresholds and errors of
+    /// velocity are relative to it, or to the speed that the start shows if that is higher.
     pub usual_speed: Option<f64>,
     /// Thresholds given in place of derived ones.
     pub overrides: ToleranceOverrides,
-    /// How deep bodies may overlap at the start [m]; 1e-6 of the smallest movable body's radius if `None`.
+    /// Largest overlap of two bodies that is accepted at the start [m]; 1e-6 of the smallest movable body's radius if
+    /// `None`.
     pub start_overlap: Option<f64>,
     /// The impact law.
     pub impact_law: ImpactLaw,
-    /// The order in which serial laws take the rows.
+    /// The order in which the serial impact laws take the rows.
     pub impact_order: ImpactOrder,
-    /// False if bodies pass through each other.
+    /// Whether bodies collide; if false, they pass through each other.
     pub collisions: bool,
-    /// False if contacts carry impulses only: a slow pair then gets an inelastic impulse, and is put back to the target
-    /// gap once a step. Connectors carry forces all the same.
+    /// Whether contacts carry forces. If false, they carry impulses only: a slow pair gets an inelastic impulse and is
+    /// put back to the target gap once a step. Connectors carry forces all the same.
     pub contacts: bool,
-    /// How motion without a closed form is integrated.
+    /// Integrator of motion that has no closed form.
     pub integrator: Integrator,
-    /// Largest step [s], or the step where it is fixed; see [`WorldSettings::fixed_step`].
+    /// Largest step [s], or the length of fixed steps; see [`WorldSettings::fixed_step`].
     pub time_step: Option<f64>,
-    /// What keeps contacts and connectors from drifting.
+    /// Method that keeps contacts and connectors from drifting.
     pub stabilization: Stabilization,
-    /// Connectors are also kept together by small impulses.
+    /// Whether small impulses, too, keep connectors together.
     pub joint_small_impacts: bool,
-    /// How far off connectors may be at the start [m]; 1e-6 of the smallest movable body's radius if `None`.
+    /// Largest error of a connector that is accepted at the start [m]; 1e-6 of the smallest movable body's radius if
+    /// `None`.
     pub start_connector_error: Option<f64>,
 }
 
-/// How motion under forces is integrated where it has no closed form.
+/// Integrator of motion under forces, where it has no closed form.
+///
+/// With the adaptive ones, a group of coupled bodies whose forces are stiff goes over to implicit steps on its own
+/// (Radau IIA of order 5), as long as these cost less; groups whose state has more than 600 numbers (100 free bodies)
+/// do not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Integrator {
-    /// Dormand and Prince, order 8, adaptive; where a higher order gains nothing, between events that come
-    /// fast one after another and along rails through points, order 5 in its place.
+    /// Dormand and Prince, order 8, adaptive. Between events that follow each other fast, and along rails through
+    /// points, where order 8 gains nothing, [`Integrator::DormandPrince5`] takes its place.
     #[default]
     Dop853,
     /// Dormand and Prince, order 5, adaptive.
     DormandPrince5,
-    /// The classical method of order 4, fixed steps.
+    /// The classical Runge-Kutta method, order 4, fixed steps.
     Rk4,
-    /// Order 2, fixed steps.
+    /// Modified Euler method, order 2, fixed steps.
     ModifiedEuler,
-    /// Order 1, fixed steps.
+    /// Explicit Euler method, order 1, fixed steps.
     Euler,
 }
 
 impl Integrator {
-    /// True if it does not choose its steps itself.
+    /// Returns true if the steps have a given length, false if the integrator chooses it from their error.
     #[must_use]
     pub fn has_fixed_step(self) -> bool {
         match self {
@@ -84,26 +91,27 @@ impl Integrator {
     }
 }
 
-/// What keeps contacts and connectors from drifting.
+/// Method that keeps contacts and connectors from drifting off their target gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Stabilization {
-    /// States are projected onto the constraints.
+    /// The state at the end of each step is projected onto the held contacts and connectors.
     #[default]
     Projection,
-    /// Nothing.
+    /// No stabilization.
     None,
-    /// Extra acceleration against the velocity error of contacts and connectors.
+    /// Extra acceleration against velocity errors of contacts and connectors.
     Velocity,
-    /// The same, of connectors only.
+    /// Extra acceleration against velocity errors of connectors only.
     VelocityJoints,
-    /// Extra acceleration against velocity and distance errors.
+    /// Extra acceleration against velocity and distance errors of contacts and connectors.
     VelocityAndDistance,
-    /// The same, of connectors only.
+    /// Extra acceleration against velocity and distance errors of connectors only.
     VelocityAndDistanceJoints,
 }
 
 impl Stabilization {
-    /// True for the policies that add accelerations, whose size depends on the step.
+    /// Returns true for the policies that add accelerations, whose size depends on the step.
     #[must_use]
     pub fn depends_on_step(self) -> bool {
         !matches!(self, Self::Projection | Self::None)
@@ -111,8 +119,8 @@ impl Stabilization {
 }
 
 impl WorldSettings {
-    /// The step [s], if it is fixed: with an integrator that has no other, without contact forces, and where the
-    /// stabilization depends on it.
+    /// Returns the length [s] of the steps if it is fixed: by the integrator, because contacts carry impulses only, or
+    /// because the stabilization depends on it.
     #[must_use]
     pub fn fixed_step(&self) -> Option<f64> {
         let is_fixed =

@@ -1,4 +1,4 @@
-//! A world: named bodies, what acts on them, and the clock.
+//! A world: named bodies, the laws that act on them, and the clock.
 
 use crate::event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
@@ -15,10 +15,10 @@ use halfgap_geometry::Shape;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// What messages and recordings call the background.
+/// Name of the background in messages and recordings.
 pub(crate) const BACKGROUND: &str = "world";
 
-/// The name of one of some bodies, or of the background.
+/// Returns the name of one of the bodies, or of the background.
 pub(crate) fn name_among(bodies: &[Named], body: BodyId) -> &str {
     if body.is_world() { BACKGROUND } else { &bodies[body.index()].name }
 }
@@ -28,8 +28,8 @@ pub(crate) fn name_among(bodies: &[Named], body: BodyId) -> &str {
 pub struct Energy {
     /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Potential energy [J]: of uniform gravity, 0 with the centre of mass at the world's origin, and of the force laws
-    /// that have one.
+    /// Potential energy [J]: of uniform gravity (0 with the centre of mass at the world's origin) and of the force laws
+    /// that have a potential.
     pub potential: f64,
 }
 
@@ -41,26 +41,28 @@ impl Energy {
     }
 }
 
-/// What a run cost, and how close it came.
+/// Counters of a run, its smallest gap and its largest connector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
-    /// Segments of motion started, of movable bodies.
+    /// Number of segments of motion started, over all movable bodies.
     pub steps: u64,
-    /// Evaluations of force laws by an integrator; closed forms need none.
+    /// Number of evaluations of force laws by integrators; closed forms need none.
     pub evaluations: u64,
-    /// Impacts.
+    /// Number of impacts.
     pub impacts: u64,
-    /// Segments cut short by an impact.
+    /// Number of segments cut short by an impact.
     pub backups: u64,
-    /// Contact problems solved.
+    /// Number of contact problems solved.
     pub contact_solves: u64,
-    /// Smallest gap [m] of a contact seen, at an event or within a step; `None` if nothing has touched.
+    /// Smallest gap [m] of a contact seen, at an event or within a step, negative if bodies overlapped; `None` if no
+    /// bodies have touched.
     pub smallest_gap: Option<f64>,
-    /// Largest error of a connector [m] seen within a step or at the present time; `None` without connectors.
+    /// Largest size of the error of a connector [m] seen within a step or at the present time; `None` without
+    /// connectors.
     pub largest_connector_error: Option<f64>,
 }
 
-/// What the facade knows of a body beyond what the layers below do.
+/// Data of a body that the layers below do not hold.
 #[derive(Clone, Debug)]
 pub(crate) struct Named {
     pub(crate) name: String,
@@ -81,7 +83,7 @@ pub struct Inertia {
     pub moment: f64,
 }
 
-/// Bodies in motion. Made by a [`WorldBuilder`](crate::WorldBuilder) or from a scene.
+/// Bodies in motion, made by a [`WorldBuilder`](crate::WorldBuilder) or from a scene.
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) system: RigidSystem,
@@ -91,25 +93,25 @@ pub struct World {
     pub(crate) now: Time,
     warnings: Vec<String>,
     pub(crate) start: Start,
-    /// The last impact told, always of that kind: its buffers are used again and again.
+    /// The last impact reported, always an `Event::Impact`: its buffers are reused.
     pub(crate) told: Event,
-    /// What closed at the start was stopped by an impact, of which nobody has been told yet.
+    /// Whether bodies that closed at the start were stopped by an impact that has not been reported yet.
     owes_first_impact: bool,
     pub(crate) sentry: Sentry,
 }
 
-/// What was done to the bodies before the start.
+/// Corrections of the bodies before the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Start {
-    /// Largest distance by which a body was moved [m].
+    /// Largest distance by which a centre of mass was moved [m].
     pub(crate) displacement: f64,
     /// Change of the total energy [J].
     pub(crate) energy_change: f64,
-    /// The total energy after that [J].
+    /// Total energy after the corrections [J].
     pub(crate) energy: f64,
 }
 
-/// What a world is made of, for its builder.
+/// Parts of a world, collected by its builder.
 pub(crate) struct WorldParts {
     pub(crate) system: RigidSystem,
     pub(crate) bodies: Vec<Named>,
@@ -148,7 +150,7 @@ impl World {
         self.now.seconds()
     }
 
-    /// How many bodies there are, fixed ones included.
+    /// Number of bodies, fixed ones included.
     #[must_use]
     pub fn body_count(&self) -> usize {
         self.bodies.len()
@@ -159,63 +161,78 @@ impl World {
         (0..self.bodies.len()).map(BodyId::from_index)
     }
 
-    /// The body of a name.
+    /// Returns the body with the given name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<BodyId> {
         self.bodies().find(|&body| self.name(body) == name)
     }
 
-    /// A body's name; "world" for the background, which errors name too.
+    /// Name of a body; "world" for the background.
     ///
     /// # Panics
-    /// As all look-ups here: if the world has no such body.
+    /// If the world has no such body.
     #[must_use]
     pub fn name(&self, body: BodyId) -> &str {
         name_among(&self.bodies, body)
     }
 
-    /// True for a body that nothing moves, and for the background.
+    /// True for fixed bodies, which nothing moves, and for the background.
+    ///
+    /// # Panics
+    /// If the world has no such body.
     #[must_use]
     pub fn is_fixed(&self, body: BodyId) -> bool {
         body.is_world() || self.bodies[body.index()].inertia.is_none()
     }
 
-    /// A body's shape in body coordinates, whose origin is the centre of mass.
+    /// Shape of a body, in body coordinates, whose origin is the centre of mass.
+    ///
+    /// # Panics
+    /// If the world has no such body, and for the background.
     #[must_use]
     pub fn shape(&self, body: BodyId) -> &Shape {
         &self.system.flyer(body).body().shape
     }
 
-    /// A body's centre of mass in the coordinates in which its shape was given [m].
+    /// Centre of mass of a body [m], in the coordinates in which its shape was given.
+    ///
+    /// # Panics
+    /// If the world has no such body, and for the background.
     #[must_use]
     pub fn center_of_mass(&self, body: BodyId) -> DVec2 {
         self.bodies[body.index()].center_of_mass
     }
 
-    /// A body's mass and moment of inertia; `None` for a fixed body and for the background.
+    /// Mass and moment of inertia of a body; `None` for a fixed body and for the background.
+    ///
+    /// # Panics
+    /// If the world has no such body.
     #[must_use]
     pub fn inertia(&self, body: BodyId) -> Option<Inertia> {
         if body.is_world() { None } else { self.bodies[body.index()].inertia }
     }
 
-    /// A body's state at the present time; the background is at rest at the origin.
+    /// State of a body at the present time; the background is at rest at the origin.
+    ///
+    /// # Panics
+    /// If the world has no such body.
     #[must_use]
     pub fn state(&self, body: BodyId) -> BodyState {
         if body.is_world() { BodyState::default() } else { self.system.flyer(body).state_at(self.now) }
     }
 
-    /// Energy at the present time.
+    /// Kinetic and potential energy at the present time.
     #[must_use]
     pub fn energy(&self) -> Energy {
         self.energy_in(&mut Vec::new())
     }
 
-    /// The same with room for what it reads.
+    /// Returns [`World::energy`], with a buffer for the motion of the bodies.
     fn energy_in(&self, room: &mut Vec<Moving>) -> Energy {
         energy_of(&self.bodies, &self.forces, self.time(), |body| self.state(body), room)
     }
 
-    /// Sums of the ledger, with room for what they read.
+    /// Returns the sums of the ledger, with buffers for what they are made from.
     pub(crate) fn books(&self, booked: &mut Booked, room: &mut Vec<Moving>) -> Books {
         self.system.write_ledger(self.now, booked);
         let works = |size: fn(f64) -> f64| {
@@ -240,7 +257,7 @@ impl World {
         }
     }
 
-    /// Where the energy went since the start.
+    /// Returns the energy ledger: every change of the energy since the start, by its cause.
     #[must_use]
     pub fn ledger(&self) -> Ledger {
         let books = self.system.ledger_at(self.now);
@@ -277,7 +294,8 @@ impl World {
         &self.connectors
     }
 
-    /// How far off a connector is at the present time [m]; a rope that is slack, or a point far from its stop, is not.
+    /// Error of a connector at the present time [m], 0 or more; 0 for a slack rope and for a point that is clear of its
+    /// stop.
     ///
     /// # Panics
     /// If there is no such connector.
@@ -292,18 +310,19 @@ impl World {
         connector.error(&a, &b, hint.as_ref())
     }
 
-    /// The thresholds of touching, as derived from the tolerance or given.
+    /// Thresholds of touching, given or derived from the tolerance.
     #[must_use]
     pub fn tolerances(&self) -> &Tolerances {
         &self.system.settings().tolerances
     }
 
-    /// The relative accuracy asked for.
+    /// Relative accuracy asked for [-].
     pub(crate) fn tolerance(&self) -> f64 {
         self.sentry.tolerance
     }
 
-    /// How far [m] two slow bodies may sink into each other before they are put back; zero where contacts carry forces.
+    /// Distance [m] by which two slow bodies may sink into each other before they are put back; 0 where contacts carry
+    /// forces.
     pub(crate) fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         self.system.room_to_sink(bodies)
     }
@@ -317,20 +336,20 @@ impl World {
         self.system.excluded()
     }
 
-    /// What a user should know although nothing is wrong.
+    /// Warnings from building the world, such as a gap that rounding keeps from being as small as the tolerance asks.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Largest distance [m] by which a body was moved at the start to lift gaps to the target gap, and to put
+    /// Largest distance [m] by which a centre of mass was moved at the start, to lift gaps to the target gap and to put
     /// connectors together.
     #[must_use]
     pub fn start_correction(&self) -> f64 {
         self.start.displacement
     }
 
-    /// What the run has cost so far.
+    /// Counters of the run so far.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         let counts = self.system.counts();
@@ -347,27 +366,27 @@ impl World {
         }
     }
 
-    /// The largest kinetic energy [J] that some bodies had at the end of a step, or came to an impact with:
-    /// who looks now and then may never see it.
+    /// Largest kinetic energy [J] of a group of bodies at the end of a step or just before an impact. Looks at the
+    /// present state now and then may miss it.
     pub(crate) fn largest_kinetic_energy(&self) -> f64 {
         self.system.counts().largest_kinetic_energy
     }
 
-    /// Steps so far.
+    /// Number of segments of motion started so far.
     pub(crate) fn steps(&self) -> u64 {
         self.system.counts().segments
     }
 
-    /// Advances to a time [s], telling of each event in order; nothing happens if that is in the past.
+    /// Advances to a time [s] and reports each event in order; does nothing if the time is in the past.
     ///
-    /// Stopping at a time changes nothing but what can be read there: runs in one step and in many give the same bits.
-    /// An impact that comes just before it, by no more than its time is known to, may be left to the next advance, which
-    /// tells it with its own time; of one at that very time the next may tell, too.
+    /// A stop does not change the motion: an advance in one call and in many give the same bits. An impact within
+    /// time-location error before `time` may be reported by the next call instead, with its own time; one exactly at
+    /// `time` may be reported by either call.
     ///
     /// # Errors
-    /// Something that cannot be simulated happens; the world stays at the time of that event, and whoever
-    /// wants to go on beyond it is told the same again. What must hold does not any more at that time. The
-    /// time is not finite.
+    /// [`RunError::NotATime`] for a time that is not finite. [`RunError::Astray`] if connectors have come apart, bodies
+    /// overlap or the energy books do not close at that time. Another error if an event or a step cannot be simulated:
+    /// the world stays at that time. Both kinds are repeated on every further attempt.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let outcome = self.advance_while(time, &mut |event| {
             on_event(event);
@@ -376,12 +395,12 @@ impl World {
         outcome.map(|_| ())
     }
 
-    /// The same, but no further than the first event of which `on_event` says [`ControlFlow::Break`]: the
-    /// world is then at its time, and the answer is that. What happens at once is told to the end; advancing
-    /// on goes on as if there had been no stop.
+    /// Advances like [`advance_to`](Self::advance_to), but stops after the first event for which `on_event` returns
+    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. All reports of that moment are
+    /// still delivered; a later call continues as if there had been no stop.
     ///
     /// # Errors
-    /// As [`advance_to`](Self::advance_to).
+    /// Those of [`advance_to`](Self::advance_to).
     pub fn advance_while(
         &mut self,
         time: f64,
@@ -409,7 +428,7 @@ impl World {
         self.conclude(outcome, reached)
     }
 
-    /// Tells of the impact at the start, if there was one and nobody has been told.
+    /// Reports the impact at the start, if there was one that has not been reported.
     pub(crate) fn tell_first_impact(
         &mut self,
         on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
@@ -421,17 +440,17 @@ impl World {
         on_event(&self.told)
     }
 
-    /// Tells of the impact after which the system cannot go on, if it has come to one; not for a system that
-    /// had failed before, for then it was told.
+    /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system
+    /// that had failed before: its last impact has been reported then.
     pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
         if let Some(impact) = self.system.untold_impact() {
             write_impact(&mut self.told, impact);
-            // There is no going on.
+            // The world cannot go on, whatever the caller answers.
             let _ = on_event(&self.told);
         }
     }
 
-    /// Takes note of how far the system has come, and looks whether all still holds together.
+    /// Notes how far the system has come, and lets the sentry check it.
     pub(crate) fn conclude(
         &mut self,
         outcome: Result<ControlFlow<()>, AdvanceError>,
@@ -443,8 +462,7 @@ impl World {
     }
 }
 
-/// Tells of an event that was handled, the impact in a buffer that is used again and again; whether somebody
-/// wants to stop there.
+/// Reports an event that was handled, its impact in a reused buffer. Returns `Break` if a callback did.
 pub(crate) fn tell(
     told: &mut Event,
     system: &RigidSystem,
@@ -480,8 +498,8 @@ fn contact_force(row: &RowForce) -> ContactForce {
     }
 }
 
-/// Kinetic energy of bodies in given states, and the potential energy of all that acts on them; with room for
-/// what laws read.
+/// Kinetic energy of bodies in given states, and potential energy of gravity and the force laws on them; `room` is a
+/// buffer for what the laws read.
 pub(crate) fn energy_of(
     bodies: &[Named],
     forces: &[Arc<dyn ForceLaw>],
@@ -507,7 +525,7 @@ pub(crate) fn energy_of(
     energy
 }
 
-/// Tells an impact in the world's words, in a buffer that is used again and again.
+/// Writes the report of an impact into a reused buffer, as an [`Impact`].
 fn write_impact(told: &mut Event, report: &ImpactReport) {
     let Event::Impact(impact) = told else { return };
     impact.time = report.time.seconds();

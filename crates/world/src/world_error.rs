@@ -1,4 +1,4 @@
-//! Why a world could not be built.
+//! Errors of building a world, which name bodies and connectors.
 
 use crate::connector::kind_name;
 use crate::rounded::Rounded;
@@ -6,7 +6,7 @@ use crate::run_error::RunError;
 use crate::world::BACKGROUND;
 use halfgap_collision::{BodyId, Connector, ConnectorError};
 
-/// Why a world could not be built.
+/// Error that keeps a world from being built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -27,124 +27,126 @@ pub enum WorldError {
     BadNumber {
         /// Name of the body.
         body: String,
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// What it must be.
+        /// Rule that its value breaks.
         rule: &'static str,
-        /// What it is.
+        /// The value, in SI units.
         value: f64,
     },
-    /// A coordinate or a velocity is so large that its powers are no numbers, or a coordinate so large that
-    /// its rounding hides the smallest body.
+    /// A coordinate or a velocity is so large that its powers overflow, or a coordinate so large that its rounding
+    /// hides the smallest body.
     #[error("body \"{body}\": {quantity} must be at most {largest:e} in size, got {value:e}")]
     TooLarge {
         /// Name of the body.
         body: String,
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// How large it may be.
+        /// Largest size allowed, in SI units.
         largest: f64,
-        /// What it is.
+        /// The value, in SI units.
         value: f64,
     },
     /// A setting is out of range.
     #[error("{setting} must be {rule}, got {value}")]
     BadSetting {
-        /// Which setting.
+        /// Name of the setting.
         setting: &'static str,
-        /// What it must be.
+        /// Rule that its value breaks.
         rule: &'static str,
-        /// What it is.
+        /// The value, in SI units.
         value: f64,
     },
-    /// A distance that is given is less than rounding of the coordinates of what moves leaves.
+    /// A given threshold is smaller than the rounding of the movable bodies' coordinates allows.
     #[error(
         "{setting} must be at least {} m for coordinates of {} m, got {value:e} m",
         Rounded(*least),
         Rounded(*coordinate)
     )]
     LostInRounding {
-        /// Which setting.
+        /// Name of the setting.
         setting: &'static str,
-        /// What it is [m].
+        /// The value [m].
         value: f64,
-        /// What it must be at least [m].
+        /// Smallest value allowed [m].
         least: f64,
-        /// The largest coordinate [m].
+        /// Size of the largest coordinate of a movable body [m].
         coordinate: f64,
     },
-    /// A force law or a connector names a body that is not there.
+    /// A force law, a connector or a pair of `let_pass` names a body that was not added.
     #[error("{what} names body {body}, but there are {bodies} bodies")]
     NoSuchBody {
-        /// What names it.
+        /// The law, connector or call that names the body.
         what: String,
         /// Index of the body.
         body: u32,
-        /// How many bodies there are.
+        /// Number of bodies.
         bodies: usize,
     },
-    /// A connector has numbers that none can have.
+    /// A number of a connector is out of range.
     #[error("{connector}: {source}")]
     BadConnector {
-        /// Which connector.
+        /// The connector.
         connector: ConnectorName,
-        /// What is wrong with it.
+        /// Error of the connector.
         source: ConnectorError,
     },
     /// A connector is off at the start by more than is allowed.
     #[error("{connector} is off by {} m at the start; at most {} m are allowed", Rounded(*error), Rounded(*allowed))]
     ConnectorError {
-        /// Which connector.
+        /// The connector.
         connector: ConnectorName,
-        /// How far [m].
+        /// Error of the connector [m].
         error: f64,
-        /// How far would be allowed [m].
+        /// Largest error allowed [m].
         allowed: f64,
     },
-    /// A connector lies farther out than can be computed with.
+    /// A coordinate of a connector is too large to compute with.
     #[error("{connector}: coordinates must be at most {largest:e} m in size, got {value:e} m")]
     FarConnector {
-        /// Which connector.
+        /// The connector.
         connector: ConnectorName,
-        /// How large they may be [m].
+        /// Largest size of a coordinate allowed [m].
         largest: f64,
-        /// The largest [m].
+        /// Size of the largest coordinate [m].
         value: f64,
     },
-    /// Two stops lie at one place of a closed rail, one for each way: a point on it is beyond one of them.
-    #[error("{} and {} lie back to back on a closed path: on one that is open there, its ends can be stopped", stops[0], stops[1])]
+    /// Two stops lie at one place of a closed rail, one for each direction: every point of the rail is beyond one of
+    /// them.
+    #[error("{} and {} lie back to back on a closed path; use an open path with a stop at each end", stops[0], stops[1])]
     StopsBackToBack {
         /// The stops.
         stops: Box<[ConnectorName; 2]>,
     },
     /// Connectors cannot all be put together at the start.
-    #[error("{connector} cannot be put together at the start: {} m remain", Rounded(*error))]
+    #[error("{connector} cannot be put together at the start: an error of {} m remains", Rounded(*error))]
     CannotConnect {
-        /// The connector that is off most.
+        /// The connector with the largest error.
         connector: ConnectorName,
-        /// How far [m].
+        /// Error that remains [m].
         error: f64,
     },
     /// Velocities at the start cannot be made to fit the connectors.
-    #[error("{connector} comes apart at {} m/s at the start, and cannot be kept from it", Rounded(*rate))]
+    #[error("{connector} comes apart at {} m/s at the start, and no velocities fit all connectors", Rounded(*rate))]
     ConnectorComesApart {
         /// The connector that comes apart fastest.
         connector: ConnectorName,
-        /// How fast [m/s].
+        /// Speed at which it comes apart [m/s].
         rate: f64,
     },
     /// A force law is not finite at the start.
     #[error("force \"{law}\" on body \"{body}\" is not finite at the start")]
     BadForce {
-        /// What the law is called.
+        /// Name of the law.
         law: String,
         /// Name of the body.
         body: String,
     },
-    /// A force law acts at the start on a body that it does not name: that would be ignored.
+    /// A force law acts at the start on a body that [`ForceLaw::bodies`](crate::force::ForceLaw::bodies) does not list:
+    /// its force would be ignored.
     #[error("force \"{law}\" acts on body \"{body}\", which is not among the bodies that it names")]
     UnnamedBody {
-        /// What the law is called.
+        /// Name of the law.
         law: String,
         /// Name of the body.
         body: String,
@@ -160,14 +162,14 @@ pub enum WorldError {
         first: String,
         /// Name of the other body.
         second: String,
-        /// How deep [m].
+        /// Depth of the overlap [m].
         depth: f64,
-        /// How deep would be allowed [m].
+        /// Largest depth allowed [m].
         allowed: f64,
     },
     /// Gaps at the start cannot all be lifted to the target gap.
     #[error(
-        "bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: {} m remain between them",
+        "bodies \"{first}\" and \"{second}\" cannot be moved apart at the start: a gap of {} m remains between them",
         Rounded(*gap)
     )]
     CannotLift {
@@ -175,23 +177,23 @@ pub enum WorldError {
         first: String,
         /// Name of the other body.
         second: String,
-        /// The gap [m].
+        /// The gap that remains [m], negative for an overlap.
         gap: f64,
     },
     /// The forces at the start cannot be found.
     #[error("at the start: {source}")]
     Start {
-        /// Why not.
+        /// Error of the advance.
         source: RunError,
     },
 }
 
-/// A connector, as messages name it.
+/// Name of a connector in messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConnectorName {
-    /// Its index.
+    /// Index among the connectors, from 0.
     pub index: usize,
-    /// Its kind, as in scene files.
+    /// Kind, as in scene files.
     pub kind: &'static str,
     /// Name of body a.
     pub first: String,
@@ -200,7 +202,7 @@ pub struct ConnectorName {
 }
 
 impl ConnectorName {
-    /// The name of a connector, among bodies of which `name_of` tells the names; the background needs none.
+    /// Makes the name of a connector; `name_of` returns the name of a body, and `None` for the background.
     pub(crate) fn new<'a>(
         index: usize,
         connector: &Connector,

@@ -295,6 +295,8 @@ fn a_run_that_stops_early_keeps_its_recording_and_exits_with_3() {
     assert!((stopped - meeting).abs() < 1e-6, "stopped at {stopped} s, not at {meeting} s");
     let message = folder.plain(&output.stderr);
     assert!(message.contains("mutual_gravity"), "{message}");
+    let times = message.matches(&format!("{stopped:.3}")).count();
+    assert!(message.contains("stopped early: at ") && times == 1, "the time is told once: {message}");
     let states = std::fs::read_to_string(folder.path("out/states.csv")).expect("the recording is written");
     assert!(states.lines().count() > 60, "{states}");
     for name in [

@@ -1,10 +1,10 @@
-//! The bodies of a scene by their names.
+//! Look-up of the bodies of a scene by name.
 
 use crate::scene::{BodyData, ForceData, Scene};
 use halfgap_collision::BodyId;
 use std::collections::BTreeMap;
 
-/// A scene, and where in it the bodies of all names are.
+/// A scene, and the ids of its bodies by name.
 #[derive(Debug)]
 pub(super) struct Bodies<'a> {
     pub(super) scene: &'a Scene,
@@ -18,17 +18,17 @@ impl<'a> Bodies<'a> {
         Self { scene, ids }
     }
 
-    /// The body of a name, or the background; names have been checked.
+    /// Returns the body with a name, else the background; names have been checked before.
     pub(super) fn find(&self, name: &str) -> BodyId {
         self.ids.get(name).copied().unwrap_or(BodyId::WORLD)
     }
 
-    /// What the scene says of the body of a name; `None` of the background.
+    /// Returns the data of the body with a name; `None` for the background.
     pub(super) fn data(&self, name: &str) -> Option<&'a BodyData> {
         self.scene.bodies.get(self.find(name).index())
     }
 
-    /// The bodies on which a law acts, in their order: those that it names, else all.
+    /// Returns the bodies on which a law acts, in the order of the scene: those that it names, else all.
     pub(super) fn acted_on(
         &self,
         force: &ForceData,

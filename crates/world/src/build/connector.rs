@@ -11,10 +11,9 @@ use crate::scene::{
 use halfgap_collision::{Connector, ConnectorError, ConnectorKind, RailError, RailPath, SlotFrame};
 use std::sync::Arc;
 
-/// Elasticity of connectors that hold their points, unless said otherwise.
+/// Default elasticity of bilateral connectors.
 const HOLDING_ELASTICITY: f64 = 0.0;
-/// Elasticity of connectors that only limit them, unless said otherwise: at most, for it is no more than that
-/// of the bodies.
+/// Default elasticity of ropes and stops, before that of their bodies limits it.
 const LIMITING_ELASTICITY: f64 = 1.0;
 
 /// Adds all connectors; all bodies have been added before, in the order of the scene.
@@ -32,8 +31,8 @@ pub(super) fn add_all(builder: &mut WorldBuilder, bodies: &Bodies<'_>) -> Result
     Ok(())
 }
 
-/// The elasticity of a connector that does not say it: what limits is as elastic as the lesser of its bodies, like any
-/// pair of bodies that meet.
+/// Returns the elasticity of a connector that gives none. Ropes and stops have the lesser elasticity of their bodies,
+/// like two bodies that meet.
 fn default_elasticity(bodies: &Bodies<'_>, data: &ConnectorData) -> f64 {
     let of_body =
         |point: &PointData| bodies.data(&point.body).map_or(LIMITING_ELASTICITY, |body| body.elasticity);
@@ -112,7 +111,7 @@ impl<'a> Paths<'a> {
         Ok(path)
     }
 
-    /// True if a rail has this path and says that it is closed: a stop does not repeat that.
+    /// True if a rail with this path is closed; stops do not repeat that field.
     fn is_closed(&self, data: &scene::RailPath) -> bool {
         let closed = |one: &ConnectorData| matches!(one, ConnectorData::Rail(rail) if rail.closed && rail.path == *data);
         self.scene.connectors.iter().any(closed)
@@ -128,7 +127,7 @@ fn rail_path(data: &scene::RailPath, closed: bool) -> Result<RailPath, RailError
     RailPath::from_edges(data.start.unwrap_or_default().into(), &edges)
 }
 
-/// Points the error at the field that it is about.
+/// Returns the error of a connector as that of the field to blame.
 fn refused(error: &ConnectorError, field: &FieldPath) -> SceneError {
     let field = match error {
         ConnectorError::BadLength(_) => field.field("length"),

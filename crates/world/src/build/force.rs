@@ -1,4 +1,4 @@
-//! The force laws of a scene. Each is named after its field: "force[2].spring".
+//! The force laws of a scene. The name of each is the path of its field: "force[2].spring".
 
 use super::bodies::Bodies;
 use super::mass;
@@ -7,8 +7,7 @@ use crate::force::{
     Anchor, ConstantForce, Dashpot, ForceFrame, MutualGravity, Push, RotatingForce, Spring, Turning,
 };
 use crate::scene::{
-    self, ConstantData, FieldPath, ForceData, MutualGravityData, PointData, RotatingData, SceneError,
-    SpringData,
+    ConstantData, FieldPath, ForceData, MutualGravityData, PointData, RotatingData, SceneError, SpringData,
 };
 use std::sync::Arc;
 
@@ -47,7 +46,8 @@ pub(super) fn add(
     Ok(())
 }
 
-/// A fixed body attracts with the mass that it is given; without one it takes no part.
+/// Makes the law. A fixed body attracts with its given mass; without one it takes no part, or is refused if it is
+/// named.
 fn mutual_gravity(
     builder: &WorldBuilder,
     (bodies, force): (&Bodies<'_>, &ForceData),
@@ -88,11 +88,11 @@ fn constant_force(
     field: &FieldPath,
 ) -> ConstantForce {
     let body = bodies.find(&constant.body);
-    let (frame, point) = match constant.frame {
-        scene::ForceFrame::Body => (ForceFrame::Body, builder.anchor(body, constant.point.into()).point),
-        scene::ForceFrame::World => (ForceFrame::World, constant.point.into()),
+    let point = match constant.frame {
+        ForceFrame::Body => builder.anchor(body, constant.point.into()).point,
+        ForceFrame::World => constant.point.into(),
     };
-    let push = Push { frame, point, force: constant.force.into(), torque: constant.torque };
+    let push = Push { frame: constant.frame, point, force: constant.force.into(), torque: constant.torque };
     ConstantForce::new(field.to_string(), body, push)
 }
 

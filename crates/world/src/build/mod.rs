@@ -1,4 +1,5 @@
-//! A world from a scene: its bodies here (`bodies`: by their names), `settings`, `force` and `connector` beside.
+//! Building a world from a scene: its bodies here (`bodies` finds them by name), the rest in `settings`, `force` and
+//! `connector`.
 
 mod bodies;
 mod connector;
@@ -17,8 +18,8 @@ impl World {
     /// Builds the world of a scene.
     ///
     /// # Errors
-    /// Values that break a rule, what is not simulated yet, shapes that cannot be, and bodies that overlap at
-    /// the start; the error names the field.
+    /// [`SceneError`] for values that break a rule, fields that are not simulated yet, impossible shapes, and bodies
+    /// that overlap at the start; the error names the field.
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
         scene.validate_world()?;
         scene.check_supported()?;
@@ -26,7 +27,7 @@ impl World {
     }
 }
 
-/// Everything that the scene is made of.
+/// Collects the parts of a scene in a builder.
 fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
     let mut builder = WorldBuilder::new(settings::of_run(&scene.run));
     for (index, body) in scene.bodies.iter().enumerate() {
@@ -73,7 +74,7 @@ fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {
     })
 }
 
-/// Mass of a body [kg], given or by its density; a fixed body may have none.
+/// Mass of a body [kg], given or from its density; a fixed body may have none.
 fn mass(body: &BodyData, shape: &Shape) -> Option<f64> {
     body.mass.or_else(|| body.density.map(|density| density * shape.mass_properties().area))
 }
@@ -108,7 +109,7 @@ fn edge_spec(edge: &EdgeData) -> EdgeSpec {
     }
 }
 
-/// Points the error at the field that it is about.
+/// Returns the error of a world as that of the field to blame.
 fn located(error: WorldError, scene: &Scene) -> SceneError {
     let top = FieldPath::top();
     let body = |name: &String, field: &dyn Fn(&BodyData) -> &'static str| {
@@ -122,7 +123,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
             body(second, &|_| "position")
         }
-        // Laws are named after their fields.
+        // The name of a law is the path of its field.
         WorldError::BadForce { law, .. } | WorldError::UnnamedBody { law, .. } => law.parse().ok(),
         WorldError::StopsBackToBack { stops } => {
             let ConnectorName { index, kind, .. } = &stops[1];
@@ -143,7 +144,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
     SceneError::new(place.unwrap_or_else(|| top.field("run")), error.to_string())
 }
 
-/// The field of a body that gives a quantity.
+/// Returns the name of the field of a body that determines a quantity.
 fn field_of(body: &BodyData, quantity: &str) -> &'static str {
     match quantity {
         "mass" | "moment" if body.mass.is_none() => "density",
@@ -167,7 +168,7 @@ mod tests {
     use super::*;
     use crate::scene::SceneFormat;
 
-    /// A scene with all force laws, built although not all of it is simulated yet.
+    /// The bodies of a scene to which tests add force laws.
     const FORCES: &str = r#"
         format = "halfgap-scene-1"
         title = "Forces"
@@ -266,7 +267,7 @@ mod tests {
         assert!((velocity_tol(40.0) / velocity_tol(10.0) - 2.0).abs() < 1e-12);
     }
 
-    /// What the scene builds to although not all of it is simulated yet.
+    /// The world of a scene, or the error of building it, without the check for fields that are not simulated yet.
     fn built(text: &str) -> Result<World, SceneError> {
         let scene = Scene::parse(text, SceneFormat::Toml).unwrap_or_else(|error| panic!("{error}"));
         collect(&scene)?.build().map_err(|error| located(error, &scene))

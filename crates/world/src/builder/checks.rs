@@ -1,4 +1,4 @@
-//! What a world cannot be built from: names, numbers out of range, bodies that are not there, coordinates too large.
+//! Checks of the input of a world: names, numbers out of range, unknown bodies, coordinates that are too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
 use crate::settings::ToleranceOverrides;
@@ -11,21 +11,21 @@ use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Largest coordinate [m] or velocity in size that is computed with: areas, moments and distances take up to
-/// fourth powers of sums of them, which must be numbers.
+/// Largest size of a coordinate [m] or velocity [m/s, rad/s]: areas, moments and distances take up to fourth powers of
+/// sums of them, which must not overflow.
 pub(crate) const LARGEST: f64 = 1e60;
 
-/// A gap, or half of a target zone, that is given may be so small a part of the smallest that is taken where none is.
+/// Smallest target gap or accuracy that may be given, as a fraction of the smallest target gap that would be derived.
 const GIVEN_SHARE: f64 = 1.0 / 64.0;
 
-/// Part of a lap by which stops of a closed rail are apart at least.
+/// Least distance of two opposite stops of a closed rail, as a fraction of a lap.
 const BACK_TO_BACK: f64 = 2e-3;
 
 /// Point, path, place [m] and side of a rail's stop.
 type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
 impl WorldBuilder {
-    /// Checks names, numbers and what names bodies, in the order in which they were added.
+    /// Checks names, numbers and references to bodies, in the order in which they were added.
     pub(super) fn check(&self) -> Result<(), WorldError> {
         let mut names = BTreeSet::new();
         for body in &self.bodies {
@@ -90,14 +90,14 @@ impl WorldBuilder {
         Ok(())
     }
 
-    /// Refuses an accuracy with which gaps of the target zone would not be positive, and what rounding of coordinates
-    /// would decide instead of it.
+    /// Refuses an accuracy with which gaps of the target zone would not be positive, and a target gap or accuracy that
+    /// rounding of coordinates would swamp.
     pub(super) fn check_zone(&self, tolerances: &Tolerances, scales: &Scales) -> Result<(), WorldError> {
         let ToleranceOverrides { target_gap, accuracy, .. } = self.settings.overrides;
         if let Some(value) = accuracy.filter(|&value| value >= tolerances.target_gap) {
             return Err(WorldError::BadSetting { setting: "accuracy", rule: "below the target gap", value });
         }
-        // A floor may go on to where nothing moves.
+        // Only movable bodies count: a floor may extend to where nothing moves.
         let movable = self.bodies.iter().filter(|body| body.inertia.is_some());
         let reach = |body: &BodySpec| farthest_in(&centered(body).bounds_at(&body.state.pose()));
         let coordinate = movable.map(reach).fold(0.0, f64::max);
@@ -110,8 +110,7 @@ impl WorldBuilder {
         Ok(())
     }
 
-    /// Refuses coordinates and radii so large that gaps as small as the smallest movable body cannot be told
-    /// from rounding.
+    /// Refuses coordinates and radii so large that their rounding hides gaps as small as the smallest movable body.
     pub(super) fn check_resolution(&self, scales: &Scales) -> Result<(), WorldError> {
         let Some(largest) = scales.largest_coordinate() else { return Ok(()) };
         let bodies = self.bodies.iter().filter(|_| scales.coordinate > largest);
@@ -173,7 +172,7 @@ impl WorldBuilder {
     }
 }
 
-/// Refuses gravity and damping that no body can move under.
+/// Refuses gravity that is not finite, and damping that is not finite or negative.
 fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
     let bad =
         |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
@@ -188,14 +187,14 @@ fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// The largest coordinate of a connector in size [m], on a body or in the world.
+/// Size of the largest coordinate of a connector [m], on a body or in the world.
 fn farthest(connector: &Connector) -> f64 {
     let (a, b) = connector.anchors();
     let anchors = [Some(a), b].into_iter().flatten().map(|anchor| anchor.point.abs().max_element());
     anchors.fold(world_bounds(connector).map_or(0.0, |bounds| farthest_in(&bounds)), f64::max)
 }
 
-/// What of the world a connector is tied to, if to any of it: the points, and the path.
+/// Bounds of a connector's points and path that are fixed in the world; `None` if it has none.
 pub(super) fn world_bounds(connector: &Connector) -> Option<Aabb> {
     let (a, b) = connector.anchors();
     let anchors = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
@@ -254,7 +253,7 @@ fn is_sound(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
-/// The largest coordinate in size [m] within some bounds.
+/// Size of the largest coordinate within some bounds [m].
 fn farthest_in(bounds: &Aabb) -> f64 {
     bounds.min.abs().max(bounds.max.abs()).max_element()
 }

@@ -1,4 +1,4 @@
-//! Building a world in code: bodies, and what acts on them. What is refused is in `checks`.
+//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input.
 
 mod checks;
 
@@ -11,60 +11,62 @@ use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartParts, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
-use crate::world_error::WorldError;
+use crate::world_error::{ConnectorName, WorldError};
 pub(crate) use checks::LARGEST;
 use checks::world_bounds;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem, Scales};
-use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId};
+use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
 
-/// Part of the smallest movable body's radius by which bodies may overlap, and connectors be off, at the
-/// start unless said otherwise.
+/// Default of the overlap and the connector error accepted at the start, as a fraction of the smallest movable body's
+/// radius.
 const DEFAULT_START_ERROR: f64 = 1e-6;
 
-/// A centroid nearer to the origin than so many machine epsilons of the shape's size is the origin.
+/// Distance of a centroid from the origin below which it is taken for the origin, in machine epsilons of the shape's
+/// size.
 const CENTROID_ROUNDINGS: f64 = 16.0;
-/// Speeds that are lower [m/s, rad/s] are none.
+/// Speeds at the start below this [m/s, rad/s] are set to 0: their squares would underflow.
 const VANISHING: f64 = 1e-140;
-/// A speed is told from rounding of the coordinates by so many roundings, of its square.
+/// Least kinetic energy that counts beside rounding, in machine epsilons of the energy of crossing all coordinates in
+/// the run.
 const LOST_ROUNDINGS: f64 = 1e4;
-/// What moves by no rounding of its coordinates in this time [s] stands still, where it is not known how long the
-/// world will run.
+/// Time [s] that stands for the duration of a run that is not known, where bodies that move by less than a rounding of
+/// their coordinates count as still.
 const TIME_TO_MOVE: f64 = 1.0;
-/// Forces press what is held to within so many tolerances of a body's size.
+/// Distance along which the work of the forces is lost to the accuracy of held rows, in tolerances of a body's size.
 const LOST_TOLERANCES: f64 = 10.0;
 
 /// A body to be added to a world.
 #[derive(Clone, Debug)]
 pub struct BodySpec {
-    /// Its name, unique in the world.
+    /// Name of the body, unique in the world.
     pub name: String,
-    /// Its shape, in shape coordinates.
+    /// Shape of the body, in shape coordinates.
     pub shape: Shape,
     /// Centre of mass in shape coordinates [m]; the shape's centroid if `None`.
     pub center_of_mass: Option<DVec2>,
-    /// Mass and moment of inertia about the centre of mass, which does not follow if that is moved; `None`
-    /// for a fixed body.
+    /// Mass and moment of inertia about the centre of mass; `None` for a fixed body. A change of `center_of_mass` does
+    /// not change the moment here.
     pub inertia: Option<Inertia>,
-    /// State at the start; the position is that of the centre of mass. A fixed body keeps neither velocity.
+    /// State at the start; the position is that of the centre of mass. Velocities of a fixed body are ignored.
     pub state: BodyState,
-    /// Share of the closing speed with which it leaves an impact; a pair uses the lesser.
+    /// Coefficient of restitution, 0 to 1; a pair of bodies uses the lesser.
     pub elasticity: f64,
 }
 
 impl BodySpec {
-    /// A fixed body of full elasticity, its centroid at a position [m].
+    /// Makes a fixed body of elasticity 1 with its centroid at a position [m].
     #[must_use]
     pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
         let state = BodyState { position, ..BodyState::default() };
         Self { name: name.to_owned(), shape, center_of_mass: None, inertia: None, state, elasticity: 1.0 }
     }
 
-    /// A movable body of full elasticity and of uniform density with the given mass [kg].
+    /// Makes a movable body of elasticity 1 and uniform density, with the given mass [kg].
     #[must_use]
     pub fn movable(name: &str, shape: Shape, mass: f64, state: BodyState) -> Self {
         let inertia = Inertia { mass, moment: mass * shape.mass_properties().moment_per_mass };
@@ -79,7 +81,7 @@ impl BodySpec {
     }
 }
 
-/// Collects what a world is made of.
+/// Collects the parts of a world and builds it.
 #[derive(Clone, Debug, Default)]
 pub struct WorldBuilder {
     settings: WorldSettings,
@@ -91,20 +93,20 @@ pub struct WorldBuilder {
 }
 
 impl WorldBuilder {
-    /// An empty world.
+    /// Makes a builder without bodies.
     #[must_use]
     pub fn new(settings: WorldSettings) -> Self {
         Self { settings, ..Self::default() }
     }
 
-    /// Adds a body.
+    /// Adds a body and returns its id.
     pub fn add(&mut self, body: BodySpec) -> BodyId {
         self.bodies.push(body);
         self.laws.push(FlightLaw::default());
         BodyId::from_index(self.bodies.len() - 1)
     }
 
-    /// A body that was added.
+    /// Returns a body that was added.
     ///
     /// # Panics
     /// If no such body was added.
@@ -113,7 +115,7 @@ impl WorldBuilder {
         &self.bodies[body.index()]
     }
 
-    /// Lets uniform gravity [m/s^2] act on a body, in addition to what acts already.
+    /// Adds a uniform gravity [m/s^2] to those that act on a body.
     ///
     /// # Panics
     /// If no such body was added.
@@ -121,7 +123,8 @@ impl WorldBuilder {
         self.laws[body.index()].acceleration += acceleration;
     }
 
-    /// Lets damping act on a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m].
+    /// Adds damping to a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m],
+    /// with `linear` in N s/m and `angular` in N m s. Does nothing to a fixed body.
     ///
     /// # Panics
     /// If no such body was added.
@@ -133,12 +136,13 @@ impl WorldBuilder {
         }
     }
 
-    /// Lets a force law act; see [`force`](crate::force).
+    /// Adds a force law; see [`force`](crate::force).
     pub fn add_force(&mut self, law: Arc<dyn ForceLaw>) {
         self.forces.push(law);
     }
 
-    /// Adds a connector. Bodies that a pin or slot joins do not collide with each other, unless it says so.
+    /// Adds a connector and returns its id. Bodies joined by a pin or slot do not collide with each other, unless
+    /// [`ConnectorSpec::collide`] is set.
     pub fn add_connector(&mut self, connector: ConnectorSpec) -> ConnectorId {
         if connector.keeps_from_colliding() {
             let [a, b] = connector.connector.bodies();
@@ -148,7 +152,7 @@ impl WorldBuilder {
         ConnectorId(u32::try_from(self.connectors.len() - 1).unwrap_or(u32::MAX))
     }
 
-    /// The point of a body at the given shape coordinates [m], or of the background at world coordinates.
+    /// Returns the anchor at given shape coordinates of a body [m], or at world coordinates of the background.
     ///
     /// # Panics
     /// If no such body was added.
@@ -158,16 +162,16 @@ impl WorldBuilder {
         Anchor { body, point: point - origin }
     }
 
-    /// Lets two bodies pass through each other.
+    /// Lets two bodies pass through each other: they never collide.
     pub fn let_pass(&mut self, a: BodyId, b: BodyId) {
         self.excluded.push((a, b));
     }
 
-    /// Checks everything, aligns what is to be aligned, corrects small overlaps and errors, and builds the world.
+    /// Checks the input, aligns connectors, corrects small overlaps and connector errors, and builds the world.
     ///
     /// # Errors
-    /// Names that are not unique, numbers out of range, bodies that overlap, connectors that are off: the
-    /// error names the body or the connector, and the number.
+    /// [`WorldError`] for names that are not unique, numbers out of range, bodies that overlap, and connectors that are
+    /// off: the error names the body or the connector, and the number.
     pub fn build(mut self) -> Result<World, WorldError> {
         self.check()?;
         self.stop_vanishing();
@@ -185,43 +189,19 @@ impl WorldBuilder {
             self.bodies.into_iter().zip(self.laws).map(into_parts).unzip();
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
-        let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
-        // Connectors that contradict each other are together as nearly as the tolerance asks, however wide
-        // the zones of contacts.
-        let derived = scales.tolerances(self.settings.tolerance);
-        let rules = StartRules {
-            tolerances: &tolerances,
-            excluded: &self.excluded,
-            collisions: self.settings.collisions,
-            overlap: self.settings.start_overlap.unwrap_or(default_error),
-            connector_error: self.settings.start_connector_error.unwrap_or(default_error),
-            contradiction: derived.accuracy.min(tolerances.accuracy),
-            rounding: scales.smallest_gap(),
-        };
+        let rules = start_rules(&self.settings, &self.excluded, &tolerances, &scales);
         let total = |bodies: &[StartParts]| {
             let state = |body: BodyId| bodies[body.index()].2;
             energy_of(&named, &self.forces, self.settings.start_time, state, &mut Vec::new()).total()
         };
-        let forces = forces_on(&bodies, &wrenches);
-        let torques = torques_on(&bodies, &wrenches);
+        let acting = (forces_on(&bodies, &wrenches), torques_on(&bodies, &wrenches));
         let given = total(&bodies);
         let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
-        if let Some((connector, rate)) = apart.filter(|&(_, rate)| rate > tolerances.velocity_tol) {
-            warnings.push(format!(
-                "{connector} comes apart at {} m/s by the velocities at the start; they were changed to fit",
-                Rounded(rate)
-            ));
-        }
+        warnings.extend(velocity_warning(apart, &tolerances));
         let energy = total(&bodies);
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
-        let (usual, still) = (usual_energy(&bodies, forces) + torques, still_energy(&bodies, &self.settings));
-        let energies = EnergyScales {
-            usual: if usual > still { usual } else { 0.0 },
-            rough: tolerances.target_gap * forces,
-            lost: lost_energy(&bodies, forces, &self.settings) + still,
-            left: f64::EPSILON * start.energy_change.abs(),
-        };
+        let energies = energy_scales(&bodies, acting, &start, (&self.settings, &tolerances));
         let sentry = Sentry::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales, tolerances);
         let parts = RigidParts {
@@ -245,7 +225,7 @@ impl WorldBuilder {
         }))
     }
 
-    /// What to say if the coordinates do not allow the gap that the tolerance asks for.
+    /// Warning if the coordinates do not allow a target gap as small as the tolerance asks for.
     fn gap_warning(&self, scales: &Scales) -> Option<String> {
         let tolerance = self.settings.tolerance;
         let (wanted, smallest) = (scales.wanted_gap(tolerance), scales.smallest_gap());
@@ -261,8 +241,8 @@ impl WorldBuilder {
         })
     }
 
-    /// What to say if a step of a given length is too long for how fast a body is damped: what should decay
-    /// grows then, wherever it is integrated. Flights are in closed form.
+    /// Warning if a fixed step is too long for the damping of a body, whose motion then grows where it is integrated.
+    /// Free flight is in closed form and not affected.
     fn step_warning(&self) -> Option<String> {
         let settings = &self.settings;
         let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
@@ -272,8 +252,8 @@ impl WorldBuilder {
         let longest = method(settings.integrator).stability_limit()? / rate;
         (step > longest).then(|| {
             format!(
-                "a time_step of {} s is too long for body \"{name}\", which is damped at {} 1/s: where it is tied or touches something, \
-                 what should decay grows in steps of more than {} s",
+                "a `time_step` of {} s is too long for body \"{name}\", damped at {} 1/s: while it is tied or in contact, its \
+                 motion grows instead of decaying in steps of more than {} s",
                 Rounded(step),
                 Rounded(rate),
                 Rounded(longest)
@@ -281,25 +261,25 @@ impl WorldBuilder {
         })
     }
 
-    /// What to say of a fixed body that is given a velocity.
+    /// Warning if a fixed body is given a velocity.
     fn fixed_warning(&self) -> Option<String> {
         let moves = |state: &BodyState| state.velocity != DVec2::ZERO || state.angular_velocity != 0.0;
         let body = self.bodies.iter().find(|body| body.inertia.is_none() && moves(&body.state))?;
-        Some(format!("body \"{}\" is fixed: its velocity is left out of account", body.name))
+        Some(format!("body \"{}\" is fixed: its velocity is ignored", body.name))
     }
 
-    /// What to say of a stop without the rail that it ends.
+    /// Warning if a stop has no rail to end.
     fn stop_warning(&self) -> Option<String> {
         let connectors = || self.connectors.iter().map(|spec| &spec.connector);
         let is_lone = |stop: &Connector| stop.is_stop() && !connectors().any(|rail| stop.is_stop_of(rail));
         let index = connectors().position(is_lone)?;
         let name = self.connector_name(index);
         Some(format!(
-            "{name} ends no rail: none has the same point and path, so that nothing keeps the point on it"
+            "{name} ends no rail: no rail has the same point and path, so nothing keeps the point on the path"
         ))
     }
 
-    /// Stops what moves at speeds whose squares are no numbers any more.
+    /// Sets to 0 the speeds whose squares would underflow.
     fn stop_vanishing(&mut self) {
         let stop = |speed: &mut f64| *speed = if speed.abs() < VANISHING { 0.0 } else { *speed };
         for BodyState { velocity, angular_velocity, .. } in self.bodies.iter_mut().map(|body| &mut body.state)
@@ -308,7 +288,7 @@ impl WorldBuilder {
         }
     }
 
-    /// Moves the bodies that connectors are to align, in the connectors' order.
+    /// Aligns bodies to the connectors that ask for it, in the connectors' order.
     fn align(&mut self) {
         for spec in self.connectors.iter().filter(|spec| spec.align) {
             let ends = spec.connector.bodies();
@@ -323,7 +303,8 @@ impl WorldBuilder {
         }
     }
 
-    /// Forces and torques of all laws at the start.
+    /// Returns the force and torque of all laws on each body at the start. Refuses laws that are not finite, or act on
+    /// a body that they do not list.
     fn wrenches(&self) -> Result<Vec<Wrench>, WorldError> {
         let moving: Vec<_> = self.bodies.iter().map(|body| Moving::from(&body.state)).collect();
         let now = Snapshot::new(self.settings.start_time, &moving);
@@ -342,7 +323,7 @@ impl WorldBuilder {
                 }
             }
         }
-        // What is left acts on a body that its law does not name.
+        // A wrench that is left acts on a body that its law does not list.
         let Some(unnamed) = own.iter().position(|sum| *sum != Wrench::default()) else {
             return Ok(wrenches_of(&self.forces, &now, moving.len()));
         };
@@ -355,6 +336,7 @@ impl WorldBuilder {
         Err(WorldError::UnnamedBody { law: law.to_owned(), body })
     }
 
+    /// Scales of the scene at the start: sizes, coordinates, speeds and accelerations.
     fn scales(&self, wrenches: &[Wrench]) -> Scales {
         let mut scales = Scales { speed: self.settings.usual_speed.unwrap_or_default(), ..Scales::default() };
         let of_connectors = self.connectors.iter().filter_map(|spec| world_bounds(&spec.connector));
@@ -380,7 +362,8 @@ impl WorldBuilder {
         }
         bounds.into_iter().for_each(|bounds| scales.set_bounds(bounds));
         self.bodies.iter().for_each(|body| scales.include_radius(largest_radius(&body.shape)));
-        // Where nothing moves or acts somebody will push: what is usual then crosses all of it in the run.
+        // Where nothing moves and no forces act, interventions are to be expected: the speed that crosses the whole
+        // scene in the run is taken for usual then.
         let crossing = scales.coordinate / self.settings.duration.unwrap_or(TIME_TO_MOVE);
         if scales.speed_scale() <= f64::EPSILON * crossing {
             scales.speed = crossing;
@@ -389,7 +372,54 @@ impl WorldBuilder {
     }
 }
 
-/// Kinetic energy [J] of the bodies, and what forces of a size [N] make of it across all of them.
+/// Returns the errors that the start accepts, and the thresholds that it is to reach.
+fn start_rules<'a>(
+    settings: &WorldSettings,
+    excluded: &'a [(BodyId, BodyId)],
+    tolerances: &'a Tolerances,
+    scales: &Scales,
+) -> StartRules<'a> {
+    let default_error = DEFAULT_START_ERROR * scales.smallest_radius.unwrap_or(scales.coordinate);
+    // Connectors that contradict each other are together as nearly as the tolerance asks, however wide
+    // the zones of contacts.
+    let derived = scales.tolerances(settings.tolerance);
+    StartRules {
+        tolerances,
+        excluded,
+        collisions: settings.collisions,
+        overlap: settings.start_overlap.unwrap_or(default_error),
+        connector_error: settings.start_connector_error.unwrap_or(default_error),
+        contradiction: derived.accuracy.min(tolerances.accuracy),
+        rounding: scales.smallest_gap(),
+    }
+}
+
+/// Warning if velocities at the start, by which a connector came apart at a rate [m/s], were changed.
+fn velocity_warning(apart: Option<(ConnectorName, f64)>, tolerances: &Tolerances) -> Option<String> {
+    let (connector, rate) = apart.filter(|&(_, rate)| rate > tolerances.velocity_tol)?;
+    Some(format!(
+        "the velocities at the start, by which {connector} comes apart at {} m/s, were changed to fit",
+        Rounded(rate)
+    ))
+}
+
+/// Scales of the energy after the correction at the start, under forces [N] and torques [N m] of a size.
+fn energy_scales(
+    bodies: &[StartParts],
+    (forces, torques): (f64, f64),
+    start: &Start,
+    (settings, tolerances): (&WorldSettings, &Tolerances),
+) -> EnergyScales {
+    let (usual, still) = (usual_energy(bodies, forces) + torques, still_energy(bodies, settings));
+    EnergyScales {
+        usual: if usual > still { usual } else { 0.0 },
+        rough: tolerances.target_gap * forces,
+        lost: lost_energy(bodies, forces, settings) + still,
+        left: f64::EPSILON * start.energy_change.abs(),
+    }
+}
+
+/// Kinetic energy of the bodies, and work of forces of a size [N] across all of them [J].
 fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
     let bounds = bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()));
     let size = bounds.reduce(Aabb::union).map_or(0.0, |all| all.size().length());
@@ -397,21 +427,21 @@ fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
     kinetic.sum::<f64>() + forces * size
 }
 
-/// The work [J] of forces of a size [N] within the tolerance of the bodies' sizes, and what the bodies have
-/// at a speed that is rounding of their coordinates.
+/// Work of forces of a size [N] within the tolerance of the bodies' sizes, and energy of the bodies at a speed that is
+/// rounding of their coordinates [J].
 fn lost_energy(bodies: &[StartParts], forces: f64, settings: &WorldSettings) -> f64 {
     let reach = movable(bodies).map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);
     let rounding = settings.duration.map_or(0.0, |duration| crossing_energy(bodies, duration));
     LOST_ROUNDINGS * f64::EPSILON * rounding + forces * LOST_TOLERANCES * settings.tolerance * reach
 }
 
-/// Energy [J] of bodies that move so slowly that in all of the run their coordinates do not change by a rounding.
+/// Energy [J] of bodies that move by a rounding of their coordinates in the whole run.
 fn still_energy(bodies: &[StartParts], settings: &WorldSettings) -> f64 {
     let time = settings.duration.unwrap_or(TIME_TO_MOVE);
     f64::EPSILON * f64::EPSILON * crossing_energy(bodies, time)
 }
 
-/// Energy [J] of the bodies, if all went as far as the coordinates are large in a time [s].
+/// Twice the kinetic energy [J] of the movable bodies at the speed that covers the largest coordinate in a time [s].
 fn crossing_energy(bodies: &[StartParts], time: f64) -> f64 {
     let farthest =
         bodies.iter().map(|(body, _, state)| state.position.abs().max_element() + body.shape.reach());
@@ -431,7 +461,7 @@ fn forces_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
     forces.map(|force| force.length()).sum()
 }
 
-/// Sum of the sizes of the torques [N m] on the movable bodies: what they do to a radian [J].
+/// Sum of the sizes of the torques [N m] on the movable bodies: their work over a radian [J].
 fn torques_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
     let movable = bodies.iter().zip(wrenches).filter(|((body, ..), _)| !body.is_fixed());
     movable.map(|(_, wrench)| wrench.torque.abs()).sum()
@@ -440,7 +470,7 @@ fn torques_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
 fn center_of_mass(body: &BodySpec) -> DVec2 {
     body.center_of_mass.unwrap_or_else(|| {
         let centroid = body.shape.mass_properties().centroid;
-        // The centroid of a symmetric shape is the origin: what the integrals leave of it is their rounding.
+        // The centroid of a symmetric shape is the origin: what the integrals give instead is their rounding.
         let rounding = CENTROID_ROUNDINGS * f64::EPSILON * body.shape.reach();
         if centroid.length() <= rounding { DVec2::ZERO } else { centroid }
     })
@@ -455,7 +485,7 @@ pub(super) fn largest_radius(shape: &Shape) -> f64 {
     radii.fold(0.0, f64::max)
 }
 
-/// The shape about the centre of mass.
+/// Shape of a body in coordinates about its centre of mass.
 fn centered(body: &BodySpec) -> Shape {
     body.shape.translated(-center_of_mass(body))
 }

@@ -1,4 +1,4 @@
-//! How far the states of two runs are apart.
+//! Differences between the states of two runs.
 
 use super::event_times::EventTimes;
 use crate::recording::{Frame, Recording};
@@ -6,33 +6,33 @@ use crate::world::World;
 use halfgap_collision::BodyId;
 use serde::Serialize;
 
-/// The largest difference of any body.
+/// Largest difference of each quantity over all bodies, between two runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Difference {
-    /// Of its position [m].
+    /// Difference of the position of the centre of mass [m].
     pub position: f64,
-    /// Of its angle [rad].
+    /// Difference of the angle [rad].
     pub angle: f64,
-    /// Of its velocity [m/s].
+    /// Difference of the velocity of the centre of mass [m/s].
     ///
-    /// A body that collides just then has two velocities, and while it has collided in one of the two runs
-    /// only, those differ by the blow: it is left out.
+    /// Bodies that have made an impact in only one of the two runs so far, shortly before or after the other, are left
+    /// out: their velocities differ by the whole impact.
     pub velocity: f64,
-    /// Of its angular velocity [rad/s], likewise.
+    /// Difference of the angular velocity [rad/s], with the same bodies left out as for `velocity`.
     pub angular_velocity: f64,
 }
 
-/// The differences at one time.
+/// Differences between two runs at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TimedDifference {
-    /// When [s].
+    /// The time [s].
     pub time: f64,
-    /// What they are.
+    /// The differences at that time.
     pub difference: Difference,
 }
 
 impl Difference {
-    /// The larger of both, quantity by quantity.
+    /// Returns the larger of both, quantity by quantity.
     pub(super) fn largest(&self, other: &Self) -> Self {
         Self {
             position: self.position.max(other.position),
@@ -57,12 +57,12 @@ impl Comparison {
         Self { bodies, reach }
     }
 
-    /// A length [m] as a part of the size of the smallest body.
+    /// Returns a length [m] as a fraction of the size of the smallest body.
     pub(super) fn part(&self, length: f64) -> f64 {
         self.reach.iter().map(|reach| length / reach).fold(0.0, f64::max)
     }
 
-    /// At each common time [s]: the largest shift of any body, as a part of its own size.
+    /// Returns pairs of a common time [s] and the largest shift of any body then, as a fraction of its own size.
     pub(super) fn shifts(&self, run: &Recording, tighter: &Recording) -> Vec<(f64, f64)> {
         let shift = |(a, b): (&Frame, &Frame)| {
             let states = a.states.iter().zip(&b.states).zip(&self.reach);
@@ -73,8 +73,8 @@ impl Comparison {
         common(run, tighter).map(shift).collect()
     }
 
-    /// At each common time: the differences of all bodies; `window` [s] is how near an impact velocities may
-    /// not be compared.
+    /// Returns the differences at each common time; velocities are not compared within `window` [s] of an impact that
+    /// only one run has made so far.
     pub(super) fn curve(
         &self,
         run: &Recording,
@@ -101,7 +101,7 @@ impl Comparison {
     }
 }
 
-/// The frames of both at the times they share; a run that stops early has a last frame of its own.
+/// Returns the pairs of frames at common times; a run that stops early has a last frame of its own.
 fn common<'a>(run: &'a Recording, tighter: &'a Recording) -> impl Iterator<Item = (&'a Frame, &'a Frame)> {
     run.frames.iter().zip(&tighter.frames).filter(|(a, b)| a.time == b.time)
 }

@@ -1,9 +1,9 @@
-//! When bodies collide, in two runs.
+//! Comparison of the times of impacts in two runs.
 //!
-//! Two runs need not have the same impacts: a body that bounces to rest bounces longer at a tighter
-//! tolerance, and what is one impact of two corners may be two. So impacts are not counted off against each
-//! other: those of a body belong together of which each is the nearest to the other in its run. Pairs would
-//! not do: which of those that touch get an impulse may be decided by rounding.
+//! Two runs need not have the same impacts: a body that bounces to rest bounces longer at a tighter tolerance, and one
+//! impact of two corners may be two. So impacts are not matched by their number. Two impacts of a body match if each is
+//! the nearest in its run to the other. They are matched by body, not by pair of bodies: rounding may decide which of
+//! several touching pairs get an impulse.
 
 use crate::recording::Recording;
 use halfgap_collision::BodyId;
@@ -15,7 +15,7 @@ pub(super) struct EventTimes {
 }
 
 impl EventTimes {
-    /// Those up to the given time [s].
+    /// Collects the times of the impacts up to the given time [s].
     pub(super) fn new(recording: &Recording, until: f64) -> Self {
         let mut of_body = BTreeMap::new();
         for impact in recording.impacts.iter().filter(|impact| impact.time <= until) {
@@ -26,9 +26,9 @@ impl EventTimes {
         Self { of_body }
     }
 
-    /// The largest difference [s] of two impacts that belong together; `None` if none do.
+    /// Returns the largest difference [s] in time of two matching impacts; `None` if none match.
     ///
-    /// An impact that the other run does not have has no time there: states tell of that.
+    /// An impact that the other run does not have is left out here and shows in the states.
     pub(super) fn largest_difference(&self, other: &Self) -> Option<f64> {
         let both = self.of_body.iter().filter_map(|(body, times)| Some((times, other.of_body.get(body)?)));
         let differences = both.flat_map(|(times, others)| {
@@ -40,8 +40,8 @@ impl EventTimes {
         differences.reduce(f64::max)
     }
 
-    /// True if a body has an impact within the window [s] of a time [s] that is over in one run only, as far
-    /// as can be told.
+    /// True if a body has an impact within the window [s] of a time [s] that only one of the runs has made by then. An
+    /// impact exactly at that time counts as such.
     pub(super) fn is_between(runs: &[Self; 2], body: BodyId, time: f64, window: f64) -> bool {
         let times = runs.each_ref().map(|run| run.of_body.get(&body).map_or(&[][..], Vec::as_slice));
         let is_near = |times: &[f64]| nearest(times, time).is_some_and(|near| (near - time).abs() <= window);
@@ -60,7 +60,7 @@ fn note(times: &mut Vec<f64>, time: f64) {
     }
 }
 
-/// The nearest to a time [s] of some, which ascend; `None` if there are none.
+/// Returns the nearest to a time [s] of ascending times; `None` if there are none.
 fn nearest(times: &[f64], time: f64) -> Option<f64> {
     let after = times.partition_point(|&other| other < time);
     let near = times[after.saturating_sub(1)..].iter().take(2).copied();

@@ -1,28 +1,30 @@
-//! Tells chaos from error by how the difference of two runs grows.
+//! Distinction of chaos from integration error, by the growth of the difference of two runs.
 //!
 //! Errors of an integration grow with a low power of the time: the phase of an orbit drifts. In chaos
-//! neighbouring runs part exponentially, or at once where a small difference decides which of two things
-//! happens; then no tolerance helps for long, and the run is worth something only until the difference has
+//! neighbouring runs part exponentially, or at once where a small difference decides which of two events
+//! happens; then no tolerance helps for long, and the run is meaningful only until the difference has
 //! grown to the size of the bodies.
 
-/// Part of its own size up to which a body is where it should be, or so many usual differences.
+/// Difference up to which a run is trusted, as a fraction of a body's own size.
 const WORTH: f64 = 1e-2;
+/// Difference up to which a run is trusted, as a multiple of the usual difference, if that is more.
 const WORTH_OF_USUAL: f64 = 4.0;
-/// Differences beyond so many usual ones matter, although bodies are where they should be.
+/// Difference that counts as amplified although it is still small, as a multiple of the usual difference.
 const AMPLIFIED: f64 = 1e4;
-/// In the second half of the time an error that grows with the sixth power grows by this factor.
+/// Factor by which an error that grows with the sixth power of the time grows in the second half of the time.
 const SECOND_HALF: f64 = 64.0;
 
-/// What the growth of a difference says.
+/// Judgement on the growth of a difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Growth {
+    /// Whether the difference grows faster than errors of integration do.
     pub(super) chaotic: bool,
-    /// The last time [s] at which the difference was small, if it is not small to the end.
+    /// The last time [s] up to which the difference was small; `None` if it is small to the end.
     pub(super) trusted_until: Option<f64>,
 }
 
-/// Judges the differences at some times, pairs of time [s] and part of a body's size, where so large a one is usual: the
-/// tolerance, or the gap at which bodies touch.
+/// Judges a list of times [s] and differences, as fractions of a body's size. `usual` is the difference that is normal:
+/// the tolerance, or the target gap as a fraction of a body's size.
 pub(super) fn judge(shifts: &[(f64, f64)], usual: f64) -> Growth {
     let small = |shift: f64| shift <= WORTH.max(WORTH_OF_USUAL * usual);
     let lost = shifts.iter().position(|&(_, shift)| !small(shift));

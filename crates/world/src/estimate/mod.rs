@@ -1,9 +1,8 @@
-//! How far a run is from the truth, without knowing it: the run is repeated at a tighter tolerance and compared.
+//! Estimate of the error of a run: the run is repeated at a tighter tolerance and compared.
 //!
-//! The error of a run is in proportion to its tolerance, so what the tighter run leaves is small beside what
-//! it removes: the difference of both is the error of the first to within the share that is left. `tighter`
-//! says what is tightened, `difference` compares states, `event_times` compares impacts, `growth` tells chaos
-//! from error.
+//! The error of a run is in proportion to its tolerance, so that of the tighter run is small beside that of the first,
+//! and the difference of both is the error of the first to within that small fraction. `tighter` makes the tighter
+//! scene, `difference` compares states, `event_times` compares impacts, `growth` distinguishes chaos from error.
 //!
 //! The idea is that of tolerance reduction as an estimate of the global error, reviewed in R. D. Skeel,
 //! "Thirteen ways to estimate global error", Numerische Mathematik 48 (1986), 1-20 (there among the methods
@@ -19,53 +18,60 @@ pub use difference::{Difference, TimedDifference};
 
 use crate::recording::Recording;
 use crate::run::{Progress, Record, RunPlan, RunReport, run};
+use crate::run_error::RunError;
 use crate::scene::{FieldPath, Scene, SceneError};
 use crate::world::World;
 use difference::Comparison;
 use event_times::EventTimes;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-/// How far a run is from the truth, as far as a tighter run tells.
+/// Estimate of the error of a run, from its difference to a tighter run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorEstimate {
-    /// Tolerance of the run.
+    /// Tolerance of the run [-].
     pub tolerance: f64,
-    /// Tolerance of the run it was compared with.
+    /// Tolerance of the tighter run [-].
     pub tighter_tolerance: f64,
-    /// Target gaps of both runs [m]. Where coordinates allow no smaller one, the second is twice the first:
-    /// the part of the error that comes from the gap is in proportion to it.
+    /// Target gaps of both runs [m]. Where coordinates allow no smaller one, the second is twice the first: the share
+    /// of the error that comes from the gap is in proportion to the gap.
     pub target_gaps: [f64; 2],
-    /// Up to when both runs were compared [s].
+    /// Last time at which both runs were compared [s].
     pub compared_until: f64,
-    /// The largest differences at any output time.
+    /// Largest differences at any output time.
     pub largest: Difference,
-    /// The differences at the last time that was compared.
+    /// Differences at the last time that was compared.
     pub end: Difference,
-    /// Largest difference of the time of an impact [s], up to `trusted_until`; `None` if there were none.
+    /// Largest difference in time of matching impacts [s], up to `trusted_until`; `None` if no impacts match.
     pub event_time: Option<f64>,
-    /// Impacts of the run and of the tighter one. A body that bounces to rest does so more often in the tighter one.
+    /// Numbers of impacts of the run and of the tighter one. A body that bounces to rest makes more of them in the
+    /// tighter one.
     pub impacts: [usize; 2],
-    /// The difference grows faster than any power of the time that errors of integration grow with.
+    /// Whether the difference grows faster than errors of integration do.
     pub chaotic: bool,
-    /// The last output time [s] at which each body was where it should be to a hundredth of its own size, or to the part
-    /// that four target gaps are of the smallest one, if that is more; `None` if it was so to the end. Until then the
-    /// answer is worth something.
+    /// Last output time [s] up to which every body is within 1 % of its own size of the tighter run (or within four
+    /// target gaps over the smallest body's size, if that is more); `None` if it stays so to the end.
     pub trusted_until: Option<f64>,
-    /// Why the tighter run stopped early, if it did.
-    pub tighter_stopped: Option<String>,
-    /// The differences at all output times, the first at the start.
+    /// Error that stopped the tighter run early, if one did.
+    #[serde(serialize_with = "message")]
+    pub tighter_stopped: Option<RunError>,
+    /// Differences at all output times, the first at the start.
     #[serde(skip)]
     pub curve: Vec<TimedDifference>,
 }
 
-/// Estimates the error of a run of a scene; the run must have recorded everything.
+/// Writes an error as its message.
+fn message<S: Serializer>(error: &Option<RunError>, serializer: S) -> Result<S::Ok, S::Error> {
+    error.as_ref().map(RunError::to_string).serialize(serializer)
+}
+
+/// Estimates the error of a run of a scene; the run must have recorded [`Record::Everything`].
 ///
-/// The scene is run once more, with the same output times and a tolerance of a hundredth (where the step is
-/// fixed: a tenth, and a tenth of the step); thresholds that the scene gives itself shrink alike. Where `progress` breaks
-/// that run off, both are compared up to there.
+/// Runs the scene once more, with the same output times and a hundredth of the tolerance (with fixed steps: a tenth of
+/// the tolerance and of the step); thresholds that the scene gives shrink by the same factor. If `progress` stops that
+/// run, both are compared up to there.
 ///
 /// # Errors
-/// The run did not record everything; the scene cannot be built, or not at the tighter tolerance.
+/// [`SceneError`] if the run did not record everything, or the scene cannot be built at the tighter tolerance.
 pub fn estimate_error(
     scene: &Scene,
     plan: &RunPlan,
@@ -74,7 +80,7 @@ pub fn estimate_error(
     progress: Progress<'_>,
 ) -> Result<ErrorEstimate, SceneError> {
     if plan.record != Record::Everything {
-        let message = "the error can be estimated of a run that recorded everything only";
+        let message = "the error can only be estimated for a run that recorded everything";
         return Err(SceneError::new(FieldPath::top().field("run"), message));
     }
     let tighter = tighter::tightened(scene, world)?;
@@ -84,7 +90,7 @@ pub fn estimate_error(
     let mut estimate = compare(world, &report.recording, &other_report.recording, scene.run.tolerance);
     estimate.tighter_tolerance = tighter.run.tolerance;
     estimate.target_gaps[1] = other.tolerances().target_gap;
-    estimate.tighter_stopped = other_report.error.map(|error| error.to_string());
+    estimate.tighter_stopped = other_report.error;
     Ok(estimate)
 }
 
@@ -92,7 +98,7 @@ pub fn estimate_error(
 fn compare(world: &World, run: &Recording, tighter: &Recording, tolerance: f64) -> ErrorEstimate {
     let comparison = Comparison::new(world, run);
     let shifts = comparison.shifts(run, tighter);
-    // What touches at a gap that is wide is off by that at once.
+    // Bodies that touch at a wide gap are off by that gap at once.
     let usual = tolerance.max(comparison.part(world.tolerances().target_gap));
     let growth = growth::judge(&shifts, usual);
     let trusted = growth.trusted_until.unwrap_or(f64::INFINITY);

@@ -1,22 +1,22 @@
-//! The same scene, to be run more exactly.
+//! A scene with a tighter tolerance, tighter thresholds and shorter fixed steps.
 
 use crate::build::settings::of_run;
 use crate::scene::{RunData, Scene, SceneError};
 use crate::world::World;
 
-/// By how much tolerance and thresholds shrink.
+/// Factor by which tolerance and thresholds shrink.
 const FACTOR: f64 = 100.0;
-/// By how much they shrink where the step is fixed: it shrinks too, and the run takes so many times as long.
+/// Factor by which they shrink where the step is fixed: the step shrinks too, and the run takes longer by this factor.
 const FIXED_STEP_FACTOR: f64 = 10.0;
-/// A tolerance that asks for a few roundings a step; below it nothing becomes more exact.
+/// Tightest tolerance [-], a few roundings a step; below it nothing becomes more exact.
 const TIGHTEST: f64 = 1e-15;
-/// Where the target gap cannot shrink to this part it grows by this factor instead: what it adds to the error is in
-/// proportion to it, so that either way the difference is at least half the error.
+/// Factor by which the target gap shrinks at least, or else grows instead: its share of the error is in proportion to
+/// the gap, so that either way the difference is at least half the error.
 const GAP_FACTOR: f64 = 2.0;
 
-/// The scene of a world at a tighter tolerance; what it gives in place of derived thresholds shrinks alike.
+/// Returns the scene of a world at a tighter tolerance; thresholds that it gives shrink by the same factor.
 ///
-/// A step that is only a bound on an adaptive one stays: the tolerance decides.
+/// A `time_step` that only bounds adaptive steps stays as it is: the tolerance decides there.
 pub(super) fn tightened(scene: &Scene, world: &World) -> Result<Scene, SceneError> {
     let run = &scene.run;
     let step = of_run(run).fixed_step();
@@ -35,12 +35,12 @@ pub(super) fn tightened(scene: &Scene, world: &World) -> Result<Scene, SceneErro
     Ok(Scene { run, ..scene.clone() })
 }
 
-/// The target gap [m] to compare with one [m], if the coordinates allow no less than the least one [m].
+/// Returns the target gap [m] to compare `gap` [m] with, where the coordinates allow no less than `least` [m].
 fn other_gap(gap: f64, factor: f64, least: f64) -> f64 {
     if least <= gap / GAP_FACTOR { least.max(gap / factor) } else { GAP_FACTOR * gap }
 }
 
-/// The smallest target gap [m] that the coordinates allow.
+/// Returns the smallest target gap [m] that the coordinates allow.
 fn least_gap(scene: &Scene) -> Result<f64, SceneError> {
     let run = RunData {
         tolerance: TIGHTEST,

@@ -4,18 +4,18 @@ use super::{Snapshot, Wrenches};
 use glam::DVec2;
 use halfgap_collision::{Anchor, BodyId};
 
-/// Where an anchor is and how it moves.
+/// Position and velocity of an anchor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Attached {
     /// World position [m].
     pub(super) position: DVec2,
     /// Velocity [m/s].
     pub(super) velocity: DVec2,
-    /// From the body's centre of mass, in world directions [m].
+    /// Arm from the body's centre of mass, in world directions [m].
     pub(super) arm: DVec2,
 }
 
-/// Where an anchor is and how it moves at a moment.
+/// Returns position and velocity of an anchor at a moment.
 fn locate(anchor: &Anchor, now: &Snapshot<'_>) -> Attached {
     let moving = now.body(anchor.body);
     let arm = moving.pose.vector_to_world(anchor.point);
@@ -27,9 +27,9 @@ fn locate(anchor: &Anchor, now: &Snapshot<'_>) -> Attached {
 pub(super) struct Between {
     pub(super) a: Attached,
     pub(super) b: Attached,
-    /// From b to a [m].
+    /// Offset from b to a [m].
     pub(super) offset: DVec2,
-    /// Distance [m].
+    /// Distance of a and b [m].
     pub(super) length: f64,
 }
 
@@ -52,7 +52,7 @@ impl Between {
     }
 }
 
-/// The bodies of two anchors, each once, without the background.
+/// Returns the bodies of two anchors, each once, without the background.
 pub(super) fn bodies_of(ends: &[Anchor; 2]) -> Vec<BodyId> {
     let mut bodies: Vec<_> = ends.iter().map(|end| end.body).filter(|body| !body.is_world()).collect();
     bodies.dedup();

@@ -5,18 +5,21 @@ use glam::DVec2;
 use halfgap_collision::BodyId;
 
 /// The frame in which a constant force and its point are given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum ForceFrame {
-    /// Both turn with the body; the origin is its centre of mass.
+    /// Force and point turn with the body. In code the origin is the centre of mass, in scene files that of the
+    /// shape's coordinates.
     Body,
-    /// Both stay where they are in the world, however the body moves.
+    /// Force and point stay fixed in the world, however the body moves.
+    #[default]
     World,
 }
 
 /// A constant force at a point, and a constant torque, on one body.
 ///
-/// It has no potential. In the body's frame the force turns with the body; in the world's its torque depends on where
-/// the body is while the force does not depend on the angle: neither is a gradient.
+/// It has no potential. In the body's frame the force turns with the body; in the world's frame its torque depends on
+/// the position of the body while the force does not depend on the angle: neither is a gradient.
 #[derive(Clone, Debug)]
 pub struct ConstantForce {
     name: String,
@@ -24,21 +27,21 @@ pub struct ConstantForce {
     push: Push,
 }
 
-/// What a constant force does.
+/// Force, its point and torque of a [`ConstantForce`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// The frame of the point and the force.
+    /// Frame of the point and the force.
     pub frame: ForceFrame,
-    /// Where the force acts [m].
+    /// Point at which the force acts, in coordinates of `frame` [m].
     pub point: DVec2,
-    /// The force [N].
+    /// Force, in coordinates of `frame` [N].
     pub force: DVec2,
-    /// The torque [N m], counter-clockwise.
+    /// Torque [N m], counter-clockwise positive.
     pub torque: f64,
 }
 
 impl ConstantForce {
-    /// A force at a point, and a torque, on a body.
+    /// Makes the law for one body, with a name for messages and the ledger.
     #[must_use]
     pub fn new(name: impl Into<String>, body: BodyId, push: Push) -> Self {
         Self { name: name.into(), body: [body], push }

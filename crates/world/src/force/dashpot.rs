@@ -4,9 +4,9 @@ use super::anchor::{Between, bodies_of};
 use super::{ForceLaw, Snapshot, Wrenches};
 use halfgap_collision::{Anchor, BodyId};
 
-/// A force of -damping times the rate of the distance of two points [N], along the line between them.
+/// A dashpot between two points: a force of -damping times the rate of their distance [N], along the line between them.
 ///
-/// Where the points coincide the line has no direction: there it exerts no force.
+/// Where the points coincide the line has no direction, and the dashpot exerts no force.
 #[derive(Clone, Debug)]
 pub struct Dashpot {
     name: String,
@@ -16,7 +16,7 @@ pub struct Dashpot {
 }
 
 impl Dashpot {
-    /// The dashpot of a damping [N s/m] between two points.
+    /// Makes the dashpot of a damping [N s/m] between two points, with a name for messages and the ledger.
     #[must_use]
     pub fn new(name: impl Into<String>, ends: [Anchor; 2], damping: f64) -> Self {
         Self { name: name.into(), ends, damping, bodies: bodies_of(&ends) }

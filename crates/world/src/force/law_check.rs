@@ -1,4 +1,4 @@
-//! What tests ask of every law: forces that are gradients, and pushes that cancel.
+//! Tests common to the laws: forces are gradients of the potential, forces and torques of a pair cancel.
 
 use super::{ForceLaw, Moving, Snapshot, Wrench, Wrenches};
 use glam::DVec2;
@@ -6,11 +6,11 @@ use halfgap_collision::BodyState;
 
 /// Step of finite differences [m, rad].
 const STEP: f64 = 1e-4;
-/// Forces larger than this [N] are there at all.
+/// Least size [N] of the largest force in a test.
 const NOTICEABLE: f64 = 1e-3;
-/// Part of the largest force by which a finite difference may miss it [1, m for torques].
+/// Error allowed in a finite difference, as a fraction of the largest force [-, m for torques].
 const DIFFERENCE_ERROR: f64 = 1e-6;
-/// Part of the largest force that rounding may leave of a sum that is zero [1, m for torques].
+/// Rounding allowed in a sum that is zero, as a fraction of the largest force [-, m for torques].
 const SUM_ROUNDING: f64 = 1e-14;
 
 pub(super) type Pushed = Wrench;

@@ -1,12 +1,11 @@
-//! Force laws: what acts on bodies beside uniform gravity and damping.
+//! Force laws: forces and torques on bodies beside uniform gravity and damping.
 //!
-//! Each law is a type of its own that implements [`ForceLaw`]: [`MutualGravity`], [`Spring`], [`Dashpot`],
-//! [`ConstantForce`], [`RotatingForce`], or yours. `anchor` is points that move with bodies, `sum` adds up what
-//! several laws do.
+//! Each law is a type that implements [`ForceLaw`]: [`MutualGravity`], [`Spring`], [`Dashpot`], [`ConstantForce`],
+//! [`RotatingForce`], or yours. The module `anchor` holds points that move with bodies, `sum` adds up several laws.
 //!
-//! A law has a potential only if its forces are the gradient of one at all times. Mutual gravity and springs have; a
-//! constant force has none, although its size never changes: one that turns with its body, or that acts at a point
-//! fixed in the world, does work around a closed loop of positions and angles.
+//! A law has a potential V only if its force is -dV/dx at all times, over all positions and angles x. Mutual gravity
+//! and springs have one; a constant force has none, although its size never changes: whether it turns with its body or
+//! acts at a point fixed in the world, it does work around a closed loop of positions and angles.
 //!
 //! # A law of your own
 //!

@@ -1,13 +1,13 @@
-//! Attraction of all bodies of a list by each other.
+//! Gravity between all bodies of a list.
 
 use super::{ForceLaw, Snapshot, Wrenches};
 use glam::DVec2;
 use halfgap_collision::BodyId;
 
-/// Attraction of G m1 m2/r^2 [N] between the centres of mass of every two bodies, of which one at least can move.
+/// Attraction of G m1 m2/r^2 [N] between the centres of mass of every two bodies, at least one of which is movable.
 ///
-/// One law for all of them: every body pulls at every other, so they share their steps anyway. It has the potential
-/// -sum G m1 m2/r. Two centres at one point, where neither force nor potential exists, do not attract each other.
+/// One law holds for all of them: every body pulls every other, so they share their steps anyway. It has the potential
+/// -sum G m1 m2/r [J]. Two centres at one point, where neither force nor potential exists, do not attract each other.
 #[derive(Clone, Debug)]
 pub struct MutualGravity {
     name: String,
@@ -21,7 +21,8 @@ pub struct MutualGravity {
 }
 
 impl MutualGravity {
-    /// The law of a strength G [m^3/(kg s^2)] between movable and fixed bodies, each with its mass [kg].
+    /// Makes the law of a strength G [m^3/(kg s^2)] between movable and fixed bodies, each with its mass [kg], with a
+    /// name for messages.
     #[must_use]
     pub fn new(
         name: impl Into<String>,
@@ -33,8 +34,8 @@ impl MutualGravity {
         Self { name: name.into(), strength, bodies, masses, movable: movable.len() }
     }
 
-    /// Calls back with each pair of bodies, as places in the list, the offset from the first to the second [m], and
-    /// G m1 m2 [N m^2]; pairs at one point are left out.
+    /// Calls `visit` for each pair of bodies, with their places in the list, the offset from the first to the second
+    /// [m], and G m1 m2 [N m^2]; pairs at one point are left out.
     fn visit_pairs(&self, now: &Snapshot<'_>, mut visit: impl FnMut([usize; 2], DVec2, f64)) {
         for i in 0..self.movable {
             let position = now.body(self.bodies[i]).pose.position;
@@ -131,7 +132,7 @@ mod tests {
         states[1].position = states[0].position;
         let sums = wrenches(&law(), &states);
         assert!(sums.iter().all(|sum| sum.force.is_finite()));
-        // What is left is the third body.
+        // Only the third body attracts.
         let third = MutualGravity::new("", 1.5, &[(BodyId(0), 2.0)], &[(BodyId(2), 50.0)]);
         assert_eq!(sums[0], wrenches(&third, &states)[0]);
     }

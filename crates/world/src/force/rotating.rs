@@ -7,8 +7,7 @@ use halfgap_geometry::Rotation;
 
 /// A force of constant size at a point of a body, whose direction in the body's frame turns at a constant rate.
 ///
-/// At time t its angle to the body's x axis is phase + rate (t - start): the phase is the direction at the start of the
-/// run, whatever the clock says then. It has no potential.
+/// At time t its angle to the body's x axis is phase + rate (t - start), counter-clockwise. It has no potential.
 #[derive(Clone, Debug)]
 pub struct RotatingForce {
     name: String,
@@ -17,21 +16,21 @@ pub struct RotatingForce {
     turning: Turning,
 }
 
-/// How a rotating force turns.
+/// Size, rate and phase of a [`RotatingForce`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turning {
-    /// Size of the force [N]; negative turns it round.
+    /// Size of the force [N]; a negative one points the other way.
     pub magnitude: f64,
-    /// How fast it turns in the body's frame [rad/s].
+    /// Rate at which the direction turns in the body's frame [rad/s], counter-clockwise positive.
     pub rate: f64,
-    /// Its direction in the body's frame at `start` [rad].
+    /// Direction in the body's frame at `start` [rad], from the x axis, counter-clockwise positive.
     pub phase: f64,
-    /// When it has that direction [s].
+    /// Time at which the direction is `phase` [s]; in scene files the start of the run.
     pub start: f64,
 }
 
 impl RotatingForce {
-    /// The force that turns at a point of a body; on the background it does nothing.
+    /// Makes the law for a point of a body, with a name for messages and the ledger; on the background it does nothing.
     #[must_use]
     pub fn new(name: impl Into<String>, at: Anchor, turning: Turning) -> Self {
         Self { name: name.into(), body: [at.body], point: at.point, turning }

@@ -4,10 +4,11 @@ use super::anchor::{Between, bodies_of};
 use super::{ForceLaw, Snapshot, Wrenches};
 use halfgap_collision::{Anchor, BodyId};
 
-/// A spring that pulls its two points together with stiffness (length - rest length) [N], or pushes them apart.
+/// A spring that pulls its two points together with stiffness (length - rest length) [N], or pushes them apart where it
+/// is shorter.
 ///
-/// It has the potential stiffness (length - rest length)^2/2. Where its points coincide it has no direction: there it
-/// exerts no force. With a rest length of 0 that is the limit from all sides.
+/// It has the potential stiffness (length - rest length)^2/2 [J]. Where its points coincide it has no direction and
+/// exerts no force; with a rest length of 0 that is the limit from all sides.
 #[derive(Clone, Debug)]
 pub struct Spring {
     name: String,
@@ -18,7 +19,7 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// The spring of a rest length [m] and a stiffness [N/m] between two points.
+    /// Makes the spring of a rest length [m] and a stiffness [N/m] between two points, with a name for messages.
     #[must_use]
     pub fn new(name: impl Into<String>, ends: [Anchor; 2], rest_length: f64, stiffness: f64) -> Self {
         Self { name: name.into(), ends, rest_length, stiffness, bodies: bodies_of(&ends) }

@@ -1,14 +1,14 @@
-//! What several laws do together.
+//! Sums over several laws.
 
 use super::{ForceLaw, Snapshot, Wrench, Wrenches};
 use std::sync::Arc;
 
-/// The sum of the potentials of those laws that have one [J].
+/// Returns the sum of the potentials of the laws that have one [J].
 pub(crate) fn potential_of(laws: &[Arc<dyn ForceLaw>], now: &Snapshot<'_>) -> f64 {
     laws.iter().filter_map(|law| law.potential(now)).sum()
 }
 
-/// The sums of forces and torques on each of `bodies` bodies.
+/// Returns the sums of forces and torques on each of `bodies` bodies.
 pub(crate) fn wrenches_of(laws: &[Arc<dyn ForceLaw>], now: &Snapshot<'_>, bodies: usize) -> Vec<Wrench> {
     let mut sums = vec![Wrench::default(); bodies];
     for law in laws {

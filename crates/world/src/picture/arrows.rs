@@ -1,4 +1,4 @@
-//! Forces as arrows: from where each acts, on every movable body that it acts on.
+//! Forces as arrows, from the point of each force, for every movable body that it acts on.
 
 use super::svg::{Svg, TextStyle, number};
 use super::ticks::{label, round_step};
@@ -10,10 +10,11 @@ use glam::DVec2;
 const COLOR: &str = "#c4262e";
 /// Length of the arrow of the greatest force of a recording [px].
 const LONGEST: f64 = 90.0;
-/// Shorter arrows than this are not drawn [px].
+/// Length of the shortest arrow that is drawn [px].
 const SHORTEST: f64 = 1.5;
-/// Length and half width of an arrow's head, at most that part of the arrow [px].
+/// Length and half-width of an arrow's head [px].
 const HEAD: (f64, f64) = (9.0, 3.5);
+/// Largest length of an arrow's head, as a fraction of the arrow.
 const HEAD_SHARE: f64 = 0.6;
 
 /// A force on the first of two bodies at a point; the other gets the opposite.
@@ -23,14 +24,14 @@ struct Push {
     force: DVec2,
 }
 
-/// How many pixels a newton is, and the forces drawn with it.
+/// Scale of the arrows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ForceScale {
     pixels_per_newton: f64,
 }
 
 impl ForceScale {
-    /// The scale that all pictures of a recording share; `None` if it has no forces.
+    /// Returns the scale that all pictures of a recording share; `None` if it has no forces.
     pub(super) fn of(recording: &Recording) -> Option<Self> {
         let sizes = recording.frames.iter().flat_map(pushes).map(|push| push.force.length());
         let greatest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
@@ -52,7 +53,7 @@ impl ForceScale {
         svg.close_group();
     }
 
-    /// Draws a round force as a key, its right end at a point of the page.
+    /// Draws a key, an arrow of a round force, with its right end at a point of the page.
     pub(super) fn draw_key(self, svg: &mut Svg, (right, y): (f64, f64)) {
         let force = round_step(LONGEST / self.pixels_per_newton, 1.5);
         let text = format!("{} N", label(force, force));
@@ -84,7 +85,7 @@ impl ForceScale {
     }
 }
 
-/// The forces of a frame; the rows of one connector are one force.
+/// Returns the forces of a frame; the rows of one connector are one force.
 fn pushes(frame: &Frame) -> Vec<Push> {
     let mut pushes: Vec<Push> = Vec::new();
     for contact in &frame.forces {

@@ -3,7 +3,7 @@
 use super::svg::{Svg, TextStyle, number};
 use super::ticks::{label, round_step, ticks};
 
-/// A range narrower than this part of its values is drawn as a flat line.
+/// Width of a range, as a fraction of its values, below which it is drawn as a flat line.
 const FLAT: f64 = 1e-9;
 
 /// Width of a plot's page [px].
@@ -23,7 +23,8 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Axes for the given times and values, widened where they have no extent, on a plot of the given height [px].
+    /// Makes axes for the given times and values, widened where they have no extent, on a plot of the given height
+    /// [px].
     pub(super) fn new(times: (f64, f64), values: (f64, f64), plot_height: f64) -> Self {
         let values = widened(values);
         let margin = 0.05 * (values.1 - values.0);
@@ -31,7 +32,7 @@ impl Axes {
         Self { time: widened(times), value, height: plot_height }
     }
 
-    /// Axes whose value counts lanes, from 0 at the top.
+    /// Makes axes whose value counts lanes, from 0 at the top.
     pub(super) fn lanes(times: (f64, f64), count: usize, lane_height: f64) -> Self {
         let count = count.max(1) as f64;
         Self { time: widened(times), value: (count, 0.0), height: count * lane_height }
@@ -93,7 +94,7 @@ impl Axes {
     }
 }
 
-/// A range that has an extent which can be drawn.
+/// Returns a range with an extent that can be drawn.
 fn widened((low, high): (f64, f64)) -> (f64, f64) {
     if !(low.is_finite() && high.is_finite() && (high - low).is_finite()) {
         return (0.0, 1.0);

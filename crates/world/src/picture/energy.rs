@@ -6,10 +6,10 @@ use crate::recording::{Frame, Recording};
 use std::fmt::Write;
 
 const PLOT_HEIGHT: f64 = 320.0;
-/// More points of a curve than this are thinned out.
+/// Largest number of points of a curve; more are thinned out.
 const MOST_POINTS: usize = 4000;
 
-/// A curve: name, colour, width, and which energy it shows.
+/// A curve: name, colour, width, and the energy that it shows.
 type Curve = (&'static str, &'static str, &'static str, fn(&Frame) -> f64);
 
 const CURVES: [Curve; 3] = [
@@ -18,7 +18,7 @@ const CURVES: [Curve; 3] = [
     ("total", "#22272b", "2", |frame| frame.energy.total()),
 ];
 
-/// Draws the energies of a recording.
+/// Draws kinetic, potential and total energy of a recording over time, and returns the SVG document.
 #[must_use]
 pub fn energy_picture(recording: &Recording) -> String {
     let frames = &recording.frames;
@@ -43,7 +43,7 @@ pub fn energy_picture(recording: &Recording) -> String {
     svg.finish()
 }
 
-/// Least and largest of the finite values.
+/// Returns the least and the largest of the finite values.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values
         .filter(|value| value.is_finite())

@@ -8,14 +8,14 @@ use crate::recording::Recording;
 use std::collections::BTreeMap;
 
 const LANE_HEIGHT: f64 = 26.0;
-/// More bodies than this share lanes.
+/// Largest number of lanes; more bodies share them.
 const MOST_LANES: usize = 40;
 /// Largest and smallest radius of a dot [px].
 const RADII: (f64, f64) = (8.0, 1.5);
-/// Width [px] in which only the greatest impact of a lane is drawn.
+/// Width of a column [px], in which only the greatest impact of a lane is drawn.
 const COLUMN: f64 = 0.5;
 
-/// Draws the impacts of a recording.
+/// Draws the impacts of a recording on a time line, and returns the SVG document.
 #[must_use]
 pub fn events_picture(recording: &Recording) -> String {
     let ends = [recording.frames.first(), recording.frames.last()].map(|frame| frame.map(|frame| frame.time));
@@ -40,7 +40,7 @@ pub fn events_picture(recording: &Recording) -> String {
     svg.finish()
 }
 
-/// The greatest impulse in each column of each lane, so that a million impacts still make a picture.
+/// Returns the greatest impulse in each column of each lane, so that a million impacts still make a picture.
 fn dots(recording: &Recording, axes: &Axes, per_lane: usize) -> BTreeMap<(usize, i64), f64> {
     let mut greatest = BTreeMap::new();
     for impact in &recording.impacts {

@@ -2,7 +2,7 @@
 //!
 //! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `view` maps
 //! the world to the page; `scene` (with forces as `arrows` and connectors as `ties`), `energy` and `events`
-//! are one picture each, the latter two on the `axes` they share.
+//! are one picture each, the latter two on common `axes` with round `ticks`.
 
 mod arrows;
 mod axes;

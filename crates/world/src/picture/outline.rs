@@ -1,4 +1,4 @@
-//! The outline of a shape as SVG path data. This is the one place that reads edges.
+//! The outline of a shape as SVG path data.
 
 use super::svg::number;
 use super::view::View;
@@ -6,7 +6,7 @@ use glam::DVec2;
 use halfgap_geometry::{Arc, Edge, Pose, Shape};
 use std::fmt::Write;
 
-/// Path data of a posed shape; drawn with the even-odd rule, holes stay open.
+/// Returns the path data of a posed shape; drawn with the even-odd rule, holes stay open.
 pub(super) fn path_data(shape: &Shape, pose: &Pose, view: &View) -> String {
     let mut data = String::new();
     for path in shape.paths() {

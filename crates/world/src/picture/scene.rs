@@ -14,19 +14,19 @@ use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeMap;
 
-/// Fixed bodies that reach no farther than this beyond what moves are shown whole, as part of the size of that.
+/// Distance beyond the moving bodies within which fixed bodies are shown whole, as a fraction of the size of the box
+/// that the moving bodies cover.
 const NEAR: f64 = 1.5;
-/// Of larger ones this much is shown.
+/// Distance beyond the moving bodies up to which larger fixed bodies are shown, as a fraction of that size.
 const SURROUNDINGS: f64 = 0.35;
-/// More points of a trail than this are thinned out.
+/// Largest number of points of a trail; more are thinned out.
 const LONGEST_TRAIL: usize = 4000;
-/// So are trails that have more points than this together.
+/// Largest number of points of all trails together; more are thinned out.
 const MOST_POINTS: usize = 200_000;
-/// The time in the title is rounded to this [s].
+/// Step to which the time in the title is rounded [s].
 const TITLE_TIME_STEP: f64 = 1e-3;
 
-/// What the pictures of a recording have in common: what they show of the world, the trails, and the scale of
-/// the forces are those of all of it.
+/// Pictures of a recording with a common view of the world, common trails and a common scale of the forces.
 #[derive(Debug)]
 pub struct ScenePictures<'a> {
     world: &'a World,
@@ -38,7 +38,7 @@ pub struct ScenePictures<'a> {
 }
 
 impl<'a> ScenePictures<'a> {
-    /// Makes ready for pictures of a world at times of its recording.
+    /// Prepares pictures of a world at times of its recording.
     #[must_use]
     pub fn new(world: &'a World, recording: &'a Recording) -> Self {
         let view = View::of_box(shown_box(world, recording));
@@ -46,7 +46,7 @@ impl<'a> ScenePictures<'a> {
         Self { world, recording, view, trails, forces: ForceScale::of(recording) }
     }
 
-    /// Draws the bodies as they are in a frame, and the forces of contacts and connectors.
+    /// Draws the bodies in a frame, with the forces of contacts and connectors, and returns the SVG document.
     #[must_use]
     pub fn at(&self, frame: &Frame) -> String {
         let Self { world, recording, view, trails, forces } = self;
@@ -85,7 +85,7 @@ impl<'a> ScenePictures<'a> {
     }
 }
 
-/// One picture of a recording, as [`ScenePictures`] draws it: these are quicker where there are several.
+/// Draws one picture of a recording, and returns the SVG document; for several, [`ScenePictures`] is quicker.
 #[must_use]
 pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> String {
     ScenePictures::new(world, recording).at(frame)
@@ -95,7 +95,7 @@ fn pose(state: &BodyState) -> Pose {
     Pose::new(state.position, state.angle)
 }
 
-/// What moves, wherever it goes, and what is fixed near that.
+/// Returns the box of the moving bodies in all frames, and of the fixed bodies near it.
 fn shown_box(world: &World, recording: &Recording) -> Option<Aabb> {
     let every = recording.frames.len().div_ceil(LONGEST_TRAIL).max(1);
     let frames = recording.frames.iter().step_by(every).chain(recording.frames.last());
@@ -124,7 +124,7 @@ fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
     svg.text((20.0, 47.0), subtitle, &format!("t = {} s", label(frame.time, TITLE_TIME_STEP)));
 }
 
-/// The paths of the centres of mass at output times and at impacts, where trails have their corners.
+/// Returns the paths of the centres of mass through output times and impacts, where trails have their corners.
 fn trails(recording: &Recording, view: &View) -> Vec<String> {
     let mut impacts: BTreeMap<BodyId, Vec<(f64, DVec2)>> = BTreeMap::new();
     for impact in &recording.impacts {
@@ -144,14 +144,14 @@ fn trails(recording: &Recording, view: &View) -> Vec<String> {
     recording.movable.iter().enumerate().map(&mut trail).collect()
 }
 
-/// The path of a trail, thinned out to so many points.
+/// Returns the path data of a trail, thinned out to about `longest` points.
 fn trail_data(points: &[(f64, DVec2)], longest: usize, view: &View) -> String {
     let every = points.len().div_ceil(longest).max(1);
     let (mut data, mut last) = (String::new(), String::new());
     for &(_, position) in points.iter().step_by(every).chain(points.last()) {
         let point = view.to_page(position);
         let shown = format!("{} {}", number(point.0), number(point.1));
-        // What stands still leaves one point, not one for each output.
+        // A body that stands still leaves one point, not one for each output.
         if shown != last {
             data.push(if data.is_empty() { 'M' } else { 'L' });
             data.push_str(&shown);
@@ -161,7 +161,7 @@ fn trail_data(points: &[(f64, DVec2)], longest: usize, view: &View) -> String {
     data
 }
 
-/// Draws a body, its centre of mass, and a line that shows how far it has turned.
+/// Draws a body, its centre of mass, and a line that shows its angle.
 fn draw_movable(svg: &mut Svg, world: &World, body: BodyId, drawn: (usize, &BodyState), view: &View) {
     let (place, state) = drawn;
     let pose = pose(state);

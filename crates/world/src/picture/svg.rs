@@ -8,7 +8,7 @@ pub(super) struct Svg {
     text: String,
 }
 
-/// A font size [px] and how a text stands to its point.
+/// Font size [px], anchor and colour of a text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextStyle {
     pub(super) size: f64,
@@ -75,7 +75,7 @@ impl Svg {
         let _ = writeln!(self.text, "{}</text>", escaped(text));
     }
 
-    /// The whole document.
+    /// Returns the whole document.
     pub(super) fn finish(mut self) -> String {
         self.text.push_str("</svg>\n");
         self.text
@@ -90,7 +90,7 @@ impl Svg {
     }
 }
 
-/// A coordinate to a thousandth of a pixel, without needless zeros.
+/// Formats a coordinate to a thousandth of a pixel, without needless zeros.
 pub(super) fn number(value: f64) -> String {
     if !value.is_finite() {
         return "0".to_owned();
@@ -108,7 +108,7 @@ fn escaped(text: &str) -> String {
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
             '"' => safe.push_str("&quot;"),
-            // XML has no way to say most control characters.
+            // XML cannot represent most control characters.
             other if other.is_control() => safe.push(' '),
             other => safe.push(other),
         }

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-/// Sizes of numbers that a label writes without an exponent.
+/// Sizes of numbers that are written without an exponent.
 const PLAIN: Range<f64> = 1e-4..1e6;
 
-/// A round step (1, 2 or 5 times a power of ten) of which about `count` fit into `range`.
+/// Returns a round step (1, 2 or 5 times a power of ten) of which about `count` fit into `range`.
 pub(super) fn round_step(range: f64, count: f64) -> f64 {
     let rough = range / count;
     if !(rough.is_finite() && rough > 0.0) {
@@ -22,7 +22,7 @@ pub(super) fn round_step(range: f64, count: f64) -> f64 {
     round * power
 }
 
-/// The multiples of a round step from `low` to `high`; at most a few more than `count`.
+/// Returns the multiples of a round step from `low` to `high`, about `count` of them.
 pub(super) fn ticks(low: f64, high: f64, count: f64) -> Vec<f64> {
     let step = round_step(high - low, count);
     let first = (low / step).ceil();
@@ -35,7 +35,7 @@ pub(super) fn ticks(low: f64, high: f64, count: f64) -> Vec<f64> {
     (0..=steps).map(|index| (first + index as f64) * step).collect()
 }
 
-/// A number for a label: plain where that is short, else with an exponent.
+/// Formats a number of an axis with a step: without an exponent where that is short.
 pub(super) fn label(value: f64, step: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -1,6 +1,5 @@
-//! What ties bodies: rails as the curves that they are, their stops as bars across, rods and ropes as lines
-//! between their points, pins and slots as small rings, those of slots on a line along which they slide,
-//! springs and dashpots as zigzags.
+//! Connectors and springs: rails as curves, their stops as bars across, rods and ropes as lines between their points,
+//! pins as small rings, slots as small rings on a line along which they slide, springs and dashpots as zigzags.
 
 use super::svg::{Svg, number};
 use super::view::View;
@@ -11,23 +10,25 @@ use halfgap_collision::{Anchor, BodyId, ConnectorKind, RailPath, SlotFrame};
 use halfgap_geometry::Aabb;
 use std::fmt::Write;
 
-/// A rail is drawn through so many points, and its joints.
+/// Number of evenly spaced pieces of a drawn rail, besides its knots.
 const RAIL_POINTS: usize = 256;
 /// Radius of the ring of a pin or a slot [px].
 const RING: f64 = 3.5;
-/// The line of a slot reaches so far to either side of its ring [px].
+/// Length of the line of a slot to either side of its ring [px].
 const SLOT: f64 = 12.0;
 const COLOR: &str = "#4c5459";
 
-/// Teeth of the zigzag of a spring, their height [px], and the part of it at each end that is straight.
+/// Number of teeth of the zigzag of a spring.
 const TEETH: usize = 8;
+/// Height of a tooth of the zigzag [px].
 const TOOTH: f64 = 5.0;
+/// Straight part at each end of the zigzag, as a fraction of its length.
 const STRAIGHT: f64 = 0.15;
-/// A stop's bar reaches so far to either side of its rail [px].
+/// Length of the bar of a stop to either side of its rail [px].
 const BAR: f64 = 7.0;
 const LINE: [(&str, &str); 3] = [("fill", "none"), ("stroke", COLOR), ("stroke-width", "1.5")];
 
-/// The boxes of what is tied to the world: rails, and points of the background.
+/// Returns the boxes of rails, and of points of the background to which connectors or springs are tied.
 pub(super) fn fixed_boxes(world: &World) -> impl Iterator<Item = Aabb> + '_ {
     let of_connectors = world.connectors().iter().flat_map(|connector| {
         let (a, b) = connector.anchors();
@@ -38,7 +39,7 @@ pub(super) fn fixed_boxes(world: &World) -> impl Iterator<Item = Aabb> + '_ {
     points.chain(world.connectors().iter().filter_map(|connector| Some(connector.path()?.bounds())))
 }
 
-/// The ends of springs and dashpots; of what lies side by side those of one.
+/// Returns the ends of springs and dashpots, once for laws that follow each other with the same ends.
 fn elastic_ties(world: &World) -> impl Iterator<Item = [Anchor; 2]> + '_ {
     let mut last = None;
     let ends = world.forces().iter().filter_map(|law| law.ends());
@@ -69,7 +70,7 @@ fn rail_data(path: &RailPath, view: &View) -> String {
     polyline(lengths.into_iter().map(|length| view.to_page(path.place_at(length).point())))
 }
 
-/// The data of a path through points of the page.
+/// Returns the path data of a polyline through points of the page.
 fn polyline(points: impl Iterator<Item = (f64, f64)>) -> String {
     let mut data = String::new();
     for (x, y) in points {
@@ -79,7 +80,8 @@ fn polyline(points: impl Iterator<Item = (f64, f64)>) -> String {
     data
 }
 
-/// Draws what ties bodies in a frame of a recording: ropes with dashes, rods without.
+/// Draws the connectors and springs in a frame of a recording, but for rails and stops: ropes with dashes, rods
+/// without.
 pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, frame: &Frame, view: &View) {
     let place_of = |anchor: &Anchor| view.to_page(place_of(world, recording, frame, anchor));
     for connector in world.connectors() {
@@ -107,7 +109,7 @@ pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, fra
     }
 }
 
-/// The path of a spring between two points of the page.
+/// Returns the path data of a spring between two points of the page.
 fn zigzag([a, b]: [(f64, f64); 2]) -> String {
     let [a, b] = [a, b].map(DVec2::from);
     let across = (b - a).normalize_or_zero().perp() * TOOTH;
@@ -120,7 +122,7 @@ fn zigzag([a, b]: [(f64, f64); 2]) -> String {
     polyline(points.map(|point| (point.x, point.y)))
 }
 
-/// Two points of the direction in which a slot slides, on what carries it.
+/// Returns two points along the direction in which a slot slides, on the body that carries it.
 fn slot_direction([a, b]: [&Anchor; 2], normal: DVec2, frame: SlotFrame) -> [Anchor; 2] {
     let carrier = match frame {
         SlotFrame::A => *a,
@@ -130,7 +132,7 @@ fn slot_direction([a, b]: [&Anchor; 2], normal: DVec2, frame: SlotFrame) -> [Anc
     [carrier, Anchor { point: carrier.point + normal.perp(), ..carrier }]
 }
 
-/// Where an anchor is in a frame.
+/// Returns the world position of an anchor in a frame [m].
 fn place_of(world: &World, recording: &Recording, frame: &Frame, anchor: &Anchor) -> DVec2 {
     if anchor.body.is_world() {
         return anchor.point;

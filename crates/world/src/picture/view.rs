@@ -3,18 +3,18 @@
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
-/// What is smaller than this part of its distance from the origin cannot be drawn larger.
+/// Least size of the box shown, as a fraction of its distance from the origin: smaller ones are lost in rounding.
 const LEAST_SIZE: f64 = 1e-9;
 
 /// Longer side of the part of the page that shows the world [px].
 const LONG_SIDE: f64 = 800.0;
-/// Shorter side at least [px].
+/// Least length of the shorter side of that part [px].
 const SHORT_SIDE: f64 = 240.0;
-/// Margin around it [px].
+/// Margin around that part [px].
 const MARGIN: f64 = 20.0;
-/// Room for the title above it [px].
+/// Height of the room for the title [px].
 pub(super) const HEAD: f64 = 56.0;
-/// Room for the scale bar below it [px].
+/// Height of the room for the scale bar [px].
 pub(super) const FOOT: f64 = 44.0;
 
 /// A map from the world to the page.
@@ -27,7 +27,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// The view that shows a box of the world; a box without size or limits is replaced by one that has them.
+    /// Makes the view that shows a box of the world; a box without size or limits is replaced by one that has them.
     pub(super) fn of_box(shown: Option<Aabb>) -> Self {
         let usable =
             |bounds: &Aabb| bounds.min.is_finite() && bounds.max.is_finite() && bounds.size().is_finite();
@@ -56,7 +56,7 @@ impl View {
         HEAD + self.height + FOOT
     }
 
-    /// Where a point of the world [m] is on the page [px].
+    /// Returns the position on the page [px] of a point of the world [m].
     pub(super) fn to_page(self, point: DVec2) -> (f64, f64) {
         let offset = (point - self.center) * self.scale;
         (0.5 * self.width + offset.x, HEAD + 0.5 * self.height - offset.y)

@@ -1,23 +1,24 @@
-//! Recordings as tables of comma separated values, whose headers give the units.
+//! Recordings as tables of comma-separated values, whose headers give the units.
 //!
 //! Numbers have the shortest form that reads back as the same bits.
 
 use super::Recording;
 use crate::event::ContactForce;
+use std::borrow::Cow;
 use std::io::{self, Write};
 
-/// Columns of a force; the connector's is empty where bodies touch.
+/// Columns of a force; `connector` is empty for bodies that touch.
 const FORCE_HEADER: &str = "primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]";
 
 impl Recording {
     /// Writes a line for each movable body at each output time.
     ///
     /// # Errors
-    /// Whatever the writer fails with.
+    /// Errors of the writer.
     pub fn write_states_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         let header = "time [s],body,x [m],y [m],angle [rad],vx [m/s],vy [m/s],angular_velocity [rad/s]";
         writeln!(out, "{header}")?;
-        let names: Vec<_> = self.movable.iter().map(|&body| quoted(self.name(body))).collect();
+        let names: Vec<_> = self.movable.iter().map(|&body| csv_field(self.name(body))).collect();
         for frame in &self.frames {
             for (name, state) in names.iter().zip(&frame.states) {
                 let (position, velocity) = (state.position, state.velocity);
@@ -29,10 +30,10 @@ impl Recording {
         Ok(())
     }
 
-    /// Writes a line for each row of each impact; the connector's column is empty where bodies touch.
+    /// Writes a line for each row of each impact; column `connector` is empty for bodies that touch.
     ///
     /// # Errors
-    /// Whatever the writer fails with.
+    /// Errors of the writer.
     pub fn write_impacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         write!(out, "impact,time [s],primary,normal_body,x [m],y [m],normal_x,normal_y,gap [m],")?;
         writeln!(
@@ -41,7 +42,8 @@ impl Recording {
         )?;
         for (index, impact) in self.impacts.iter().enumerate() {
             for row in &impact.rows {
-                let (primary, normal) = (quoted(self.name(row.primary)), quoted(self.name(row.normal_body)));
+                let (primary, normal) =
+                    (csv_field(self.name(row.primary)), csv_field(self.name(row.normal_body)));
                 let place = numbers([row.point.x, row.point.y, row.normal.x, row.normal.y, row.gap]);
                 let blow = numbers([row.velocity_before, row.velocity_after, row.impulse]);
                 let connector = row.connector.map(|id| id.0.to_string()).unwrap_or_default();
@@ -55,7 +57,7 @@ impl Recording {
     /// Writes a line for each contact that began or ended.
     ///
     /// # Errors
-    /// Whatever the writer fails with.
+    /// Errors of the writer.
     pub fn write_contacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "change,time [s],{FORCE_HEADER}")?;
         for record in &self.contacts {
@@ -68,7 +70,7 @@ impl Recording {
     /// Writes a line for each contact and each direction of a connector at each output time.
     ///
     /// # Errors
-    /// Whatever the writer fails with.
+    /// Errors of the writer.
     pub fn write_forces_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "time [s],{FORCE_HEADER}")?;
         for frame in &self.frames {
@@ -81,17 +83,17 @@ impl Recording {
     }
 
     fn write_force(&self, out: &mut dyn Write, force: &ContactForce) -> io::Result<()> {
-        let [primary, normal] = force.bodies.map(|body| quoted(self.name(body)));
+        let [primary, normal] = force.bodies.map(|body| csv_field(self.name(body)));
         let connector = force.connector.map(|id| id.0.to_string()).unwrap_or_default();
         let (point, direction) = (force.point, force.normal);
         let told = numbers([point.x, point.y, direction.x, direction.y, force.force]);
         writeln!(out, "{primary},{normal},{connector},{told}")
     }
 
-    /// Writes a line for each output time.
+    /// Writes a line with the energies for each output time.
     ///
     /// # Errors
-    /// Whatever the writer fails with.
+    /// Errors of the writer.
     pub fn write_energy_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "time [s],kinetic [J],potential [J],total [J]")?;
         for frame in &self.frames {
@@ -103,17 +105,18 @@ impl Recording {
     }
 }
 
-/// Numbers, with commas between them.
+/// Joins numbers by commas.
 fn numbers<const COUNT: usize>(values: [f64; COUNT]) -> String {
     values.map(|value| format!("{value:?}")).join(",")
 }
 
-/// A name, in quotes if it needs them.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
+/// Returns a text as a field of a CSV table: in quotes if it contains a comma, a quote or a line break (RFC 4180).
+#[must_use]
+pub fn csv_field(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {
-        name.to_owned()
+        Cow::Borrowed(text)
     }
 }
 
@@ -122,8 +125,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_awkward_names_are_quoted() {
-        assert_eq!(quoted("big ball"), "big ball");
-        assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
+    fn only_awkward_names_are_csv_field() {
+        assert_eq!(csv_field("big ball"), "big ball");
+        assert_eq!(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
     }
 }

@@ -77,10 +77,10 @@ struct RowJson<'a> {
 }
 
 impl Recording {
-    /// Writes everything as one JSON object.
+    /// Writes the recording as one JSON object.
     ///
     /// # Errors
-    /// Whatever the writer fails with.
+    /// Errors of the writer.
     pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
         let bodies = self.bodies.iter().map(|body| BodyJson { name: &body.name, fixed: body.fixed });
         let json = RecordingJson {

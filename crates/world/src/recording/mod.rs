@@ -1,7 +1,9 @@
-//! What a run leaves behind: states, energies and forces at output times, and all events in between.
+//! Recordings of runs: states, energies and forces at output times, and all events in between.
 
 mod csv;
 mod json;
+
+pub use csv::csv_field;
 
 use crate::event::{ContactEvent, ContactForce, Impact};
 use crate::ledger::Ledger;
@@ -9,45 +11,45 @@ use crate::scene::WORLD;
 use crate::world::{Energy, World};
 use halfgap_collision::{BodyId, BodyState};
 
-/// The recording of a run.
+/// The recording of a run. With [`Record::Ends`](crate::Record::Ends) it has no events, and frames at the ends only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// Title of the scene.
     pub title: String,
     /// All bodies, in the order of the scene.
     pub bodies: Vec<RecordedBody>,
-    /// The bodies whose states the frames hold, in that order: the movable ones.
+    /// The movable bodies; frames hold their states in this order.
     pub movable: Vec<BodyId>,
     /// States at output times, the first at the start.
     pub frames: Vec<Frame>,
-    /// Every impact.
+    /// Impacts, in order.
     pub impacts: Vec<Impact>,
-    /// Every contact that began or ended.
+    /// Contacts that began or ended, in order.
     pub contacts: Vec<ContactRecord>,
-    /// Where the energy went from the start to the last frame.
+    /// Changes of the energy from the start to the last frame, by their causes.
     pub ledger: Ledger,
 }
 
 /// A contact that began or ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRecord {
-    /// Which of both.
+    /// Whether the contact began or ended.
     pub change: ContactChange,
-    /// When, where and how strong.
+    /// Time, place and force.
     pub event: ContactEvent,
 }
 
-/// What became of a contact.
+/// Change of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactChange {
-    /// It began.
+    /// The contact began.
     Begins,
-    /// It ended.
+    /// The contact ended.
     Ends,
 }
 
 impl ContactChange {
-    /// The word for it in tables.
+    /// Name in tables: "begins" or "ends".
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -57,21 +59,21 @@ impl ContactChange {
     }
 }
 
-/// What a recording says about a body.
+/// A body of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedBody {
-    /// Its name.
+    /// Name of the body.
     pub name: String,
-    /// It is immovable.
+    /// Whether the body is immovable.
     pub fixed: bool,
 }
 
 /// The world at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// When [s].
+    /// The time [s].
     pub time: f64,
-    /// States of the movable bodies.
+    /// States of the movable bodies, in the order of [`Recording::movable`].
     pub states: Vec<BodyState>,
     /// Energy of all bodies.
     pub energy: Energy,
@@ -80,7 +82,7 @@ pub struct Frame {
 }
 
 impl Recording {
-    /// A recording of a world, without frames yet.
+    /// Makes a recording of a world, without frames yet.
     #[must_use]
     pub fn new(title: impl Into<String>, world: &World) -> Self {
         let bodies: Vec<_> = world
@@ -99,14 +101,14 @@ impl Recording {
         }
     }
 
-    /// The world as it is now.
+    /// Returns a frame of the world at its present time.
     #[must_use]
     pub fn frame_of(&self, world: &World) -> Frame {
         let states = self.movable.iter().map(|&body| world.state(body)).collect();
         Frame { time: world.time(), states, energy: world.energy(), forces: world.contact_forces() }
     }
 
-    /// Name of a body; "world" for the background.
+    /// Name of a body; "world" for the background, empty if there is no such body.
     #[must_use]
     pub fn name(&self, body: BodyId) -> &str {
         if body.is_world() {
@@ -115,7 +117,7 @@ impl Recording {
         self.bodies.get(body.0 as usize).map_or("", |body| &body.name)
     }
 
-    /// Place of a body among the movable ones.
+    /// Index of a body in [`Recording::movable`]; `None` for fixed bodies and the background.
     #[must_use]
     pub fn place(&self, body: BodyId) -> Option<usize> {
         self.movable.binary_search(&body).ok()

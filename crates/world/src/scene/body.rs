@@ -1,26 +1,26 @@
-//! Bodies as a scene file gives them.
+//! Bodies in a scene file.
 
 use super::shape::ShapeData;
 use super::vector::Vector;
 use serde::Deserialize;
 
-/// The name by which points refer to the immovable background. No body may have it.
+/// Name by which points refer to the immovable background; no body may have it.
 pub const WORLD: &str = crate::world::BACKGROUND;
 
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyData {
-    /// Its name, unique in the scene.
+    /// Name of the body, unique in the scene.
     pub name: String,
-    /// Immovable, as if of infinite mass.
+    /// Whether the body is immovable, as if of infinite mass.
     #[serde(default)]
     pub fixed: bool,
-    /// Its shape, in shape coordinates.
+    /// Shape of the body, in shape coordinates.
     pub shape: ShapeData,
-    /// Mass [kg]; a movable body has either this or a density.
+    /// Mass [kg]; a movable body has either a mass or a density.
     pub mass: Option<f64>,
-    /// Mass per area [kg/m²].
+    /// Mass per area [kg/m²], instead of the mass.
     pub density: Option<f64>,
     /// Moment of inertia about the centre of mass [kg·m²]; uniform over the shape if not given.
     pub moment: Option<f64>,
@@ -38,13 +38,13 @@ pub struct BodyData {
     /// Angular velocity at the start [rad/s].
     #[serde(default)]
     pub angular_velocity: f64,
-    /// Coefficient of restitution, 0 to 1; a pair uses the lesser of two.
+    /// Coefficient of restitution, 0 to 1; a pair of bodies uses the lesser.
     #[serde(default = "full_elasticity")]
     pub elasticity: f64,
-    /// Coulomb coefficient; a pair uses the geometric mean of two.
+    /// Coulomb coefficient of friction [-]; a pair of bodies uses the geometric mean. Not simulated yet.
     #[serde(default)]
     pub friction: f64,
-    /// Bodies with which this one never collides (nor they with it).
+    /// Names of bodies with which this one never collides, nor they with it.
     #[serde(default)]
     pub passes_through: Vec<String>,
 }

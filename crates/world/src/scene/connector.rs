@@ -1,4 +1,4 @@
-//! Connectors as a scene file gives them: what ties two bodies, or a body and the world, together.
+//! Connectors in a scene file, which tie two bodies, or a body and the world, together.
 
 use super::one_key::one_key_enum;
 use super::shape::EdgeData;
@@ -33,17 +33,17 @@ one_key_enum! {
     }
 }
 
-/// What every connector may say.
+/// Fields that every connector may have.
 ///
-/// Repeated in each connector rather than flattened into it, because flattening and the refusal of unknown fields do
-/// not go together in serde.
+/// They are repeated in each connector rather than flattened into it, because flattening and the refusal of unknown
+/// fields do not go together in serde.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConnectorOptions {
     /// Coefficient of restitution, if given.
     pub elasticity: Option<f64>,
-    /// The bodies collide with each other although they are joined.
+    /// Whether the bodies collide with each other although they are joined.
     pub collide: bool,
-    /// Body b (else a) is moved to satisfy the connector before the start.
+    /// Whether body b, or body a if b is missing or fixed, is moved to satisfy the connector before the start.
     pub align: bool,
 }
 
@@ -57,10 +57,10 @@ macro_rules! connector_data {
             /// Coefficient of restitution; by default 0 for pin, slot, rod and rail, the lesser of the
             /// bodies' for rope and rail_stop (1 for the world).
             pub elasticity: Option<f64>,
-            /// The bodies collide with each other although they are joined.
+            /// Whether the bodies collide with each other although they are joined.
             #[serde(default)]
             pub collide: bool,
-            /// Body b (else a) is moved to satisfy the connector before the start.
+            /// Whether body b, or body a if b is missing or fixed, is moved to satisfy the connector before the start.
             #[serde(default)]
             pub align: bool,
         }
@@ -90,9 +90,9 @@ connector_data! {
         a: PointData,
         /// The other point.
         b: PointData,
-        /// The direction, of any length but 0.
+        /// Direction along which the points are kept together, a vector of any length but 0.
         normal: Vector,
-        /// The frame in which the direction is given and stays constant.
+        /// Frame in which `normal` is given and stays constant.
         #[serde(default)]
         normal_frame: NormalFrame,
     }
@@ -117,7 +117,7 @@ connector_data! {
         a: PointData,
         /// The path.
         path: RailPath,
-        /// The spline through the points of the path is periodic.
+        /// Whether the path is closed: a spline through points is periodic, edges must end where they start.
         #[serde(default)]
         closed: bool,
     }
@@ -128,29 +128,29 @@ connector_data! {
     RailStopData {
         /// The point that is on the rail.
         a: PointData,
-        /// The rail's path.
+        /// The path of the rail.
         path: RailPath,
-        /// Arc length from the path's first point [m].
+        /// Position of the stop: arc length from the first point of the path [m].
         at: f64,
-        /// The rail ends above this arc length, else below it.
+        /// Whether the stop is the upper end of the rail (arc lengths beyond `at` are cut off), else the lower end.
         upper: bool,
     }
 }
 
-/// The frame of a slot's direction.
+/// Frame of a slot's direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NormalFrame {
-    /// It turns with body a.
+    /// The direction turns with body a.
     A,
-    /// It turns with body b.
+    /// The direction turns with body b.
     B,
-    /// It is constant in the world.
+    /// The direction is constant in the world.
     #[default]
     World,
 }
 
-/// The path of a rail: edges from a start, or the cubic spline through points.
+/// Path of a rail: edges from a start, or the cubic spline through points.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RailPath {
@@ -158,12 +158,12 @@ pub struct RailPath {
     pub start: Option<Vector>,
     /// The edges in order, with `start`.
     pub edges: Option<Vec<EdgeData>>,
-    /// Points of a spline [m], instead.
+    /// Points of a spline [m], instead of `start` and `edges`.
     pub points: Option<Vec<Vector>>,
 }
 
 impl ConnectorData {
-    /// Elasticity, and whether the bodies collide and are aligned.
+    /// Returns the fields that every connector may have.
     #[must_use]
     pub fn options(&self) -> ConnectorOptions {
         match self {
@@ -176,7 +176,7 @@ impl ConnectorData {
         }
     }
 
-    /// The points it ties together: `a`, and `b` where there is one.
+    /// Returns the points of the connector: `a`, and `b` if it has one.
     #[must_use]
     pub fn points(&self) -> (&PointData, Option<&PointData>) {
         match self {

@@ -1,15 +1,15 @@
-//! What is wrong with a scene, and where.
+//! Errors of scenes, with file, line and field.
 
 use super::field_path::FieldPath;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Why a scene could not be read, is not valid, or cannot be built.
+/// Error of a scene that cannot be read, is not valid, or cannot be built.
 ///
 /// Displays as `file:line: field: message`, as far as these are known.
 #[derive(Debug, thiserror::Error)]
 pub struct SceneError {
-    // Boxed, so that results stay small.
+    // Boxed, to keep results small.
     report: Box<Report>,
 }
 
@@ -26,9 +26,9 @@ struct Report {
 /// A position in a text, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// Line.
+    /// Line number.
     pub line: usize,
-    /// Column, in characters.
+    /// Column number, in characters.
     pub column: usize,
 }
 
@@ -37,7 +37,7 @@ pub struct Position {
 pub struct Excerpt {
     /// The text.
     pub text: String,
-    /// How many of its characters come before the place that is meant.
+    /// Number of its characters before the place of the error.
     pub before: usize,
 }
 
@@ -58,7 +58,7 @@ impl Excerpt {
 }
 
 impl SceneError {
-    /// An error at a field of the scene, or at the top where no single field is to blame.
+    /// Makes an error at a field of the scene, or at the top where no single field is to blame.
     ///
     /// The message starts lower case and names the offending value and its unit.
     #[must_use]
@@ -74,31 +74,31 @@ impl SceneError {
         self.report.file.as_deref()
     }
 
-    /// Where in the text.
+    /// Position in the text, if it is known.
     #[must_use]
     pub fn position(&self) -> Option<Position> {
         self.report.position
     }
 
-    /// The line of the text at that position.
+    /// The line of text at the position, cut to fit a terminal.
     #[must_use]
     pub fn excerpt(&self) -> Option<&Excerpt> {
         self.report.excerpt.as_ref()
     }
 
-    /// The field, or the top of the file.
+    /// Path of the field, or of the top of the file.
     #[must_use]
     pub fn field(&self) -> &FieldPath {
         &self.report.field
     }
 
-    /// What is wrong, without the place.
+    /// The message without file, line and field.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.report.message
     }
 
-    /// What kept the file from being read, where that was it.
+    /// The error of the file system, if the file could not be read.
     #[must_use]
     pub fn cause(&self) -> Option<&std::io::Error> {
         self.report.cause.as_ref()

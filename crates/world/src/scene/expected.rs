@@ -4,28 +4,28 @@ use super::vector::Vector;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// What is expected at one time. An entry with only a time says that the run must get there.
+/// States and energy expected at one time. An entry with only a time says that the run must get there.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectedData {
-    /// When [s].
+    /// The time [s].
     pub time: f64,
-    /// Largest difference of a position [m] or an angle [rad].
+    /// Largest difference allowed in a position [m] or an angle [rad].
     pub position_tolerance: Option<f64>,
-    /// Largest difference of a velocity [m/s] or an angular velocity [rad/s].
+    /// Largest difference allowed in a velocity [m/s] or an angular velocity [rad/s].
     pub velocity_tolerance: Option<f64>,
-    /// Change of the total energy since the start [J].
+    /// Expected change of the total energy since the start [J].
     pub energy_change: Option<f64>,
-    /// Largest difference of that change [J].
+    /// Largest difference allowed in `energy_change` [J].
     pub energy_tolerance: Option<f64>,
     /// Upper bound of the change of the total energy since the start [J].
     pub energy_change_below: Option<f64>,
-    /// States of bodies by their names.
+    /// Expected states of bodies by name.
     #[serde(default)]
     pub bodies: BTreeMap<String, ExpectedState>,
 }
 
-/// The expected state of a body, as far as it is known.
+/// Expected state of a body, as far as it is known.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectedState {

@@ -1,4 +1,4 @@
-//! Places in a scene file, such as `body[1].shape.disc.radius`.
+//! Paths to fields of a scene file, such as `body[1].shape.disc.radius`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -25,13 +25,13 @@ impl FieldPath {
         Self::default()
     }
 
-    /// The field `name` of the table at this path.
+    /// Returns the path of the field `name` of the table at this path.
     #[must_use]
     pub fn field(&self, name: impl Into<String>) -> Self {
         self.then(Step::Field(name.into()))
     }
 
-    /// The element `index` of the array at this path.
+    /// Returns the path of the element `index`, from 0, of the array at this path.
     #[must_use]
     pub fn element(&self, index: usize) -> Self {
         self.then(Step::Element(index))
@@ -62,7 +62,7 @@ impl FromIterator<Step> for FieldPath {
     }
 }
 
-/// A text that is no path to a field.
+/// Error for a text that is no path to a field.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a field is written like run.tolerance, body[0].position[1] or body.\"big ball\".mass, got {0}")]
 pub struct BadFieldPath(String);
@@ -70,7 +70,7 @@ pub struct BadFieldPath(String);
 impl FromStr for FieldPath {
     type Err = BadFieldPath;
 
-    /// Reads what `Display` writes.
+    /// Parses the form that `Display` writes.
     fn from_str(text: &str) -> Result<Self, BadFieldPath> {
         let bad = || BadFieldPath(text.to_owned());
         let (mut path, mut rest) = (Self::top(), text);
@@ -89,13 +89,13 @@ impl FromStr for FieldPath {
     }
 }
 
-/// The number of an element, and the text after its bracket.
+/// Reads the number of an element, and returns it with the text after its bracket.
 fn read_element(text: &str) -> Option<(Step, &str)> {
     let (number, after) = text.split_once(']')?;
     Some((Step::Element(number.parse().ok()?), after))
 }
 
-/// A name, bare or in quotes, and the text after it.
+/// Reads a name, bare or in quotes, and returns it with the text after it.
 fn read_name(text: &str) -> Option<(Step, &str)> {
     let Some(quoted) = text.strip_prefix('"') else {
         let end = text.find(['.', '[']).unwrap_or(text.len());
@@ -113,7 +113,7 @@ fn read_name(text: &str) -> Option<(Step, &str)> {
     None
 }
 
-/// The letter that is meant by what follows a backslash, as Rust writes it.
+/// Reads the rest of a Rust escape sequence after its backslash, and returns the character.
 fn escaped(letters: &mut std::str::CharIndices<'_>) -> Option<char> {
     Some(match letters.next()?.1 {
         'n' => '\n',

@@ -1,16 +1,17 @@
-//! Force laws as a scene file gives them.
+//! Force laws in a scene file.
 
 use super::connector::PointData;
 use super::one_key::one_key_enum;
 use super::vector::Vector;
+use crate::force::ForceFrame;
 use serde::Deserialize;
 
 one_key_enum! {
     /// A force law.
     ForceData: "force" {
-        /// The same acceleration for every body.
+        /// Uniform acceleration.
         "gravity" => Gravity(GravityData),
-        /// Forces against the velocities.
+        /// Forces and torques against the velocities.
         "damping" => Damping(DampingData),
         /// Attraction between centres of mass.
         "mutual_gravity" => MutualGravity(MutualGravityData),
@@ -23,27 +24,27 @@ one_key_enum! {
     }
 }
 
-/// The same acceleration for every body.
+/// Uniform acceleration.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityData {
     /// Acceleration [m/s²].
     pub acceleration: Vector,
-    /// The bodies it acts on; all if not given.
+    /// Names of the bodies it acts on; all if not given.
     pub bodies: Option<Vec<String>>,
 }
 
-/// Forces against the velocities.
+/// Forces and torques against the velocities.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DampingData {
-    /// Force per velocity of the centre of mass [N·s/m].
+    /// Force per velocity of the centre of mass [N·s/m], not negative.
     #[serde(default)]
     pub linear: f64,
-    /// Torque per angular velocity [N·m·s].
+    /// Torque per angular velocity [N·m·s], not negative.
     #[serde(default)]
     pub angular: f64,
-    /// The bodies it acts on; all if not given.
+    /// Names of the bodies it acts on; all if not given.
     pub bodies: Option<Vec<String>>,
 }
 
@@ -51,9 +52,9 @@ pub struct DampingData {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MutualGravityData {
-    /// Gravitational constant [m³/(kg·s²)].
+    /// Gravitational constant [m³/(kg·s²)]; a negative one repels.
     pub strength: f64,
-    /// The bodies it acts between; all if not given.
+    /// Names of the bodies it acts between; all that have a mass if not given.
     pub bodies: Option<Vec<String>>,
 }
 
@@ -65,11 +66,11 @@ pub struct SpringData {
     pub a: PointData,
     /// The other end.
     pub b: PointData,
-    /// Length without force [m].
+    /// Length at which the spring exerts no force [m].
     pub rest_length: f64,
-    /// Force per length [N/m].
+    /// Force per length [N/m], not negative.
     pub stiffness: f64,
-    /// Force per rate of the length [N·s/m].
+    /// Force per rate of the length [N·s/m], not negative.
     #[serde(default)]
     pub damping: f64,
 }
@@ -78,50 +79,39 @@ pub struct SpringData {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConstantData {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// Where the force acts, in coordinates of `frame` [m].
+    /// Point at which the force acts, in coordinates of `frame` [m].
     pub point: Vector,
-    /// The force, in coordinates of `frame` [N].
+    /// Force, in coordinates of `frame` [N].
     pub force: Vector,
-    /// Whether force and point turn with the body.
+    /// Frame of the point and the force.
     #[serde(default)]
     pub frame: ForceFrame,
-    /// An additional torque [N·m].
+    /// Torque besides that of the force [N·m], counter-clockwise positive.
     #[serde(default)]
     pub torque: f64,
-}
-
-/// The frame of a constant force and its point.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ForceFrame {
-    /// Both turn with the body.
-    Body,
-    /// Both are fixed in the world.
-    #[default]
-    World,
 }
 
 /// A force of constant size whose direction in the body's frame turns at a constant rate.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RotatingData {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// Where the force acts, in shape coordinates [m].
+    /// Point at which the force acts, in shape coordinates [m].
     pub point: Vector,
-    /// Its size [N].
+    /// Size of the force [N]; a negative one points the other way.
     pub magnitude: f64,
-    /// How fast it turns [rad/s].
+    /// Rate at which the direction turns in the body's frame [rad/s], counter-clockwise positive.
     pub rate: f64,
-    /// Its direction at the start [rad].
+    /// Direction in the body's frame at the start of the run [rad], from the x axis, counter-clockwise positive.
     #[serde(default)]
     pub phase: f64,
 }
 
 impl ForceData {
-    /// The bodies to which the law is limited, if it is one that can be and says so.
+    /// Names of the bodies to which the law is limited; `None` if it acts on all, or names its bodies in other fields.
     #[must_use]
     pub fn bodies(&self) -> Option<&[String]> {
         match self {

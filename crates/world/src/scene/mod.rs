@@ -1,8 +1,8 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
 //! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for
-//! messages, `varied` puts other numbers into one field, and `supported` refuses what is part of the format
-//! but not simulated yet. SI units, radians, counter-clockwise positive, y up.
+//! messages, `varied` puts other numbers into one field, and `supported` refuses fields of the format that are
+//! not simulated yet. SI units, radians, counter-clockwise positive, y up.
 
 mod body;
 mod connector;
@@ -29,10 +29,9 @@ pub use error::{Excerpt, Position, SceneError};
 pub use expected::{ExpectedData, ExpectedState};
 pub use field_path::{BadFieldPath, FieldPath, Step};
 pub use force::{
-    ConstantData, DampingData, ForceData, ForceFrame, GravityData, MutualGravityData, RotatingData,
-    SpringData,
+    ConstantData, DampingData, ForceData, GravityData, MutualGravityData, RotatingData, SpringData,
 };
-pub use run_data::{ImpactLaw, Integrator, RunData, Stabilization};
+pub use run_data::RunData;
 pub use shape::{
     ArcData, BlockData, DiscData, EdgeData, OutlineData, PathData, PolygonData, RingData, RoundedBlockData,
     ShapeData,
@@ -44,25 +43,25 @@ pub use vector::Vector;
 use serde::Deserialize;
 use std::path::Path;
 
-/// A scene: bodies, what ties them together, what acts on them, and how to run it.
+/// A scene: bodies, connectors, force laws, and how to run it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the format.
     pub format: FormatVersion,
-    /// A name for people.
+    /// Title, for people.
     pub title: String,
-    /// One line for people.
+    /// Description in one line, for people.
     pub about: Option<String>,
-    /// How long and how exactly to run.
+    /// Duration and accuracy of the run.
     pub run: RunData,
     /// The bodies.
     #[serde(default, rename = "body")]
     pub bodies: Vec<BodyData>,
-    /// What ties bodies together.
+    /// The connectors, which tie bodies together.
     #[serde(default, rename = "connector")]
     pub connectors: Vec<ConnectorData>,
-    /// What acts on bodies.
+    /// The force laws, which act on bodies.
     #[serde(default, rename = "force")]
     pub forces: Vec<ForceData>,
     /// States that a run is expected to reach.
@@ -73,7 +72,7 @@ pub struct Scene {
 /// Version of the scene format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum FormatVersion {
-    /// The first.
+    /// Version 1.
     #[default]
     #[serde(rename = "halfgap-scene-1")]
     One,
@@ -85,7 +84,7 @@ impl Scene {
     /// Use [`SceneSource`] to keep the text, so that later errors can name their line too.
     ///
     /// # Errors
-    /// The first thing that is wrong, with file, line and field.
+    /// [`SceneError`] for the first fault, with file, line and field.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         SceneSource::read(path)?.parse()
     }
@@ -93,7 +92,7 @@ impl Scene {
     /// Parses and validates a text.
     ///
     /// # Errors
-    /// The first thing that is wrong, with line and field.
+    /// [`SceneError`] for the first fault, with line and field.
     ///
     /// # Examples
     /// ```
@@ -116,7 +115,7 @@ impl Scene {
         SceneSource::new(text, format).parse()
     }
 
-    /// Checks what a world is built from.
+    /// Checks every value but the expected states.
     pub(crate) fn validate_world(&self) -> Result<(), SceneError> {
         validate::validate_world(self)
     }
@@ -124,23 +123,23 @@ impl Scene {
     /// Checks every value; data from a file have been checked already.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its field.
+    /// [`SceneError`] for the first value that breaks a rule, with its field.
     pub fn validate(&self) -> Result<(), SceneError> {
         validate::validate(self)
     }
 
-    /// Sets the relative accuracy; `origin` is what an error names instead of a field.
+    /// Sets the relative accuracy [-]; an error names `origin` instead of a field.
     ///
     /// # Errors
-    /// A tolerance that is not a positive number up to 1.
+    /// [`SceneError`] for a tolerance that is not a positive number up to 1.
     pub fn set_tolerance(&mut self, tolerance: f64, origin: &str) -> Result<(), SceneError> {
         self.set_run(RunData { tolerance, ..self.run.clone() }, origin)
     }
 
-    /// Sets the duration [s]; `origin` is what an error names instead of a field.
+    /// Sets the duration [s]; an error names `origin` instead of a field.
     ///
     /// # Errors
-    /// A duration that is not positive and finite, or that is lost in rounding.
+    /// [`SceneError`] for a duration that is not positive and finite, or that is lost in rounding.
     pub fn set_duration(&mut self, duration: f64, origin: &str) -> Result<(), SceneError> {
         self.set_run(RunData { duration, ..self.run.clone() }, origin)
     }
@@ -152,10 +151,10 @@ impl Scene {
         Ok(())
     }
 
-    /// Refuses what is part of the format but not simulated yet.
+    /// Refuses fields of the format that are not simulated yet.
     ///
     /// # Errors
-    /// The first field that is not supported.
+    /// [`SceneError`] for the first field that is not supported.
     pub fn check_supported(&self) -> Result<(), SceneError> {
         supported::check_supported(self)
     }

@@ -3,7 +3,7 @@
 //! serde's own externally tagged enums read the same form, but their message for two keys differs between formats and
 //! names neither key.
 
-/// The message where a second key stands beside the one that there must be, one of those that are known.
+/// Returns the message for a table that has the key `extra` beside `key`, one of the `known` ones.
 pub(super) fn misplaced(key: &str, extra: &str, known: &[&str]) -> String {
     let both = format!("must have exactly one key, found `{key}` and `{extra}`");
     if known.contains(&extra) { both } else { format!("{both}: what belongs to `{key}` goes into its table") }

@@ -1,4 +1,4 @@
-//! Shapes as a scene file gives them, in shape coordinates.
+//! Shapes in a scene file, in shape coordinates.
 
 use super::one_key::one_key_enum;
 use super::vector::Vector;
@@ -17,7 +17,7 @@ one_key_enum! {
         "polygon" => Polygon(PolygonData),
         /// The ring between two circles about the origin.
         "ring" => Ring(RingData),
-        /// Closed paths; what an odd number of them surrounds is solid.
+        /// Closed paths; points that an odd number of them surrounds are solid.
         "outline" => Outline(OutlineData),
     }
 }
@@ -52,7 +52,7 @@ pub struct RoundedBlockData {
     pub radius: f64,
 }
 
-/// A polygon, in either direction.
+/// A polygon, whose corners run in either direction.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PolygonData {
@@ -102,11 +102,11 @@ one_key_enum! {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ArcData {
-    /// Where the arc ends [m].
+    /// End point of the arc [m].
     pub to: Vector,
-    /// Center of its circle [m].
+    /// Centre of its circle [m].
     pub center: Vector,
-    /// Which way round it runs.
+    /// Whether the arc runs clockwise from its start to its end.
     #[serde(default)]
     pub clockwise: bool,
 }

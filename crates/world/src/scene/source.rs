@@ -9,13 +9,13 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Larger JSON files [bytes] are refused unread: scenes of 100,000 bodies fit.
+/// Largest size of a JSON file [bytes]; larger ones are refused unread. Scenes of 100,000 bodies fit.
 const LARGEST_JSON: u64 = 64 << 20;
-/// Larger TOML files [bytes] are refused unread. They are written by hand, and their parser needs up to fifty times as
-/// much memory.
+/// Largest size of a TOML file [bytes]; larger ones are refused unread. TOML is written by hand, and its parser needs
+/// up to fifty times as much memory.
 const LARGEST_TOML: u64 = 8 << 20;
 
-/// The two ways in which a scene is written down.
+/// Text format of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneFormat {
     /// TOML, written by hand.
@@ -25,7 +25,7 @@ pub enum SceneFormat {
 }
 
 impl SceneFormat {
-    /// The format that a file's name ends in.
+    /// Returns the format by the ending of a file's name; `None` for other endings.
     #[must_use]
     pub fn of_file(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
@@ -53,7 +53,7 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// A scene from a text.
+    /// Makes the source of a scene from its text.
     #[must_use]
     pub fn new(text: impl Into<String>, format: SceneFormat) -> Self {
         Self { text: without_mark(text.into()), format, file: None }
@@ -62,7 +62,7 @@ impl SceneSource {
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
-    /// A file that cannot be read, is too large, is not UTF-8, or whose name ends otherwise.
+    /// [`SceneError`] for a file that cannot be read, is too large, is not UTF-8, or has a name with another ending.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         let fail = |message: String| SceneError::new(FieldPath::top(), message).in_file(Some(path));
@@ -96,7 +96,7 @@ impl SceneSource {
     /// Parses and validates the scene.
     ///
     /// # Errors
-    /// The first thing that is wrong, with line and field.
+    /// [`SceneError`] for the first fault, with line and field.
     pub fn parse(&self) -> Result<Scene, SceneError> {
         let scene = match self.format {
             SceneFormat::Toml => self.parse_toml(),
@@ -106,7 +106,7 @@ impl SceneSource {
         Ok(scene)
     }
 
-    /// Adds file, line and text to an error that knows only its field.
+    /// Adds file, line and text to an error that has only its field.
     #[must_use]
     pub fn locate(&self, error: SceneError) -> SceneError {
         let offset = find_offset(&self.text, self.format, error.field());
@@ -117,7 +117,7 @@ impl SceneSource {
         }
     }
 
-    /// The text as plain data, without a look at what it says.
+    /// Parses the text as plain data, without checks of its fields.
     pub(super) fn data(&self) -> Result<serde_json::Value, SceneError> {
         match self.format {
             SceneFormat::Toml => {
@@ -151,7 +151,7 @@ impl SceneSource {
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
             match inner.classify() {
                 serde_json::error::Category::Data => self.data_error(field, message),
-                // So it says if a name is wanted and something else is there.
+                // serde_json reports this category where a string is expected and another type is there.
                 _ if serde_json::from_str::<IgnoredAny>(&self.text).is_ok() => {
                     self.data_error(field, "expected a string")
                 }
@@ -168,7 +168,7 @@ impl SceneSource {
     }
 
     fn data_error(&self, field: FieldPath, message: &str) -> SceneError {
-        // What is missing at the top is missing from line 1 on.
+        // A field that is missing at the top has no place: line 1 is named.
         self.locate(SceneError::new(field, plain(message))).at_offset(&self.text, 0)
     }
 
@@ -183,7 +183,7 @@ impl SceneSource {
     }
 }
 
-/// The text without the mark that some editors put before it.
+/// Returns the text without the byte order mark that some editors put before it.
 fn without_mark(mut text: String) -> String {
     const MARK: char = '\u{feff}';
     if text.starts_with(MARK) {
@@ -192,7 +192,8 @@ fn without_mark(mut text: String) -> String {
     text
 }
 
-/// The byte offset of a line and a column in bytes, both counted from 1 (a column of 0 is the end of the line before).
+/// Returns the byte offset of a line and a column in bytes, both counted from 1 (a column of 0 is the end of the line
+/// before).
 fn offset_of(text: &str, line: usize, column: usize) -> usize {
     let line_start = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum::<usize>();
     (line_start + column).saturating_sub(1)
@@ -210,7 +211,7 @@ pub(super) fn field_path(path: &serde_path_to_error::Path) -> FieldPath {
         .collect()
 }
 
-/// serde's words for types, in those of people who write scenes.
+/// Replaces serde's names of types by those that authors of scenes know.
 pub(super) fn plain(message: &str) -> String {
     message
         .trim_end()

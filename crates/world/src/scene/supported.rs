@@ -1,4 +1,4 @@
-//! What the format knows but the program does not simulate yet: refused, never ignored.
+//! Fields of the format that are not simulated yet: refused, never ignored.
 
 use super::error::SceneError;
 use super::field_path::FieldPath;

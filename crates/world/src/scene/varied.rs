@@ -1,6 +1,6 @@
 //! A scene in which one number takes other values.
 //!
-//! The text is kept as plain data; a value is put in its place and the whole is read and checked as a file would be.
+//! The text is kept as plain data; each value is put in its place, and the whole is read and checked like a file.
 
 use super::Scene;
 use super::error::SceneError;
@@ -8,7 +8,7 @@ use super::field_path::{FieldPath, Step};
 use super::source::{SceneSource, field_path, plain};
 use serde_json::{Number, Value};
 
-/// Whole numbers below this size are the same as integers and as floating-point numbers.
+/// Size below which whole numbers are exact as floating-point numbers, 2^53.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// A scene in which one number takes other values.
@@ -20,11 +20,11 @@ pub struct VariedScene {
 }
 
 impl VariedScene {
-    /// The scene of a text, with the number at `field` to vary; an element of `body` may be named by its `name`, as in
-    /// `body.ball.elasticity`. A field that the text leaves out is varied too, if the format has it.
+    /// Makes a scene whose number at `field` can be varied. An element of `body` may be named by its `name`, as in
+    /// `body.ball.elasticity`; a field that the text leaves out can be varied too, if the format has it.
     ///
     /// # Errors
-    /// The scene is wrong as it is, there is no such field, or it is no number.
+    /// [`SceneError`] if the scene is not valid, there is no such field, or it is not a number.
     pub fn new(source: SceneSource, field: &FieldPath) -> Result<Self, SceneError> {
         source.parse()?;
         let data = source.data()?;
@@ -32,16 +32,16 @@ impl VariedScene {
         Ok(Self { source, data, field })
     }
 
-    /// The field, with elements by their place: `body[1].elasticity`.
+    /// Path of the field, with elements by their index: `body[1].elasticity`.
     #[must_use]
     pub fn field(&self) -> &FieldPath {
         &self.field
     }
 
-    /// The scene with a value in the field.
+    /// Returns the scene with a value in the field.
     ///
     /// # Errors
-    /// The format has no such field, or the value is out of its range.
+    /// [`SceneError`] if the format has no such field, or the value is out of its range.
     pub fn with(&self, value: f64) -> Result<Scene, SceneError> {
         let located = |error: SceneError| {
             let message = format!("{} (varied to {value})", error.message());
@@ -63,14 +63,14 @@ impl VariedScene {
     }
 }
 
-/// A number that reads as any kind of number that it fits.
+/// Returns a value as an integer if it is whole, so that it also fits fields of integers; `None` if it is not finite.
 fn number(value: f64) -> Option<Number> {
     let is_whole =
         value.fract() == 0.0 && value.abs() < LARGEST_WHOLE && !(value == 0.0 && value.is_sign_negative());
     if is_whole { Some(Number::from(value as i64)) } else { Number::from_f64(value) }
 }
 
-/// The path with names of elements replaced by their places.
+/// Returns the path with names of elements replaced by their indices.
 fn resolved(data: &Value, field: &FieldPath) -> Result<FieldPath, SceneError> {
     let (mut place, mut now) = (FieldPath::top(), Some(data));
     for (index, step) in field.steps().iter().enumerate() {
@@ -98,7 +98,7 @@ fn resolved(data: &Value, field: &FieldPath) -> Result<FieldPath, SceneError> {
     }
 }
 
-/// The element at a place or of a name.
+/// Returns the index of the element with an index or a name.
 fn element(elements: &[Value], step: &Step) -> Option<usize> {
     match step {
         Step::Element(index) => (*index < elements.len()).then_some(*index),
@@ -119,7 +119,7 @@ fn absent(elements: &[Value], step: &Step) -> String {
     }
 }
 
-/// Puts a number at a path; `None` if that leads nowhere.
+/// Puts a number at a path; returns `None` if the data have no such path.
 fn put(data: &mut Value, steps: &[Step], number: Number) -> Option<()> {
     let Some((step, rest)) = steps.split_first() else {
         *data = Value::Number(number);

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// Two coordinates or components, `[x, y]` in a file.
 ///
-/// A type of its own because TOML's reader takes a longer array for a pair without a word.
+/// A type of its own, because the TOML reader silently accepts a longer array for a pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector {
     /// Along x, to the right.
@@ -17,7 +17,7 @@ pub struct Vector {
 }
 
 impl Vector {
-    /// No length.
+    /// The zero vector.
     pub const ZERO: Self = Self { x: 0.0, y: 0.0 };
 }
 

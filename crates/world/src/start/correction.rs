@@ -1,4 +1,4 @@
-//! Least corrections, weighted by mass, that satisfy rows: displacements for gaps, velocities for rates.
+//! Least corrections, weighted by mass, that satisfy rows: displacements for gaps, changes of velocity for rates.
 
 use super::joined::{name_of, rows};
 use super::{StartParts, moving};
@@ -8,15 +8,15 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Connector, ConnectorKind, ConnectorSample, Tolerances};
 use halfgap_contact::{DualActiveSet, InverseInertia, Problem, Row, Settings, Solution, Solver};
 
-/// Contradiction between dependent connectors, in units of the largest gap, that a round may leave to the next: gaps
-/// are curved, so those of a linkage with more bars than it needs agree only to second order.
+/// Contradiction between dependent connectors, as a fraction of the largest gap, that a round may leave to the next:
+/// gaps are curved, so those of a linkage with more bars than it needs agree only to second order.
 const INCONSISTENCY: f64 = 1e-2;
-/// Angle [rad] by which a body is turned in a round at most: farther, gaps are curved by too much.
+/// Largest angle [rad] by which a round turns a body: beyond it, gaps are curved by too much.
 const LARGEST_TURN: f64 = 0.1;
-/// A rate of so many machine epsilons of the velocities that make it up is zero.
+/// Rate of a connector that counts as zero, in machine epsilons of the velocities that make it up.
 const RATE_ROUNDINGS: f64 = 64.0;
 
-/// One row of a correction: J over (A, B), and what it is to undo.
+/// One row of a correction: J over (A, B), and the gap [m] or rate [m/s] that it is to undo.
 struct Correction {
     bodies: [BodyId; 2],
     jacobian: [f64; 6],
@@ -24,8 +24,8 @@ struct Correction {
     bilateral: bool,
 }
 
-/// Moves the bodies so that gaps and connectors come to fit, to first order, or a part of the way: tells
-/// which; `None` if that cannot be done.
+/// Moves the bodies so that gaps and connectors come to fit, to first order, or a fraction of the way. Returns that
+/// fraction, 1 for all of it; `None` if no displacement fits.
 pub(super) fn correct_positions(
     bodies: &mut [StartParts],
     records: &[Collision],
@@ -35,8 +35,8 @@ pub(super) fn correct_positions(
     apply(bodies, &corrections)
 }
 
-/// Moves the bodies so that some gaps come to their target, from whichever side, and others are lifted if they
-/// must be, as [`correct_positions`] does.
+/// Moves the bodies so that the `held` gaps come to their target, from either side, and others are lifted where they
+/// are too small. Returns as [`correct_positions`] does.
 pub(super) fn bring_to_target(
     bodies: &mut [StartParts],
     held: &[Collision],
@@ -64,7 +64,7 @@ fn apply(bodies: &mut [StartParts], corrections: &[Correction]) -> Option<f64> {
     Some(share)
 }
 
-/// True if a gap can be lifted while the connectors come to fit, whatever else touches.
+/// True if a gap can be lifted while the connectors come to fit, with all other contacts left out.
 pub(super) fn can_lift(bodies: &[StartParts], record: &Collision, connectors: &[Connector]) -> bool {
     let corrections: Vec<_> = std::iter::once(lift(record)).chain(join(bodies, connectors)).collect();
     least_changes(bodies, &corrections).is_some()
@@ -75,7 +75,7 @@ fn lift(record: &Collision) -> Correction {
     Correction {
         bodies: record.bodies(),
         jacobian: record.motion.kinematics.jacobian,
-        // What lies in the zone already may move within it.
+        // A gap that is in the zone already may move within it.
         offset: if above < -accuracy { above } else { above + accuracy },
         bilateral: false,
     }
@@ -93,8 +93,9 @@ fn join<'a>(
     })
 }
 
-/// Changes the velocities so that no bilateral connector comes apart; which did most, and how fast [m/s]. Those that
-/// contradict each other stay as they are if none comes apart faster than what counts as slow.
+/// Changes the velocities so that no bilateral connector comes apart. Returns the connector that came apart fastest,
+/// and its rate [m/s]. Where connectors contradict each other, velocities are left as they are if no connector comes
+/// apart faster than the speed that counts as slow.
 pub(super) fn correct_velocities(
     bodies: &mut [StartParts],
     named: &[Named],
@@ -130,7 +131,7 @@ pub(super) fn correct_velocities(
     Ok(Some((name_of(index, named, connectors), rate)))
 }
 
-/// The row of a rail whose point is within a distance [m] of a corner: that of the side along which it moves.
+/// Returns the row of a rail whose point is within a distance [m] of a corner: that of the side along which it moves.
 fn along_corner(bodies: &[StartParts], connector: &Connector, within: f64) -> Option<ConnectorSample> {
     let ConnectorKind::Rail { a: anchor, path } = &connector.kind else { return None };
     let [a, b] = connector.bodies().map(|body| moving(bodies, body));
@@ -139,8 +140,8 @@ fn along_corner(bodies: &[StartParts], connector: &Connector, within: f64) -> Op
     samples.into_iter().min_by(|p, q| p.kinematics.rate.abs().total_cmp(&q.kinematics.rate.abs()))
 }
 
-/// The speeds that a rate is the difference of [m/s]. What of them is across the row counts, too: where a row
-/// points is known to rounding only.
+/// Size of the speeds whose difference a rate is [m/s]. Components across the row count, too: the direction of a row is
+/// known to rounding only.
 fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
     let sizes = ends.iter().zip(jacobian.chunks_exact(3)).map(|(end, part)| {
         let Some((body, _, state)) = bodies.get(end.index()) else { return 0.0 };
@@ -150,7 +151,8 @@ fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f
     sizes.sum()
 }
 
-/// The change of (x, y, angle) of each body, least in the mass metric, that undoes all rows; `None` if there is none.
+/// Returns the change of (x, y, angle) of each body, least in the mass metric, that undoes all rows; `None` if there is
+/// none.
 fn least_changes(bodies: &[StartParts], corrections: &[Correction]) -> Option<Vec<[f64; 3]>> {
     let mut problem = Problem::new();
     for (body, _, _) in bodies {

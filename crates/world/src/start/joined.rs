@@ -1,15 +1,15 @@
-//! How far off the connectors are at the start.
+//! Errors of the connectors at the start, and their rows.
 
 use super::{StartParts, moving};
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, Connector, ConnectorSample};
 
-/// A connector and how far off it is.
+/// A connector and its error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConnectorOff {
     index: usize,
-    /// How far [m].
+    /// Error [m], 0 or more.
     pub(super) error: f64,
 }
 
@@ -19,13 +19,13 @@ impl ConnectorOff {
     }
 }
 
-/// A connector as messages name it.
+/// Returns the name of a connector in messages.
 pub(super) fn name_of(index: usize, named: &[Named], connectors: &[Connector]) -> ConnectorName {
     let name = |body: BodyId| named.get(body.index()).map(|body| body.name.as_str());
     ConnectorName::new(index, &connectors[index], name)
 }
 
-/// Refuses the first connector that is off by more than allowed [m].
+/// Refuses the first connector whose error is larger than allowed [m].
 pub(super) fn require_small_errors(
     bodies: &[StartParts],
     named: &[Named],
@@ -42,7 +42,7 @@ pub(super) fn require_small_errors(
     Ok(())
 }
 
-/// The connector that is off most.
+/// Returns the connector with the largest error.
 pub(super) fn worst_connector(bodies: &[StartParts], connectors: &[Connector]) -> Option<ConnectorOff> {
     let off = connectors.iter().enumerate();
     let off = off.map(|(index, connector)| ConnectorOff { index, error: error_of(bodies, connector) });

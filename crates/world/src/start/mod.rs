@@ -1,14 +1,15 @@
-//! The start of a run: gaps that are too small are lifted to the target gap, connectors that are a little off are put
-//! together, and velocities are made to fit the connectors; deeper overlaps and larger errors are refused.
+//! Corrections at the start of a run: gaps that are too small are lifted to the target gap, connectors that are a
+//! little off are put together, and velocities are made to fit the connectors; deeper overlaps and larger errors are
+//! refused.
 //!
-//! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the
-//! target and closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity
-//! problem A f + b >= 0, f >= 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in
-//! the displacement, so this is repeated until they fit, by steps along which they are not curved by much.
-//! `tight` knows the pairs for which that cannot be: they keep their gap, and all others are lifted from
-//! where they were given. What the least displacement carries beyond its target, `regain` brings back: then it
-//! is the least that puts all that was lifted at its target. `touching` finds the places where bodies touch,
-//! `joined` the rows of connectors, `correction` solves for displacements and for velocities.
+//! The displacement is the least one, weighted by mass, that lifts every gap below target - accuracy to the target and
+//! closes the gaps of all connectors: with rows J and b = gap - wanted, the complementarity problem A f + b >= 0, f >=
+//! 0 (connectors: A f + b = 0) has the displacement M^-1 J^T f. Gaps are curved in the displacement, so this is
+//! repeated until they fit, in steps along which they are not curved by much. `tight` lists the pairs that cannot be
+//! lifted: they keep their gap, and all others are lifted from their given positions. `regain` brings back gaps that
+//! the least displacement carries beyond their target: the result is the least displacement that puts all lifted gaps
+//! at their target. `touching` finds the places where bodies touch, `joined` the rows of connectors, `correction`
+//! solves for displacements and for velocities.
 
 mod correction;
 mod joined;
@@ -29,40 +30,41 @@ use touching::{
     KnownTouches, Touch, deep_overlap, is_below_zone, lowest_below_zone, require_shallow, touch, touching,
 };
 
-/// Rounds of correction that go all the way; each leaves an error of second order in the displacement.
+/// Largest number of full rounds of correction; each leaves an error of second order in the displacement.
 const MOST_ROUNDS: u32 = 12;
-/// Rounds beside these that go a part of the way, lest bodies turn by too much.
+/// Largest number of further rounds that go only a fraction of the way, lest bodies turn by too much.
 const MOST_SHORT_ROUNDS: u32 = 100;
-/// A round all the way that leaves more than this part of the connectors' error has come to the end of what can be had.
+/// Fraction of the connectors' error that a full round must at least remove; else the error counts as irreducible.
 const LEAST_GAIN: f64 = 0.5;
-/// What carries a body farther than so many times all that gaps lack, and than this part of its reach, has left where it
-/// was to be: to first order faces have no ends, and it has passed one.
+/// Longest way of a body, as a multiple of the sum of what all gaps lack. A body that goes farther has been carried
+/// past the end of a face: to first order faces have no ends.
 const FARTHEST: f64 = 10.0;
+/// Longest way of a body, as a fraction of its reach, if that is more.
 const FARTHEST_OF_REACH: f64 = 0.1;
 
-/// A body, what acts on it in flight, and its state at the start.
+/// A body, the law of its free flight, and its state at the start.
 pub(crate) type StartParts = (Body, FlightLaw, BodyState);
 
-/// What is allowed, and what is to be reached.
+/// Errors accepted at the start, and thresholds that the correction is to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StartRules<'a> {
     pub(crate) tolerances: &'a Tolerances,
     /// Pairs that pass through each other.
     pub(crate) excluded: &'a [(BodyId, BodyId)],
-    /// Bodies collide at all.
+    /// Whether bodies collide at all.
     pub(crate) collisions: bool,
-    /// How deep bodies may overlap [m].
+    /// Largest overlap accepted [m].
     pub(crate) overlap: f64,
-    /// How far off connectors may be [m].
+    /// Largest connector error accepted [m].
     pub(crate) connector_error: f64,
-    /// How far off they may be left where they contradict each other [m].
+    /// Largest error that may be left in connectors that contradict each other [m].
     pub(crate) contradiction: f64,
-    /// How far off they are for rounding [m].
+    /// Errors of connectors and overlaps that are rounding [m].
     pub(crate) rounding: f64,
 }
 
 impl StartRules<'_> {
-    /// Pairs of bodies that are so near each other that they may touch.
+    /// Returns the pairs of bodies near enough to touch.
     fn near_pairs<'a>(&self, near: &'a mut NearPairs, bodies: &[StartParts]) -> &'a [(BodyId, BodyId)] {
         if !self.collisions {
             return &[];
@@ -75,7 +77,7 @@ impl StartRules<'_> {
     }
 }
 
-/// What was corrected at the start.
+/// Result of the correction at the start.
 #[derive(Debug)]
 pub(crate) struct Corrected {
     /// Largest displacement [m].
@@ -101,7 +103,7 @@ pub(crate) fn correct_start(
     let mut lifted: Vec<Touch> = Vec::new();
     let mut farthest = f64::INFINITY;
     loop {
-        // What has been moved may have come near others, and deeper into them.
+        // Bodies that have been moved may have come near others, and deeper into them.
         let pairs = rules.near_pairs(&mut near, bodies);
         let ways = ways(bodies, &given);
         let mut records = touching(bodies, pairs, rules, &ways);
@@ -111,7 +113,7 @@ pub(crate) fn correct_start(
         if rounds.are_at_first() {
             lifted.clear();
             lifted.extend(records.iter().filter(|record| is_below_zone(record)).filter_map(touch));
-            // What connectors lack may be at the end of a long lever.
+            // Errors of connectors may be at the end of a long lever, and move bodies far.
             farthest = if error > rules.rounding { f64::INFINITY } else { FARTHEST * all_lacking(&records) };
         }
         let is_done = too_near.is_none() && fits(error, rounds.have_stalled(error), rules);
@@ -129,12 +131,12 @@ pub(crate) fn correct_start(
                 rounds.note(share, error);
                 continue;
             }
-            // Connectors that contradict each other by so little are as near together as they come.
+            // Connectors that contradict each other by no more than this are as near together as they come.
             if may_stay && deep_overlap(bodies, pairs, rules.rounding, &ways).is_none() {
                 break;
             }
         }
-        // Where it has led is of no use: what can be lifted is lifted anew, without what cannot.
+        // The result is of no use: start anew from the given positions, without the pairs that cannot be lifted.
         bodies.iter_mut().zip(&given).for_each(|((_, _, state), given)| *state = *given);
         if !widen(&mut tight, bodies, connectors, (rules, &mut near)) {
             return Err(failure);
@@ -152,10 +154,11 @@ pub(crate) fn correct_start(
 /// The rounds of a correction so far.
 #[derive(Clone, Copy, Debug, Default)]
 struct Rounds {
-    /// All the way, and a part of it.
+    /// Number of full rounds.
     full: u32,
+    /// Number of rounds that went only a fraction of the way.
     short: u32,
-    /// The connectors' error [m] before the last round, if that went all the way.
+    /// The connectors' error [m] before the last round, if that was a full one.
     before: Option<f64>,
 }
 
@@ -168,7 +171,7 @@ impl Rounds {
         self.full < MOST_ROUNDS && self.short < MOST_SHORT_ROUNDS
     }
 
-    /// Notes a round that went so large a part of the way, from an error of the connectors [m].
+    /// Notes a round that went a fraction of the way, and the connectors' error [m] before it.
     fn note(&mut self, share: f64, error: f64) {
         let is_full = share == 1.0;
         *(if is_full { &mut self.full } else { &mut self.short }) += 1;
@@ -181,7 +184,7 @@ impl Rounds {
     }
 }
 
-/// Lets the pairs that are too near where the bodies were given keep their gaps; false if none is left that can.
+/// Lets pairs that are too near at the given positions keep their gaps; returns false if there are none left that can.
 fn widen(
     tight: &mut TightPairs,
     bodies: &[StartParts],
@@ -195,24 +198,25 @@ fn widen(
     tight.widen(bodies, connectors, &records)
 }
 
-/// True if the connectors are together: to rounding, or as near as they come if that is near enough.
+/// True if the connectors are together: to rounding, or, where rounds gain nothing more, within the contradiction
+/// allowed.
 fn fits(error: f64, has_stalled: bool, rules: &StartRules<'_>) -> bool {
     error <= rules.rounding || (has_stalled && error <= rules.contradiction)
 }
 
-/// Sum [m] of all that gaps below the zone lack.
+/// Sum of the distances to the target gap of all gaps below the zone [m].
 fn all_lacking(records: &[Collision]) -> f64 {
     let gaps = records.iter().filter(|record| is_below_zone(record));
     gaps.map(|record| record.distance_to_target().abs()).sum()
 }
 
-/// True if no body has gone farther than so far [m], or than a part of its reach.
+/// True if no body has gone farther than `farthest` [m], or than a fraction of its reach if that is more.
 fn are_near(bodies: &[StartParts], given: &[BodyState], farthest: f64) -> bool {
     let is_near = |reach: f64, way: f64| way <= farthest.max(FARTHEST_OF_REACH * reach);
     bodies.iter().zip(ways(bodies, given)).all(|((body, _, _), way)| is_near(body.shape.reach(), way))
 }
 
-/// How far [m] points of each body have moved at most.
+/// Upper bounds of the distance [m] that the points of each body have moved.
 fn ways(bodies: &[StartParts], given: &[BodyState]) -> Vec<f64> {
     let way = |((body, _, state), given): (&StartParts, &BodyState)| {
         state.position.distance(given.position) + (state.angle - given.angle).abs() * body.shape.reach()
@@ -224,8 +228,8 @@ fn moving(bodies: &[StartParts], body: BodyId) -> Moving {
     if body.is_world() { Moving::BACKGROUND } else { Moving::from(&bodies[body.index()].2) }
 }
 
-/// What is to blame: an overlap that comes of the correction, else a gap if one is too small, else the
-/// connector that is off most.
+/// Returns the error of a failed correction: an overlap that it caused, else the smallest gap if one is too small, else
+/// the connector with the largest error.
 fn cannot_correct(
     too_near: Option<&Collision>,
     overlap: Option<([BodyId; 2], f64)>,

@@ -1,6 +1,6 @@
-//! What touches as it is given, and touches no more after the correction: the least displacement that lifts all
-//! gaps to their target carries some beyond it, as of three discs two of which push the third away. Such
-//! places are brought back to their target, with all others that were lifted, where that can be.
+//! Contacts that the correction would lose: the least displacement that lifts all gaps to their target carries some
+//! beyond it, as where two of three discs push the third away. These gaps, and all others that were lifted, are brought
+//! back to their target where that is possible.
 
 use super::correction::bring_to_target;
 use super::joined::worst_connector;
@@ -9,8 +9,8 @@ use super::{MOST_ROUNDS, StartParts, StartRules, ways};
 use crate::near::NearPairs;
 use halfgap_collision::{BodyState, Collision, Connector};
 
-/// Brings the places that were lifted to their target gap, from both sides, if some of them lie beyond it; else,
-/// and where that cannot be, leaves the bodies as they are. `given`: the bodies before they were lifted.
+/// Brings the lifted gaps to their target, from both sides, if some of them lie beyond it. Leaves the bodies as they
+/// are if none does, or if that is not possible. `given` holds the bodies before they were lifted.
 pub(super) fn regain_touches(
     bodies: &mut [StartParts],
     (lifted, given): (&[Touch], &[BodyState]),
@@ -41,7 +41,7 @@ pub(super) fn regain_touches(
     bodies.iter_mut().zip(&corrected).for_each(|((_, _, state), corrected)| *state = *corrected);
 }
 
-/// The records of known places as the bodies lie now.
+/// Returns the records of known places at the present positions of the bodies.
 fn measured(bodies: &[StartParts], touches: &[Touch], rules: &StartRules<'_>) -> Vec<Collision> {
     touches.iter().filter_map(|&touch| record_of(bodies, touch, rules)).collect()
 }

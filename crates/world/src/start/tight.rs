@@ -1,15 +1,15 @@
-//! Pairs that connectors, or other bodies, keep from being lifted: a wheel on a fixed axle that just touches its floor.
-//! They keep the gap that they have, if they do not overlap.
+//! Pairs that connectors, or other bodies, keep from being lifted, such as a wheel on a fixed axle that just touches
+//! its floor. They keep their given gap, if they do not overlap.
 
 use super::StartParts;
 use super::correction::can_lift;
 use halfgap_collision::{BodyId, Collision, Connector};
 
-/// Which pairs keep their gaps.
+/// Pairs that keep their gaps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TightPairs {
     pairs: Vec<[BodyId; 2]>,
-    /// Those that cannot be lifted one by one have been looked for.
+    /// Whether the pairs that cannot be lifted even alone have been looked for.
     searched: bool,
 }
 
@@ -19,8 +19,8 @@ impl TightPairs {
         self.pairs.contains(&record.bodies())
     }
 
-    /// Lets the pairs of some records that are too near keep their gaps: first such as cannot be lifted even
-    /// alone, then all. Returns false if there are none that do not overlap.
+    /// Lets pairs of the given records keep their gaps: at first those that cannot be lifted even alone, else all.
+    /// Returns false if no pair was added.
     pub(super) fn widen(
         &mut self,
         bodies: &[StartParts],

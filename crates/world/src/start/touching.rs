@@ -1,4 +1,4 @@
-//! Which bodies touch at the start, and how deep they overlap.
+//! Contacts of bodies at the start, and the depths of their overlaps.
 
 use super::{StartParts, StartRules};
 use crate::overlap::overlap_depth;
@@ -7,7 +7,7 @@ use crate::world_error::WorldError;
 use halfgap_collision::{BodyId, Collision, Moment, Moving, detect_pair, record_features};
 use halfgap_geometry::FeatureId;
 
-/// Refuses overlaps deeper than allowed [m].
+/// Refuses the first overlap deeper than allowed [m].
 pub(super) fn require_shallow(
     bodies: &[StartParts],
     named: &[Named],
@@ -25,8 +25,8 @@ pub(super) fn require_shallow(
     Ok(())
 }
 
-/// Two bodies that a correction has brought into each other, deeper than rounding [m], and how deep [m]. For
-/// each body how far it has been moved.
+/// Returns two bodies that a correction has moved into each other by more than rounding [m], and the depth [m]. `ways`
+/// holds the distance that each body has been moved.
 pub(super) fn deep_overlap(
     bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
@@ -43,8 +43,8 @@ pub(super) fn deep_overlap(
     deep.next()
 }
 
-/// Records of all places where bodies touch, overlaps included that are no deeper than they may have been and
-/// than bodies have been moved since [m].
+/// Returns records of all places where bodies touch, including overlaps no deeper than the overlap accepted at the
+/// start plus the `ways` [m] that both bodies have been moved since.
 pub(super) fn touching(
     bodies: &[StartParts],
     pairs: &[(BodyId, BodyId)],
@@ -67,7 +67,7 @@ fn moment(bodies: &[StartParts], id: BodyId) -> Moment<'_> {
 /// Two features that touched in some round of a correction, the lesser body's first.
 pub(super) type Touch = ([BodyId; 2], [FeatureId; 2]);
 
-/// The record of a known place as the bodies lie now.
+/// Returns the record of a known place at the present positions of the bodies.
 pub(super) fn record_of(
     bodies: &[StartParts],
     ([a, b], features): Touch,
@@ -76,8 +76,8 @@ pub(super) fn record_of(
     record_features([&moment(bodies, a), &moment(bodies, b)], features, rules.tolerances, 0.0)
 }
 
-/// Which features touched in the rounds of a correction so far. What was lifted from one corner comes down on
-/// the other: unless the first is known then, it is lowered again as far as the second is lifted, and so on.
+/// Features that touched in the rounds of a correction so far. A body lifted at one corner comes down on another: if
+/// the first were forgotten, the next round would lower it again as far as it lifts the second, and so on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KnownTouches(Vec<Touch>);
 
@@ -86,8 +86,8 @@ impl KnownTouches {
         self.0.clear();
     }
 
-    /// Adds to the records of a round those of features that touched before and are farther apart by now; and
-    /// notes all.
+    /// Adds to the records of a round those of features that touched before and are farther apart by now, and remembers
+    /// all.
     pub(super) fn complete(
         &mut self,
         records: &mut Vec<Collision>,
@@ -103,7 +103,7 @@ impl KnownTouches {
     }
 }
 
-/// The place of a record; `None` of one of a connector.
+/// Returns the features of a record; `None` for a connector.
 pub(super) fn touch(record: &Collision) -> Option<Touch> {
     let mut sides = [&record.parties.primary, &record.parties.normal];
     sides.sort_by_key(|side| side.body);

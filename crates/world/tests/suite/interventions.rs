@@ -164,7 +164,7 @@ fn what_cannot_be_done_is_refused_and_nothing_is_done() {
     assert_eq!(refused(upwards(BodyId(7), 1.0)), "there is no body 7 in this world");
     for speed in [f64::NAN, f64::INFINITY, 1e61] {
         let expected =
-            "what is done to body \"disc 0\" must be finite, and change its velocities by 1e60 at most";
+            "an intervention on body \"disc 0\" must be finite, and change its velocities by 1e60 at most";
         assert_eq!(refused(upwards(discs[0], speed)), expected);
     }
     assert_eq!(format!("{:?}", world.state(discs[0])), before);

@@ -126,8 +126,8 @@ fn steps_that_are_too_long_for_damping_are_told_of() {
     assert_eq!(
         warnings(Integrator::ModifiedEuler, 0.05),
         [
-            "a time_step of 0.05 s is too long for body \"bob\", which is damped at 80 1/s: where it is tied or touches \
-             something, what should decay grows in steps of more than 0.025 s"
+            "a `time_step` of 0.05 s is too long for body \"bob\", damped at 80 1/s: while it is tied or in contact, its \
+             motion grows instead of decaying in steps of more than 0.025 s"
         ]
     );
 }
@@ -149,8 +149,8 @@ fn velocities_that_pull_a_rod_apart_are_changed_and_told_of() {
     assert_eq!(
         warnings(0.25),
         [
-            "connector 0 (rod of \"world\" and \"bob\") comes apart at 0.25 m/s by the velocities at the start; they were \
-          changed to fit"
+            "the velocities at the start, by which connector 0 (rod of \"world\" and \"bob\") comes apart at 0.25 m/s, were \
+             changed to fit"
         ]
     );
 }
@@ -166,7 +166,7 @@ fn the_velocity_of_a_fixed_body_is_told_to_count_for_nothing() {
     };
     assert_eq!(warnings(&fixed), Vec::<String>::new());
     fixed.state.angular_velocity = 1.0;
-    assert_eq!(warnings(&fixed), ["body \"stone\" is fixed: its velocity is left out of account"]);
+    assert_eq!(warnings(&fixed), ["body \"stone\" is fixed: its velocity is ignored"]);
 }
 
 #[test]

@@ -1,11 +1,11 @@
-//! Places in JSON, from a scan that skips over everything beside the path.
+//! Places of fields in JSON, from a scan that skips over everything beside the path.
 //!
-//! The text has been accepted by a real parser before, or the answer does not matter much: the scan takes what it gets,
-//! never recurses and always ends.
+//! The text has usually been accepted by a real parser before: the scan accepts any text, never recurses and always
+//! ends.
 
 use crate::scene::field_path::Step;
 
-/// The byte offset of the field, or of the nearest one around it.
+/// Returns the byte offset of the field, or of the nearest table or array around it.
 pub(super) fn find_offset(text: &str, steps: &[Step]) -> usize {
     let mut scan = Scan { bytes: text.as_bytes(), at: 0 };
     scan.skip_space();
@@ -30,7 +30,7 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    /// Moves to the value of a field of the object here; the offset of its key.
+    /// Moves to the value of a field of the object here, and returns the offset of its key.
     fn enter_field(&mut self, name: &str) -> Option<usize> {
         self.take(b'{')?;
         loop {
@@ -53,7 +53,7 @@ impl Scan<'_> {
         }
     }
 
-    /// Moves to an element of the array here; its offset.
+    /// Moves to an element of the array here, and returns its offset.
     fn enter_element(&mut self, index: usize) -> Option<usize> {
         self.take(b'[')?;
         for _ in 0..index {
@@ -148,8 +148,10 @@ mod tests {
     fn cut_text_does_not_stop_the_scan() {
         let top = FieldPath::top();
         for end in 0..TEXT.len() {
-            find_offset(&TEXT[..end], top.field("b").field("c").field("d").steps());
-            find_offset(&TEXT[..end], top.field("a").element(2).element(1).steps());
+            for path in [top.field("b").field("c").field("d"), top.field("a").element(2).element(1)] {
+                let offset = find_offset(&TEXT[..end], path.steps());
+                assert!(offset <= end, "{path}: {offset} of {end} bytes");
+            }
         }
     }
 }

@@ -1,9 +1,9 @@
-//! Places in TOML, from the spans of its parser.
+//! Places of fields in TOML, from the spans of its parser.
 
 use crate::scene::field_path::Step;
 use ::toml::de::{DeTable, DeValue};
 
-/// The byte offset of the field, or of the nearest one around it; `None` if the text does not parse.
+/// Returns the byte offset of the field, or of the nearest table or array around it; `None` if the text does not parse.
 pub(super) fn find_offset(text: &str, steps: &[Step]) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let (first, rest) = match steps.split_first() {

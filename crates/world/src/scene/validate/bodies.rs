@@ -6,7 +6,7 @@ use crate::scene::error::SceneError;
 use crate::scene::{BodyData, Vector};
 use std::collections::BTreeMap;
 
-/// The names of all bodies: not empty, not reserved, no two alike.
+/// Collects the names of all bodies, and checks that they are not empty, not reserved, and unique.
 pub(super) fn collect_names<'a>(bodies: &'a [BodyData], at: &At<'_>) -> Result<Names<'a>, SceneError> {
     let mut first_with = BTreeMap::new();
     for (index, body) in bodies.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The rules that values follow, each with its message, at a place in the scene.
+//! Rules for values, each with its message, at a place in the scene.
 
 use crate::scene::Vector;
 use crate::scene::error::SceneError;
@@ -25,7 +25,7 @@ impl<'a> At<'a> {
         SceneError::new(self.path(), message)
     }
 
-    /// The error unless the rule holds; NaN holds to none.
+    /// Returns an error unless the rule holds and the value is finite.
     fn require(&self, holds: bool, rule: &str, value: f64, unit: &str) -> Result<(), SceneError> {
         if !value.is_finite() {
             return Err(self.error(format!("must be a finite number, got {value}")));
@@ -108,7 +108,7 @@ impl<'a> At<'a> {
     }
 }
 
-/// Applies a rule to a value that may be absent.
+/// Applies a rule to a value, if there is one.
 pub(super) fn optional<T: Copy>(
     value: Option<T>,
     rule: impl FnOnce(T) -> Result<(), SceneError>,

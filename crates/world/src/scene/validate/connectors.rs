@@ -36,7 +36,7 @@ fn validate_normal(slot: &SlotData, at: &At<'_>) -> Result<(), SceneError> {
     if slot.normal == Vector::ZERO { Err(at.error("must have a direction, got [0, 0]")) } else { Ok(()) }
 }
 
-/// A path is either edges from a start or points of a spline.
+/// Checks that a path is either edges from a start or points of a spline.
 fn validate_rail_path(path: &RailPath, at: &At<'_>) -> Result<(), SceneError> {
     match (&path.start, &path.edges, &path.points) {
         (None, None, Some(points)) => shape::validate_points(points, 2, &at.field("points")),

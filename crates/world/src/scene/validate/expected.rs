@@ -4,7 +4,7 @@ use super::{At, Names, optional};
 use crate::scene::error::SceneError;
 use crate::scene::{ExpectedData, ExpectedState, RunData};
 
-/// An expected time may be beyond the end by this part of the larger of start, end and duration, which is rounding.
+/// Rounding by which an expected time may be beyond the end, as a fraction of the largest of start, end and duration.
 const TIME_ROUNDING: f64 = 1e-12;
 
 pub(super) fn validate(
@@ -48,7 +48,7 @@ fn validate_state(state: &ExpectedState, at: &At<'_>) -> Result<(), SceneError> 
     optional(state.angular_velocity, |velocity| at.field("angular_velocity").finite(velocity))
 }
 
-/// What is to be compared needs a tolerance to compare it with.
+/// Checks that every kind of expected state has its tolerance.
 fn validate_tolerances(expected: &ExpectedData, at: &At<'_>) -> Result<(), SceneError> {
     let states = || expected.bodies.values();
     if states().any(|state| state.position.is_some() || state.angle.is_some()) {

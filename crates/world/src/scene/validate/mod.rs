@@ -22,7 +22,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
     each(&at, &scene.expected, |one, at| expected::validate(one, &scene.run, &names, at))
 }
 
-/// Checks what a world is built from: all but the expected states, which another duration may leave out.
+/// Checks every value but the expected states, whose times another duration may exclude.
 pub(super) fn validate_world(scene: &Scene) -> Result<(), SceneError> {
     let top = At::Top;
     validate_run(&scene.run)?;

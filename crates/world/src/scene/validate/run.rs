@@ -4,7 +4,7 @@ use super::{At, optional};
 use crate::scene::RunData;
 use crate::scene::error::SceneError;
 
-/// More recorded states than this are taken for a mistake.
+/// Largest number of recorded states; more are taken for a mistake.
 const MOST_OUTPUTS: f64 = 1e7;
 
 pub(super) fn validate(run: &RunData, at: &At<'_>) -> Result<(), SceneError> {

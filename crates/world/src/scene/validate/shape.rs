@@ -1,4 +1,4 @@
-//! Checks shapes and paths, as far as numbers go; whether outlines close and cross is for the geometry to say.
+//! Checks the numbers of shapes and paths; the geometry crate checks whether outlines close and cross.
 
 use super::{At, each};
 use crate::scene::error::SceneError;
