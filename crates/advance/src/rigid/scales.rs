@@ -54,10 +54,10 @@ impl Scales {
         self.extent = bounds.size().length().min(self.coordinate);
     }
 
-    /// Raises `coordinate` to the radius [m] of an arc, after the bounds are set: however short the arc, its gaps are
-    /// measured from its centre.
-    pub fn include_radius(&mut self, radius: f64) {
-        self.coordinate = self.coordinate.max(radius);
+    /// Raises `coordinate` to a distance [m], after the bounds are set: the radius of an arc, whose gaps are measured from
+    /// its centre however short it is, or the way that all bodies will go together.
+    pub fn include_distance(&mut self, distance: f64) {
+        self.coordinate = self.coordinate.max(distance);
     }
 
     /// Smallest target gap [m] that can be told from the rounding of coordinates.

@@ -1,6 +1,8 @@
-//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input.
+//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `drift` tells how far bodies go
+//! that nothing holds to the world.
 
 mod checks;
+mod drift;
 
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
@@ -14,6 +16,7 @@ use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_amo
 use crate::world_error::{ConnectorName, WorldError};
 pub(crate) use checks::LARGEST;
 use checks::world_bounds;
+use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem, Scales};
@@ -232,7 +235,7 @@ impl WorldBuilder {
         let is_too_small = self.settings.overrides.target_gap.is_none() && wanted < smallest;
         is_too_small.then(|| {
             format!(
-                "tolerance {} asks for a target gap of {} m, but coordinates or radii of {} m allow no less than {} m",
+                "tolerance {} asks for a target gap of {} m, but coordinates, at the end of the run too, or radii of {} m allow no less than {} m",
                 Rounded(tolerance),
                 Rounded(wanted),
                 Rounded(scales.coordinate),
@@ -361,7 +364,10 @@ impl WorldBuilder {
             }
         }
         bounds.into_iter().for_each(|bounds| scales.set_bounds(bounds));
-        self.bodies.iter().for_each(|body| scales.include_radius(largest_radius(&body.shape)));
+        self.bodies.iter().for_each(|body| scales.include_distance(largest_radius(&body.shape)));
+        let (acting, ties) = ((&self.laws[..], wrenches), (&self.connectors[..], &self.forces[..]));
+        let drift = self.settings.duration.and_then(|duration| drift(&self.bodies, acting, ties, duration));
+        drift.into_iter().for_each(|distance| scales.include_distance(distance));
         // Where nothing moves and no forces act, interventions are to be expected: the speed that crosses the whole
         // scene in the run is taken for usual then.
         let crossing = scales.coordinate / self.settings.duration.unwrap_or(TIME_TO_MOVE);

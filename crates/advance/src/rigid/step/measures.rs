@@ -122,11 +122,17 @@ impl Dynamics<'_> {
     }
 
     /// Error [J] of a work that is just acceptable: the error of the energy that acceptable errors of velocities make.
-    /// Works mostly err by far less; but where the motion is simple, as under a constant force, they alone err at all.
+    /// Works mostly err by far less; but where the motion is simple, as under a constant force, they alone err at all. Of
+    /// bodies that have all but come to rest under steep forces, rounding makes velocities, and those make works.
     pub(super) fn work_scale(&self, control: &StepControl) -> f64 {
-        let masses = self.group.bodies.iter().map(|&body| self.mass(body));
+        let masses = || self.group.bodies.iter().map(|&body| self.mass(body));
         let speed = self.speed(control);
-        control.local_error * speed * speed * masses.sum::<f64>()
+        let rounding = self.rounding();
+        let rough = masses().enumerate().map(|(place, mass)| {
+            let velocity = self.group.rough_velocity(place, rounding);
+            mass * velocity * velocity
+        });
+        (control.local_error * speed * speed * masses().sum::<f64>()).max(rough.sum())
     }
 
     /// Error norm of the works, which are the components from `first` on, each relative to `scale` [J]; 0 for no scale,

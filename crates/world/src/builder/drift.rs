@@ -1,0 +1,39 @@
+//! How far all bodies go together in a run, where nothing holds any of them to the world.
+
+use super::BodySpec;
+use crate::connector::ConnectorSpec;
+use crate::force::{ForceLaw, Wrench};
+use glam::DVec2;
+use halfgap_advance::rigid::FlightLaw;
+use halfgap_collision::BodyId;
+use std::sync::Arc;
+
+/// Bounds the distance [m] by which the centre of mass of several bodies moves in a duration [s], with the forces at the
+/// start; `None` if a fixed body, a connector or a force law ties any of them to the world, or their motion is damped.
+///
+/// Coordinates grow by that, and their rounding with them, although the bodies stay together.
+pub(super) fn drift(
+    bodies: &[BodySpec],
+    (laws, wrenches): (&[FlightLaw], &[Wrench]),
+    (connectors, forces): (&[ConnectorSpec], &[Arc<dyn ForceLaw>]),
+    duration: f64,
+) -> Option<f64> {
+    let is_tied = connectors.iter().any(|spec| spec.connector.bodies().contains(&BodyId::WORLD))
+        || forces.iter().any(|law| law.bodies().contains(&BodyId::WORLD) || ends_in_world(law.as_ref()))
+        || laws.iter().any(FlightLaw::is_damped);
+    if is_tied || bodies.len() < 2 {
+        return None;
+    }
+    let (mut mass, mut momentum, mut force) = (0.0, DVec2::ZERO, DVec2::ZERO);
+    for ((body, law), wrench) in bodies.iter().zip(laws).zip(wrenches) {
+        let inertia = body.inertia.as_ref()?;
+        mass += inertia.mass;
+        momentum += inertia.mass * body.state.velocity;
+        force += inertia.mass * law.acceleration + wrench.force;
+    }
+    Some((momentum.length() + 0.5 * force.length() * duration) * duration / mass)
+}
+
+fn ends_in_world(law: &dyn ForceLaw) -> bool {
+    law.ends().is_some_and(|ends| ends.iter().any(|end| end.body.is_world()))
+}
