@@ -17,6 +17,10 @@ use std::ops::Range;
 const CONVERGED: f64 = 1e-2;
 /// Multiple of the state's rounding below which corrections cannot be told from none.
 const ROUNDINGS: f64 = 16.0;
+/// Number of patterns of signs with which the rounding of the rates is tried.
+const SIGN_PATTERNS: u32 = 4;
+/// Odd number near 2^32 over the golden ratio, whose multiples are spread evenly.
+const GOLDEN: u32 = 0x9e37_79b9;
 /// Fraction of a correction that is taken to be left to correct, at least, however much smaller it is than the one
 /// before: the first is the whole way of the step, and its slow part may hide that the fast part has yet to follow.
 const LEAST_LEFT: f64 = 1e-2;
@@ -203,19 +207,29 @@ impl Radau {
         self.real.factorize() && self.pair.factorize()
     }
 
-    /// Finds the rounding of the components: each one's own, and that of the components on which rates depend much,
-    /// since a fast part follows the rounding of the rates.
+    /// Finds the rounding of the components: each one's own, and what the rounding of the rates does to it, since a fast
+    /// part follows that. Rates are rounded with either sign: the largest of a few patterns of signs counts.
     fn find_rounding(&mut self) {
         let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
         self.rounding.clear();
-        self.rounding.extend(slopes_of(&self.jacobian, self.active).map(|slopes| {
-            slopes.iter().zip(&self.start).map(|(slope, value)| slope.abs() * rounding(value)).sum::<f64>()
-        }));
-        if self.solved {
-            self.real.solve(&mut self.rounding);
+        self.rounding.resize(self.active, 0.0);
+        for pattern in 0..SIGN_PATTERNS {
+            let of_rates = &mut self.right[..self.active];
+            let rows = of_rates.iter_mut().zip(slopes_of(&self.jacobian, self.active));
+            for (row, (of_rate, slopes)) in rows.enumerate() {
+                let values = slopes.iter().zip(&self.start);
+                let size: f64 = values.map(|(slope, value)| slope.abs() * rounding(value)).sum();
+                *of_rate = if is_negative(pattern, row) { -size } else { size };
+            }
+            if self.solved {
+                self.real.solve(of_rates);
+            }
+            for (found, of_rate) in self.rounding.iter_mut().zip(of_rates) {
+                *found = found.max(of_rate.abs());
+            }
         }
         for (found, value) in self.rounding.iter_mut().zip(&self.start) {
-            *found = found.abs() + rounding(value);
+            *found += rounding(value);
         }
     }
 
@@ -354,6 +368,11 @@ impl Radau {
 /// Excess of a number's size over its rounding, 0 if there is none; NaN stays NaN.
 fn beyond(number: f64, rounding: f64) -> f64 {
     if number.abs() <= rounding { 0.0 } else { number.abs() - rounding }
+}
+
+/// Sign of a row in a pattern of signs: all are positive in the first one, and mixed in the others.
+fn is_negative(pattern: u32, row: usize) -> bool {
+    (row as u32).wrapping_add(1).wrapping_mul(pattern.wrapping_mul(GOLDEN)) >> 31 == 1
 }
 
 /// Root of the mean of the squares of the first numbers, each divided by its scale.
