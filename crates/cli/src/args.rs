@@ -73,9 +73,10 @@ pub(crate) struct CheckOptions {
 pub(crate) struct SweepOptions {
     /// The scene, a .toml or .json file.
     pub(crate) scene: PathBuf,
-    /// The number to vary and its values: N of them from A to B, evenly spaced, ends included. FIELD is the path of a
-    /// number in the scene, such as body.ball.elasticity, body[0].position[1] or run.tolerance.
-    #[arg(long, value_name = "FIELD=A..B/N", allow_hyphen_values = true)]
+    /// The number to vary and its values: N of them from A to B, ends included, evenly spaced, or with equal ratios if
+    /// /log follows. FIELD is the path of a number in the scene, such as body.ball.elasticity, body[0].position[1] or
+    /// run.tolerance.
+    #[arg(long, value_name = "FIELD=A..B/N[/log]", allow_hyphen_values = true)]
     pub(crate) vary: Vary,
     /// Write the table, with the final states, to this CSV file.
     #[arg(long, value_name = "FILE")]

@@ -86,7 +86,8 @@ fn run_all(
     options: &SweepOptions,
     (progress, interrupt): (&Progress, &Interrupt),
 ) -> Result<Vec<SweepRun>, Failure> {
-    let threads = options.threads.map_or(0, usize::from);
+    // 0 stands for one thread for each core; more threads than runs would only wait.
+    let threads = options.threads.map_or(0, |threads| threads.get().min(values.len()));
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::Threads)?;
     let done = AtomicUsize::new(0);
     let run_one = |&value: &f64| {

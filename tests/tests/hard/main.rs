@@ -9,6 +9,7 @@ mod changes;
 mod corners;
 mod dead_points;
 mod dips;
+mod driven;
 mod events;
 mod extremes;
 mod folds;

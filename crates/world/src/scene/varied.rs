@@ -114,7 +114,13 @@ fn absent(elements: &[Value], step: &Step) -> String {
         Step::Element(index) => format!("there is no element {index}: there are {}", elements.len()),
         Step::Field(name) => {
             let names: Vec<_> = elements.iter().filter_map(|element| element.get("name")?.as_str()).collect();
-            format!("there is no `{name}`: there are {}", names.join(", "))
+            match names.is_empty() {
+                true => format!(
+                    "there is no `{name}`: none of the {} has a name, use [0], [1], ...",
+                    elements.len()
+                ),
+                false => format!("there is no `{name}`: there are {}", names.join(", ")),
+            }
         }
     }
 }
@@ -153,6 +159,9 @@ mod tests {
         shape = { disc = { radius = 0.5 } }
         mass = 1
         position = [3, 0.5]
+
+        [[force]]
+        gravity = { acceleration = [0, -9.81] }
     "#;
 
     fn varied(field: &str) -> Result<VariedScene, SceneError> {
@@ -187,6 +196,10 @@ mod tests {
         };
         for (field, why) in [
             ("body.bal.mass", "line 6: body.bal.mass: there is no `bal`: there are left disc, ball"),
+            (
+                "force.gravity.acceleration[1]",
+                "there is no `gravity`: none of the 1 has a name, use [0], [1], ...",
+            ),
             ("body[2].mass", "body[2].mass: there is no element 2: there are 2"),
             ("run.speed.x", "line 4: run.speed.x: there is no `speed` in the scene"),
             ("run.duration.x", "`run.duration` has no parts"),

@@ -1,0 +1,162 @@
+//! Bodies that force laws alone move, press or bring to rest: contacts that such forces let go, pairs that drift far away,
+//! springs that have settled.
+
+use super::within;
+use halfgap::{BodyId, Event};
+use halfgap_tests::world_of;
+
+/// Times [s] at which the contacts of a scene end, up to its end.
+fn releases(text: &str, duration: f64) -> Vec<f64> {
+    let mut times = Vec::new();
+    let mut note = |event: &Event| {
+        times.extend(matches!(event, Event::ContactEnds(_)).then(|| event.time()));
+    };
+    world_of(text).advance_to(duration, &mut note).unwrap_or_else(|error| panic!("{error}"));
+    times
+}
+
+#[test]
+fn a_disc_in_a_guide_leaves_its_floor_when_a_turning_force_lifts_it() {
+    // It stands wholly still until then, so that no error of its steps tells how the force turns: the floor presses
+    // with N = 9.81 - M sin(phase + rate t).
+    let (mut worst, mut count) = (0.0f64, 0);
+    for (magnitude, rate, phase) in [(12.0, 10.0, -0.35), (11.0, 8.5, -2.85)] {
+        for tolerance in ["1e-3", "1e-5", "1e-7", "1.1e-8", "1e-8", "9e-9", "4e-9", "1e-9", "1e-10"] {
+            let text = format!(
+                r#"
+                format = "halfgap-scene-1"
+                title = "t"
+                run = {{ duration = 1.5, tolerance = {tolerance} }}
+                [[body]]
+                name = "floor"
+                fixed = true
+                shape = {{ block = {{ width = 20.0, height = 1.0 }} }}
+                position = [0.0, -0.5]
+                [[body]]
+                name = "disc"
+                shape = {{ disc = {{ radius = 0.1 }} }}
+                mass = 1.0
+                elasticity = 0.0
+                position = [0.0, 0.1]
+                [[connector]]
+                slot = {{ a = {{ body = "world", point = [0.0, 0.0] }}, b = {{ body = "disc", point = [0.0, 0.0] }}, normal = [1.0, 0.0] }}
+                [[force]]
+                gravity = {{ acceleration = [0.0, -9.81] }}
+                [[force]]
+                rotating = {{ body = "disc", point = [0.0, 0.0], magnitude = {magnitude}, rate = {rate}, phase = {phase} }}
+                "#
+            );
+            for time in releases(&text, 1.5) {
+                // The angle at which the force comes to lift the disc, in the turn that is nearest.
+                let lifts = (9.81f64 / magnitude).asin();
+                let turn = ((phase + rate * time - lifts) / std::f64::consts::TAU).round();
+                let expected = (lifts + turn * std::f64::consts::TAU - phase) / rate;
+                worst = worst.max((time - expected).abs());
+                count += 1;
+            }
+        }
+    }
+    // Three turns of the first and two of the second lift it in that time, at each of nine tolerances.
+    assert_eq!(count, 45);
+    within("a turning force lifts a disc: release [s]", worst, 1e-8);
+}
+
+/// A disc and a block that a spring with a dashpot presses together, both at a speed [m/s].
+fn pressed_pair(speed: f64, tolerance: f64) -> String {
+    let body = |name: &str, shape: &str, rest: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {shape}\nvelocity = [{speed:?}, 0.0]\nelasticity = 0.5\n{rest}\n"
+        )
+    };
+    format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 300.0, tolerance = {tolerance:e} }}\n{}{}\
+         [[force]]\nspring = {{ a = {{ body = \"disc\", point = [0.0, 0.0] }}, b = {{ body = \"block\", point = [0.0, 0.0] }}, rest_length = 0.1, stiffness = 50.0, damping = 1.0 }}\n",
+        body("disc", "{ disc = { radius = 0.2 } }", "mass = 1.0"),
+        body(
+            "block",
+            "{ block = { width = 0.4, height = 0.3 } }",
+            "mass = 2.0\nposition = [0.6, 0.02]\nangle = 0.1"
+        )
+    )
+}
+
+#[test]
+fn a_pair_that_drifts_away_rests_on_each_other_as_one_that_stays() {
+    let apart = |speed: f64, tolerance: f64| {
+        let mut world = world_of(&pressed_pair(speed, tolerance));
+        world.advance_to(300.0, &mut |_| {}).unwrap_or_else(|error| panic!("{speed} m/s: {error}"));
+        (world.state(BodyId(1)).position - world.state(BodyId(0)).position).length()
+    };
+    for tolerance in [1e-8, 1e-10] {
+        let at_rest = apart(0.0, tolerance);
+        for speed in [3.0, 1000.0] {
+            let what = format!("a pair pressed together goes {:.0e} m: its distance [m]", speed * 300.0);
+            within(&what, apart(speed, tolerance) - at_rest, 3e-7);
+        }
+    }
+}
+
+/// Steps that a scene takes.
+fn steps(text: &str, duration: f64) -> u64 {
+    let mut world = world_of(text);
+    world.advance_to(duration, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));
+    world.statistics().steps
+}
+
+#[test]
+fn a_mass_that_has_settled_on_a_damped_spring_takes_long_steps() {
+    // The swing dies away within 100 s. After that the work of the dashpot is rounding of velocities that are rounding.
+    for tolerance in [1e-6, 1e-8, 1e-9, 1e-11] {
+        let text = format!(
+            r#"
+            format = "halfgap-scene-1"
+            title = "t"
+            run = {{ duration = 1e4, tolerance = {tolerance:e} }}
+            [[body]]
+            name = "disc"
+            shape = {{ disc = {{ radius = 0.1 }} }}
+            mass = 1.0
+            position = [0.0, -1.3]
+            [[force]]
+            spring = {{ a = {{ body = "world", point = [0.0, 0.0] }}, b = {{ body = "disc", point = [0.0, 0.0] }}, rest_length = 1.0, stiffness = 30.0, damping = 0.5 }}
+            [[force]]
+            gravity = {{ acceleration = [0.0, -9.81] }}
+            "#
+        );
+        let steps = steps(&text, 1e4);
+        assert!(steps < 20_000, "{steps} steps at {tolerance}");
+    }
+}
+
+#[test]
+fn a_chain_of_stiff_springs_that_creeps_takes_long_steps() {
+    // A light body between strong springs, whose tension makes rounding across the chain count; no step is told from
+    // rounding there.
+    for (tolerance, most) in [(1e-6, 3_000), (1e-8, 9_000), (1e-10, 27_000)] {
+        let body = |name: &str, place: [f64; 2], velocity: [f64; 2], mass: f64| {
+            format!(
+                "[[body]]\nname = \"{name}\"\nshape = {{ disc = {{ radius = 0.1 }} }}\nposition = {place:?}\n\
+                 velocity = {velocity:?}\nmass = {mass:?}\n"
+            )
+        };
+        let spring = |a: &str, b: &str, stiffness: f64, damping: f64| {
+            format!(
+                "[[force]]\nspring = {{ a = {{ body = \"{a}\", point = [0.0, 0.0] }}, b = {{ body = \"{b}\", point = [0.0, 0.0] }}, rest_length = 10.0, \
+                 stiffness = {stiffness:?}, damping = {damping:?} }}\n"
+            )
+        };
+        let text = format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"t\"\n\
+             run = {{ duration = 1000.0, collisions = false, tolerance = {tolerance:e} }}\n{}{}{}{}{}{}\
+             [[force]]\ndamping = {{ linear = 0.016, angular = 0.0 }}\n",
+            body("a", [10.389, 2.104], [-0.041, -0.0083], 0.002),
+            body("b", [20.221, 4.095], [-0.977, -0.198], 0.95),
+            body("c", [30.275, 6.131], [-0.389, -0.0787], 0.0173),
+            spring("world", "a", 0.75, 262.0),
+            spring("a", "b", 2519.0, 0.005),
+            spring("b", "c", 1.4, 20.5),
+        );
+        let steps = steps(&text, 1000.0);
+        assert!(steps < most, "{steps} steps at {tolerance}");
+    }
+}
