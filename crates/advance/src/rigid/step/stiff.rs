@@ -61,6 +61,8 @@ pub(crate) struct Stiffness {
     /// The rate [1/s] of the steepest forces by probes, where rounding of positions may matter; estimates from short
     /// steps do not show it. 0 where it does not matter.
     steep: f64,
+    /// Number of such probes, which tells the direction of the next.
+    probes: u32,
     /// Number of held-up steps less that of others, at least 0.
     held_up: u32,
     /// Number of steps until the next estimate.
@@ -180,14 +182,15 @@ impl Dynamics<'_> {
             return;
         }
         let moved = PROBE * rounding;
-        let turn = self.stage.evaluations;
+        let turn = self.group.stiffness.probes;
+        self.group.stiffness.probes = turn.wrapping_add(1);
         let mut trial = std::mem::take(&mut self.stage.trial);
         let mut rates = std::mem::take(&mut self.stage.trial_rates);
         trial.clone_from(&self.group.end_state);
         rates.clear();
         rates.resize(trial.len(), 0.0);
         for (place, &body) in self.group.bodies.iter().enumerate() {
-            let way = moved * DVec2::from_angle((turn + place as u64) as f64);
+            let way = moved * DVec2::from_angle(f64::from(turn) + place as f64);
             let reach = self.physics.mechanism.flyers[body.index()].reach();
             trial[3 * place] += way.x;
             trial[3 * place + 1] += way.y;
