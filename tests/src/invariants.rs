@@ -1,8 +1,8 @@
-//! What must hold whatever the scene: runs a scene step by step and looks.
+//! Invariants of all scenes: runs a scene step by step and checks them.
 //!
-//! No panic, no number that is none, no penetration, no energy from nothing, connectors together, contacts
-//! that touch and push, and an end within the budget: finished, or a clean error. Everything is judged from
-//! outside: distances by the geometry alone, energy from the states.
+//! No panic, no number that is not finite, no penetration, no energy from nothing, connectors together, contacts that
+//! touch and push, and an end within the budget: finished, or a clean error. All checks are independent of the engine:
+//! distances come from the geometry alone, energy from the states.
 
 use crate::touching::wrong_contact;
 use halfgap::force::{Moving, Snapshot, Wrench, Wrenches};
@@ -14,44 +14,45 @@ use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
-/// States looked at in each run.
+/// Number of intervals between the states that are checked in each run.
 const LOOKS: u32 = 50;
-/// Stops from one look to the next, at which only the clock and the energy are read: what goes on without any
-/// event is told from what hangs, and bodies that pass close by each other turn much energy over in no time.
+/// Number of stops from one check to the next, at which only the clock and the energy are read: so a run without events
+/// is told from one that hangs, and the energy of bodies that pass close by each other is seen.
 const STOPS: u32 = 40;
-/// How far the energy books may be from closing, in tolerances (and one more for each step) and parts of the
-/// energy turned over.
+/// Error allowed in the energy books, in tolerances of the energy turned over; one more is allowed for each step.
 const ENERGY_TOLERANCES: f64 = 1e4;
+/// Error allowed in the energy books for rounding, as a fraction of the energy turned over.
 const ENERGY_ROUNDING: f64 = 1e-9;
-/// Part of the energy turned over that captures may take, beside what the books may be off by: contacts begin
-/// slowly. More is a blow that was taken for one.
+/// Fraction of the energy turned over that captures may take, beside the error allowed in the books: contacts begin
+/// slowly. More is an impact that was taken for one.
 const CAPTURED: f64 = 5e-2;
-/// How far a connector may be off, in tolerances and in roundings of the coordinates.
+/// Error allowed in a connector, in tolerances of the largest coordinate.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
+/// Error allowed in a connector for rounding, as a fraction of the largest coordinate.
 const CONNECTOR_ROUNDINGS: f64 = 1e4 * f64::EPSILON;
 
-/// Part of the duration that goes by in the second half of the budget at least, if the run does not crawl.
-/// What seems to gets so many times the budget to come on after all: light bodies between heavy ones rattle
-/// for a while, and nothing is wrong.
+/// Fraction of the duration: a run crawls if it covers less than this in the second half of its budget.
 const CRAWLS: f64 = 1e-5;
+/// Factor by which the budget of a run that seems to crawl is raised once: light bodies between heavy ones rattle for a
+/// while, and nothing is wrong.
 const PATIENCE: u32 = 4;
 
-/// Step [s] in which what has sunk without contact forces is put back, if the scene says nothing else.
+/// Default step [s] after which sunk bodies are put back where contacts carry impulses only.
 const IMPULSE_STEP: f64 = 0.025;
-/// Part of its bounding radius that a body may sink before it is stopped again, however fast it comes.
+/// Depth to which a body may sink before it is stopped again, as a fraction of its bounding radius.
 const SUNK_SHARE: f64 = 1e-2;
 
-/// Ways in which a body is shifted to see how deep it is.
+/// Number of directions in which a body is shifted to measure its depth.
 const DIRECTIONS: u32 = 16;
-/// How often what is known of how deep it is to a power of ten is halved.
+/// Number of halvings of the interval between two powers of ten in which the depth lies.
 const HALVINGS: u32 = 5;
 
-/// What a run may cost.
+/// Largest cost of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
-    /// Events.
+    /// Number of events.
     pub events: u64,
-    /// Time that goes by meanwhile.
+    /// Wall time.
     pub wall: Duration,
 }
 
@@ -61,12 +62,12 @@ impl Default for Budget {
     }
 }
 
-/// How a run went.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// To its end, and all held.
+    /// It came to its end, and all invariants held.
     Finished,
-    /// To its end, but bodies overlapped by less than the target gap.
+    /// It came to its end, but bodies overlapped by less than the target gap.
     Shallow(String),
     /// The scene could not be built: a clean error.
     Refused(String),
@@ -74,21 +75,21 @@ pub enum Verdict {
     Stopped(String),
     /// The budget was spent while it went on well.
     Unfinished(String),
-    /// Something did not hold.
+    /// An invariant did not hold.
     Broken(Broken),
 }
 
-/// What did not hold: its kind, and what was seen.
+/// A broken invariant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broken {
     /// A word or two by which failures are counted.
     pub kind: String,
-    /// When, who and how much.
+    /// Time, bodies and size of the violation.
     pub what: String,
 }
 
 impl Verdict {
-    /// By which runs are counted: failures by their kind, errors by their words without numbers and names.
+    /// The kind by which runs are counted: failures by their kind, errors by their words without numbers and names.
     #[must_use]
     pub fn kind(&self) -> String {
         match self {
@@ -121,7 +122,7 @@ thread_local! {
     static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Keeps panics from being printed; their messages are told as failures.
+/// Keeps panics from being printed; their messages are reported as failures.
 pub fn silence_panics() {
     std::panic::set_hook(Box::new(|info| {
         let text = info.to_string().replace('\n', " ");
@@ -129,7 +130,7 @@ pub fn silence_panics() {
     }));
 }
 
-/// What the run panics with when its budget is spent.
+/// Payload of the panic that ends a run whose budget is spent.
 struct Spent {
     crawls: bool,
     what: String,
@@ -173,7 +174,7 @@ fn run(json: &str, budget: Budget) -> Verdict {
             purse.events += 1;
             purse.spend(event.time());
         });
-        // What a world says of itself need not be found out.
+        // A broken invariant that the world itself reports need not be searched for.
         if let Err(error @ RunError::Astray { .. }) = outcome {
             return Verdict::Stopped(error.to_string());
         }
@@ -190,14 +191,14 @@ fn run(json: &str, budget: Budget) -> Verdict {
     inspector.shallow.map_or(Verdict::Finished, Verdict::Shallow)
 }
 
-/// What of the budget is spent, and for what.
+/// The budget of a run, and the part of it that is spent.
 struct Purse {
     budget: Budget,
     started: Instant,
     events: u64,
     start: f64,
     duration: f64,
-    /// Where the run was [s] when half of the budget was spent.
+    /// Time of the run [s] when half of the budget was spent.
     half_way: Option<f64>,
     /// The budget was extended already.
     is_extended: bool,
@@ -216,8 +217,7 @@ impl Purse {
         }
     }
 
-    /// Panics with [`Spent`] once too much was, where the run is at a time [s]; before that, what crawls gets
-    /// more, once.
+    /// Panics with [`Spent`] once the budget is spent, with the run at a time [s]; a run that crawls gets more, once.
     fn spend(&mut self, time: f64) {
         let wall = self.started.elapsed();
         let half_way = self.half_way;
@@ -241,22 +241,22 @@ impl Purse {
     }
 }
 
-/// What is looked at.
+/// The quantities that are checked, with their bounds.
 struct Inspector {
     /// Pairs that may not penetrate.
     pairs: Vec<(BodyId, BodyId)>,
-    /// What each connector is, and how far [m] it may be off beside its tolerance: ropes and stops are taut
-    /// within their zone.
+    /// Kind of each connector, and error [m] allowed in it beside its tolerance: ropes and stops are taut within their
+    /// zone.
     connectors: Vec<(&'static str, f64)>,
     tolerance: f64,
-    /// How far [m] slow bodies sink where contacts carry impulses only, beside a part of their own size;
+    /// Depth [m] to which slow bodies sink where contacts carry impulses only, beside a fraction of their own size;
     /// `None` where they carry forces.
     sinks: Option<f64>,
-    /// The scene says itself what is slow: how much captures take is its own affair.
+    /// True if the scene gives the speed that counts as slow: captures may then take any energy.
     slow_is_given: bool,
     turned_over: f64,
     start_potential: f64,
-    /// Energy [J] that tells nothing.
+    /// Energy [J] that may be rounding.
     no_energy: f64,
     /// The first overlap that was less deep than the target gap.
     shallow: Option<String>,
@@ -330,13 +330,13 @@ impl Inspector {
         self.look_at_energy(world).or_else(|(kind, what)| broken(kind, what))
     }
 
-    /// How far [m] two bodies may sink into each other beyond the target gap.
+    /// Depth [m] to which two bodies may sink into each other beyond the target gap.
     fn may_sink(&self, world: &World, bodies: [BodyId; 2]) -> f64 {
         let reach = bodies.map(|body| world.shape(body).reach());
         self.sinks.map_or(0.0, |slow| slow + SUNK_SHARE * reach[0].min(reach[1]))
     }
 
-    /// Notes how much energy has been turned over.
+    /// Notes the energy that has been turned over.
     fn note_turnover(&mut self, world: &World) {
         let ledger = world.ledger();
         let turned = ledger.now.kinetic
@@ -369,7 +369,7 @@ impl Inspector {
     }
 }
 
-/// How far [m] a connector may be off where it is taut.
+/// Error [m] allowed in a connector beside its tolerance.
 fn zone(connector: &ConnectorData, world: &World) -> f64 {
     match connector {
         ConnectorData::Rope(_) | ConnectorData::RailStop(_) => world.tolerances().accuracy,
@@ -377,7 +377,7 @@ fn zone(connector: &ConnectorData, world: &World) -> f64 {
     }
 }
 
-/// How two bodies lie to each other, if they are not apart.
+/// Relation of two bodies; `None` if they are apart.
 fn penetration(world: &World, a: BodyId, b: BodyId) -> Option<Relation> {
     let pose = |body| world.state(body).pose();
     let (first, second) = (world.shape(a), world.shape(b));
@@ -413,9 +413,9 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     enough
 }
 
-/// Energy [J] that tells nothing: of a speed that is rounding of coordinates, and of what a weight or another
-/// force does along what is within the tolerance of a body's size: where a spring presses on what is held,
-/// steps err by that much and projections take it back, though nothing moves.
+/// Energy [J] that may be rounding: that of a speed that is rounding of coordinates, and the work of weights and other
+/// forces along a distance within the tolerance of a body's size. Where a spring presses on a held body, steps err by
+/// that much and projections take it back, though nothing moves.
 fn no_energy(scene: &Scene, world: &World) -> f64 {
     let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
     let reach = world.bodies().filter(|&body| !world.is_fixed(body)).map(|body| world.shape(body).reach());
@@ -436,7 +436,7 @@ fn forces(world: &World) -> f64 {
     sums.iter().map(|wrench| wrench.force.length()).sum()
 }
 
-/// Uniform gravity [m/s^2] of a force, if it is that.
+/// Size of the uniform gravity [m/s^2] of a force; 0 for other forces.
 fn gravity(force: &ForceData) -> f64 {
     match force {
         ForceData::Gravity(gravity) => DVec2::from(gravity.acceleration).length(),

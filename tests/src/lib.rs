@@ -1,7 +1,8 @@
 //! Scenarios that cross the layers of halfgap, and the scenes that they run.
 //!
-//! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and looks
-//! (`touching` at contacts), `mirror` shows them in a mirror, `shrink` makes small what fails, `random` is where the numbers come from.
+//! `mechanism` places bodies by hand; `generate` makes scenes from seeds, `invariants` runs them and checks them
+//! (`touching` their contacts), `mirror` mirrors them, `shrink` makes failing scenes smaller, `random` makes the random
+//! numbers.
 
 pub mod generate;
 pub mod invariants;

@@ -9,40 +9,40 @@ use halfgap::{
 /// Gravity of the tests [m/s^2].
 pub const GRAVITY: f64 = 10.0;
 
-/// A world in the making, with gravity on all that moves.
+/// A builder of worlds with gravity on all movable bodies.
 #[derive(Debug)]
 pub struct Workshop {
-    /// The builder, for what is not below.
+    /// The builder, for parts that have no method here.
     pub builder: WorldBuilder,
     gravity: DVec2,
 }
 
 impl Workshop {
-    /// An empty one.
+    /// A workshop without bodies, with the given settings.
     #[must_use]
     pub fn of(settings: WorldSettings) -> Self {
         Self { builder: WorldBuilder::new(settings), gravity: DVec2::new(0.0, -GRAVITY) }
     }
 
-    /// The same, at a tolerance.
+    /// A workshop without bodies, at a tolerance.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self::of(WorldSettings { tolerance, ..WorldSettings::default() })
     }
 
-    /// The same where bodies pass through each other.
+    /// A workshop without bodies, at a tolerance, whose bodies pass through each other.
     #[must_use]
     pub fn passing(tolerance: f64) -> Self {
         Self::of(WorldSettings { tolerance, collisions: false, ..WorldSettings::default() })
     }
 
-    /// The same as a new one where nothing falls.
+    /// A workshop without bodies, at a tolerance, and without gravity.
     #[must_use]
     pub fn weightless(tolerance: f64) -> Self {
         Self::new(tolerance).without_gravity()
     }
 
-    /// The same with nothing that falls from now on.
+    /// Switches gravity off for bodies that are added from now on.
     #[must_use]
     pub fn without_gravity(self) -> Self {
         Self { gravity: DVec2::ZERO, ..self }
@@ -150,7 +150,7 @@ pub fn thrown(x: f64, y: f64, velocity: DVec2) -> BodyState {
     BodyState { velocity, ..at_rest(x, y) }
 }
 
-/// Advances a world; whatever happens is fine.
+/// Advances a world, and ignores its events.
 ///
 /// # Panics
 /// If it stops early: the test fails.

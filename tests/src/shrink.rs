@@ -1,13 +1,14 @@
-//! Makes a failing scene smaller: leaves out what it fails without, and makes plain what is left.
+//! Makes a failing scene smaller: leaves out the parts without which it still fails, and simplifies the rest.
 
 use crate::invariants::{Budget, trial};
 use serde_json::{Value, json};
 
-/// Numbers of a body that say nothing.
+/// Plain values of the numbers of a body.
 const PLAIN: [(&str, f64); 4] =
     [("elasticity", 0.0), ("mass", 1.0), ("angle", 0.0), ("angular_velocity", 0.0)];
-/// Tries, each a run, before the smallest scene so far has to do; and how short it gets [s].
+/// Largest number of tries, each a run.
 const TRIES: usize = 300;
+/// Shortest duration [s].
 const SHORTEST: f64 = 1e-3;
 
 /// The smallest scene found that fails in the same way.

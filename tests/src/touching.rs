@@ -1,17 +1,17 @@
-//! What must hold of contacts: whoever is said to touch does so, and pushes.
+//! Invariants of contacts: bodies that are reported to touch do so, and push.
 //!
 //! A contact whose end is missed goes on beyond the ends of its edges, or holds its bodies together. Neither
 //! penetrates, nor does it cost energy.
 
 use halfgap::{ContactForce, World};
 
-/// How far apart bodies in contact may be, in target gaps and half-widths of the target zone.
+/// Largest distance of bodies in contact, as a multiple of the target gap plus the half-width of the target zone.
 const ZONES: f64 = 4.0;
-/// Part of all forces on the bodies of a contact with which it may seem to pull.
+/// Pull of a contact that may be rounding, as a fraction of all forces on its bodies.
 const PULL: f64 = 1e-6;
 
-/// The kind of what is wrong with a contact, if anything is, and what was seen; with the rounding of
-/// coordinates [m], and a force [N] that tells nothing.
+/// The first violation by a contact, as its kind and a message; `None` if there is none. `rounding` is that of
+/// coordinates [m], `no_force` a force [N] that may be rounding.
 pub(crate) fn wrong_contact(world: &World, rounding: f64, no_force: f64) -> Option<(&'static str, String)> {
     let rows = world.contact_forces();
     let mut contacts = rows.iter().filter(|row| row.connector.is_none());
@@ -32,8 +32,8 @@ fn not_touching(world: &World, contact: &ContactForce, rounding: f64) -> Option<
     })
 }
 
-/// Contacts of the same two bodies count together: where there are more than are needed, forces of single
-/// ones say nothing.
+/// Reports a contact that pulls. Contacts of the same two bodies count together: where there are more than are needed,
+/// their single forces are not unique.
 fn pulling(
     world: &World,
     contact: &ContactForce,
@@ -60,8 +60,8 @@ mod tests {
     use super::*;
     use crate::world_of;
 
-    /// What is wrong with a contact of two discs of radius 1 m whose centres are so far apart [m], with such
-    /// a force [N].
+    /// Kind of the violation by a contact of two discs of radius 1 m, by the distance of their centres [m] and the
+    /// force [N].
     fn wrong(apart: f64, force: f64) -> Option<&'static str> {
         let disc = "shape = { disc = { radius = 1.0 } }\nmass = 1.0\n";
         let world = world_of(&format!(

@@ -1,4 +1,4 @@
-//! How many impacts a second: free discs and rounded polygons in a box, from hundreds to thousands.
+//! Impacts per second: free discs and rounded polygons in a box, from hundreds to thousands.
 
 use halfgap::World;
 use halfgap::geometry::Shape;
@@ -17,18 +17,18 @@ const IMPACTS: u64 = 20_000;
 /// Measurements, of which the fastest counts.
 const REPEATS: usize = 7;
 
-/// What one gas costs.
+/// Cost of one gas.
 #[derive(Clone, Debug)]
 pub struct GasRow {
-    /// What flies.
+    /// Shape of the bodies.
     pub shape: &'static str,
-    /// How many.
+    /// Number of bodies.
     pub count: usize,
     /// Time per impact [s].
     pub per_impact: f64,
 }
 
-/// Measures all gases so many times, one after the other; of each the least time counts.
+/// Measures all gases in a number of passes; of each gas the least time counts.
 ///
 /// # Panics
 /// A gas stops: a fault of the engine.

@@ -1,20 +1,20 @@
-//! One run of one engine: how long, how wrong.
+//! One run of one engine: its time and its error.
 //!
 //! Stepping alone is timed. A first pass stops at every time of the scene's grid for a look at penetration;
-//! then the run is repeated from its set-up, unless it is long, and the least of all times counts: what else
-//! the machine does can only add to it.
+//! then the run is repeated from its set-up, unless it is long, and the least of all times counts: other work
+//! of the machine can only add to it.
 
 use crate::engines::{Engine, EngineError};
 use crate::scene::Scene;
 use halfgap::BodyState;
 use std::time::{Duration, Instant};
 
-/// How often a run is repeated.
+/// Rules for the repetition of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Repeats {
     /// A run that takes longer is given up.
     pub longest: Duration,
-    /// At most so often.
+    /// Largest number of repeats.
     pub most: usize,
     /// No further repeats once they have taken this long together.
     pub patience: Duration,
@@ -24,12 +24,12 @@ impl Repeats {
     /// For a report.
     pub const THOROUGH: Self =
         Self { longest: Duration::from_secs(60), most: 101, patience: Duration::from_millis(400) };
-    /// For a look.
+    /// For a quick look.
     pub const QUICK: Self =
         Self { longest: Duration::from_secs(5), most: 11, patience: Duration::from_millis(20) };
 }
 
-/// What a run cost and how far it was off.
+/// Cost and error of a run.
 #[derive(Clone, Debug)]
 pub struct Measurement {
     /// Least time of stepping [s] per simulated second.

@@ -6,30 +6,30 @@ use glam::DVec2;
 use halfgap::BodyState;
 use halfgap::geometry::{EdgeSpec, PathSpec};
 
-/// A scene with what is known of its answer.
+/// A scene with its known answer.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Name of files and of rows: lower case, underscores.
     pub name: String,
     /// One line for people.
     pub about: String,
-    /// The bodies; what refers to a body does so by its place here.
+    /// The bodies; connectors and states refer to them by their index here.
     pub bodies: Vec<Body>,
-    /// What ties bodies together.
+    /// The connectors.
     pub connectors: Vec<Connector>,
     /// Acceleration of all movable bodies [m/s^2].
     pub gravity: DVec2,
     /// False if bodies pass through each other.
     pub collisions: bool,
-    /// When it ends [s]; it starts at 0.
+    /// End time [s]; a scene starts at 0.
     pub duration: f64,
     /// All check times are multiples of this [s], and so may be those of steps.
     pub check_grid: f64,
     /// States that are known, in order of time.
     pub checks: Vec<Check>,
-    /// How the checks were computed.
+    /// Method by which the checks were computed.
     pub reference: String,
-    /// How far the checks themselves may be off [m].
+    /// Error of the checks themselves [m].
     pub reference_error: f64,
 }
 
@@ -81,7 +81,7 @@ pub enum Shape {
         /// Size along y [m].
         height: f64,
     },
-    /// What closed paths of lines and arcs surround; only discs may collide with it.
+    /// The solid that closed paths of lines and arcs surround; only discs may collide with it.
     Outline(Vec<PathSpec>),
 }
 
@@ -94,7 +94,7 @@ pub struct End {
     pub point: DVec2,
 }
 
-/// What ties bodies together.
+/// A connector.
 #[derive(Clone, Debug)]
 pub enum Connector {
     /// Keeps two points together.
@@ -156,7 +156,7 @@ impl Scene {
         self
     }
 
-    /// Says how the checks were computed, and how far they may be off [m].
+    /// Sets the method by which the checks were computed, and their error [m].
     #[must_use]
     pub fn with_reference(mut self, how: &str, error: f64) -> Self {
         how.clone_into(&mut self.reference);
@@ -194,7 +194,7 @@ impl Scene {
         self.bodies.iter().zip(states).map(|(body, state)| energy(body, state)).sum()
     }
 
-    /// How far states are from those of a check [m]: the largest error of a position, and of an angle times the radius
+    /// Error of states at a check [m]: the largest error of a position, and of an angle times the radius
     /// of gyration.
     #[must_use]
     pub fn error(&self, check: &Check, states: &[BodyState]) -> f64 {
@@ -210,7 +210,7 @@ impl Scene {
         check.states.iter().map(error).fold(0.0, worst)
     }
 
-    /// Where an end of a connector is [m].
+    /// World position of an end of a connector [m].
     #[must_use]
     pub fn place(&self, end: &End, states: &[BodyState]) -> DVec2 {
         end.body.map_or(end.point, |body| {
@@ -218,7 +218,7 @@ impl Scene {
         })
     }
 
-    /// How far the worst connector is off [m]; rails are left out.
+    /// Largest error of a connector [m]; rails are left out.
     #[must_use]
     pub fn connector_error(&self, states: &[BodyState]) -> f64 {
         let error = |connector: &Connector| match connector {
@@ -257,7 +257,7 @@ impl Body {
         Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0 }
     }
 
-    /// The same body with another elasticity.
+    /// The body with another elasticity.
     #[must_use]
     pub fn with_elasticity(self, elasticity: f64) -> Self {
         Self { elasticity, ..self }

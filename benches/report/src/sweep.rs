@@ -8,7 +8,7 @@ use crate::measure::{Measurement, Repeats, measure};
 use crate::scene::Scene;
 use glam::DVec2;
 
-/// A run that was measured, or why there is none.
+/// A run that was measured, or the reason why it could not be.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// Name of the scene.
@@ -19,9 +19,9 @@ pub struct Row {
     pub version: String,
     /// Its settings.
     pub settings: String,
-    /// How far the known states themselves may be off [m].
+    /// Error of the known states themselves [m].
     pub reference_error: f64,
-    /// What was measured, or what kept it from that.
+    /// The measurement, or the reason why there is none.
     pub outcome: Result<Measurement, String>,
 }
 
@@ -60,10 +60,10 @@ fn keep_faster(old: &mut Row, new: Row) {
 /// Tolerance at which scenes without a known answer are run.
 const PILE_TOLERANCE: f64 = 1e-3;
 
-/// How thorough a sweep is.
+/// Thoroughness of a sweep.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// How often each run is repeated.
+    /// Rules for the repetition of each run.
     pub repeats: Repeats,
     /// Runs that would take longer than this [s] are left out.
     pub longest_run: f64,
@@ -71,7 +71,7 @@ pub struct Effort {
     pub tolerances: Vec<f64>,
     /// Segments for a full circle where peers cut arcs up.
     pub segments: Vec<usize>,
-    /// How many of the peers' variants of settings are run.
+    /// Number of the peers' variants of settings that are run.
     pub variants: usize,
 }
 
@@ -125,7 +125,7 @@ pub fn halfgap_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
 
 /// Steps per second of the coarsest run of a peer.
 const STOCK_RATE: f64 = 60.0;
-/// Each further run has so many times the steps.
+/// Factor from the number of steps of one run to that of the next.
 const REFINEMENT: f64 = 4.0;
 /// Refinements: 60, 240, ... 61,440, 245,760 steps a second.
 const REFINEMENTS: i32 = 6;

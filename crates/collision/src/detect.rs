@@ -69,8 +69,9 @@ pub fn detect_features_of_pair(
 /// Returns the record at `time` [s] of one pair of features that a search found in contact, wherever on the features
 /// the contact lies and however far apart they are.
 ///
-/// `None` if the two cannot touch inside their ranges, or if they are two vertices so near each other that the
-/// direction between them may be all rounding: one that lies outside of a normal cone by more than 0.1 rad.
+/// `None` if features of these kinds cannot touch inside their ranges ([`halfgap_geometry::pair_kind`]), or if they are
+/// two vertices and the direction between them lies outside of a normal cone by more than 0.1 rad: between vertices that
+/// nearly coincide the direction is all rounding.
 #[must_use]
 pub fn record_features(
     [a, b]: [&Moment<'_>; 2],

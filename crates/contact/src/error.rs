@@ -132,7 +132,7 @@ pub enum SolveError {
     NotApplicable {
         /// The method.
         method: Method,
-        /// What the method needs and the problem lacks.
+        /// Property that the method needs and the problem lacks.
         reason: &'static str,
     },
 }

@@ -10,7 +10,7 @@ use crate::problem::Problem;
 /// No row, or not in the island.
 const NONE: u32 = u32::MAX;
 
-/// Number of islands that are kept as problems and have solvers of their own; all later islands share the last ones.
+/// Number of islands that are kept as problems and have solvers of their own; all later islands share the last of these.
 pub(crate) const KEPT: usize = 64;
 
 /// The islands of a problem, and the first of them as problems of their own.

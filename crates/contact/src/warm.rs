@@ -45,7 +45,8 @@ impl WarmStart {
     ///
     /// # Panics
     ///
-    /// If `solution` has more rows than `problem` and all rows of `problem` have keys.
+    /// If `solution` has more rows than `problem` and all rows of `problem` have keys, or if `solution.active` names a
+    /// row that `solution` does not have.
     pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
         (self.by_key, self.is_guess, self.has_forces) = (has_keys(problem), false, false);
         self.entries.clear();
@@ -62,7 +63,7 @@ impl WarmStart {
     }
 
     /// Stores a guess of the closed rows in place of all that was stored before: one flag per row, in the order of
-    /// rows; `None` for a row of which nothing is known.
+    /// rows; `None` for a row of which nothing is known. A problem all of whose rows have keys ignores it.
     pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, false);
         self.entries.clear();
@@ -75,7 +76,8 @@ impl WarmStart {
     }
 
     /// Stores a guess of the forces \[N\] (or impulses [N·s]) in place of all that was stored before: one per row, in
-    /// the order of rows; `None` for a row of which nothing is known. Rows with a positive force count as closed.
+    /// the order of rows; `None` for a row of which nothing is known. Rows with a positive force count as closed. A
+    /// problem all of whose rows have keys ignores the guess.
     pub fn guess_forces(&mut self, forces: impl IntoIterator<Item = Option<f64>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, true);
         self.entries.clear();

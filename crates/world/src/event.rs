@@ -69,7 +69,7 @@ pub struct Impact {
     pub rows: Vec<ImpactRow>,
     /// Change of the kinetic energy [J], negative where energy was lost.
     pub energy_change: f64,
-    /// States of the movable bodies that took part, after the impact.
+    /// States, after the impact, of the movable bodies on which an impulse acted.
     pub states: Vec<(BodyId, BodyState)>,
 }
 

@@ -10,7 +10,7 @@ use halfgap_contact::{ImpactError, Problem, SolveError};
 /// Largest number of names shown in a message; the error itself has all of them.
 const MOST_NAMES: usize = 12;
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "scene", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Outcome {

@@ -46,13 +46,13 @@ impl Energy {
 pub struct Statistics {
     /// Number of segments of motion started, over all movable bodies.
     pub steps: u64,
-    /// Number of evaluations of force laws by integrators; closed forms need none.
+    /// Number of evaluations of the accelerations of a group of bodies by integrators; closed forms need none.
     pub evaluations: u64,
     /// Number of impacts.
     pub impacts: u64,
-    /// Number of segments cut short by an impact.
+    /// Number of segments cut short by an event.
     pub backups: u64,
-    /// Number of contact problems solved.
+    /// Number of contact problems solved, and of solves for the forces of held contacts and connectors.
     pub contact_solves: u64,
     /// Smallest gap [m] of a contact seen, at an event or within a step, negative if bodies overlapped; `None` if no
     /// bodies have touched.
@@ -161,7 +161,7 @@ impl World {
         (0..self.bodies.len()).map(BodyId::from_index)
     }
 
-    /// Returns the body with the given name.
+    /// Returns the body with the given name; `None` if there is none.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<BodyId> {
         self.bodies().find(|&body| self.name(body) == name)
@@ -386,7 +386,8 @@ impl World {
     /// # Errors
     /// [`RunError::NotATime`] for a time that is not finite. [`RunError::Astray`] if connectors have come apart, bodies
     /// overlap or the energy books do not close at that time. Another error if an event or a step cannot be simulated:
-    /// the world stays at that time. Both kinds are repeated on every further attempt.
+    /// the world stays at that time. Both kinds are repeated on every further attempt, except [`RunError::Crawls`]:
+    /// after it an advance over a shorter duration may go on.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let outcome = self.advance_while(time, &mut |event| {
             on_event(event);
@@ -396,8 +397,9 @@ impl World {
     }
 
     /// Advances like [`advance_to`](Self::advance_to), but stops after the first event for which `on_event` returns
-    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. All reports of that moment are
-    /// still delivered; a later call continues as if there had been no stop.
+    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. One event may have several reports (an
+    /// impact, then contacts that end and begin): those that remain are still delivered. A later call continues as if
+    /// there had been no stop, and reports further events of the same time.
     ///
     /// # Errors
     /// Those of [`advance_to`](Self::advance_to).

@@ -23,10 +23,11 @@ const ROUND_ROOM: f64 = 0.6;
 const FLOOR: f64 = 0.85;
 const SCALED: f64 = 0.2;
 const FAR_AWAY: f64 = 0.05;
-/// Zones that one can see: the target gap in parts of the smallest body's radius, the accuracy in parts of
-/// that, and what is slow in parts of an ordinary speed.
+/// Target gap of coarse scenes, as a fraction of the smallest body's radius: it can be seen.
 const COARSE_GAP: f64 = 5e-3;
+/// Accuracy of coarse scenes, as a fraction of the target gap.
 const COARSE_ACCURACY: f64 = 0.6;
+/// Velocity tolerance of coarse scenes, as a fraction of an ordinary speed.
 const COARSE_SPEED: f64 = 0.2;
 /// Steps of a scene whose contacts carry impulses only.
 const IMPULSE_STEPS: f64 = 400.0;
@@ -41,7 +42,7 @@ const LAWS: [&str; 8] = [
     "serial_separate_lastpass",
     "serial_grouped_lastpass",
 ];
-/// Where in them every law comes once from.
+/// Index in them from which on every law comes once.
 const ONCE_FROM: usize = 2;
 /// Tries to find a free place for a body.
 const TRIES: usize = 60;
@@ -66,7 +67,7 @@ impl Placed {
     }
 }
 
-/// Units of a scene: what is 1 m, 1 s and the origin of an ordinary one.
+/// Units of a scene: its lengths and times that stand for 1 m and 1 s of an ordinary scene, and its origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units {
     length: f64,
@@ -75,7 +76,7 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// What is 1 m/s of an ordinary scene.
+    /// The speed that stands for 1 m/s of an ordinary scene.
     fn speed(&self) -> f64 {
         self.length / self.time
     }
@@ -303,7 +304,7 @@ pub(crate) mod tests {
         assert_ne!(scene_of_seed(7), scene_of_seed(8));
     }
 
-    /// Of the scenes of the first so many seeds, each of which must be legal, how many can be built.
+    /// Number of scenes of the first `count` seeds, each of which must be legal, that can be built.
     pub(crate) fn how_many_can_be_built(count: u64, scene_of: fn(u64) -> Value) -> usize {
         let can_be_built = |&seed: &u64| {
             let scene = Scene::parse(&scene_of(seed).to_string(), SceneFormat::Json);

@@ -108,7 +108,7 @@ pub(super) fn forces(random: &mut Random, units: &Units, placed: &[Placed], attr
     forces
 }
 
-/// What acts on one body.
+/// A force on one body.
 fn single(random: &mut Random, units: &Units, placed: &[Placed], body: &Placed) -> Option<Value> {
     let place = point_of(random, body);
     let force = body.mass * units.length / (units.time * units.time);

@@ -1,5 +1,5 @@
-//! Reference scenes with other numbers: places, speeds, masses, laws. What they are made of is what people
-//! build by hand: flush blocks, symmetric heaps, chains, gears, rails.
+//! Reference scenes with other numbers: places, speeds, masses, laws. They have parts that people build by hand: flush
+//! blocks, symmetric heaps, chains, gears, rails.
 
 use super::{LAWS, ONCE_FROM};
 use crate::random::Random;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 const MOST_BODIES: usize = 30;
 /// Longest run [s].
 const LONGEST: f64 = 8.0;
-/// How far [m, rad] bodies may be from where they were.
+/// Largest shift [m] and turn [rad] of a body.
 const SHIFTS: [f64; 6] = [0.0, 1e-9, 1e-6, 1e-3, 1e-2, 0.1];
 
 /// The variation of a seed.

@@ -38,7 +38,7 @@ impl Engine for Halfgap {
 /// Builds a scene as a world.
 ///
 /// # Errors
-/// What halfgap refuses.
+/// A scene that halfgap refuses.
 pub fn build(scene: &Scene, tolerance: f64) -> Result<World, EngineError> {
     let settings = WorldSettings { tolerance, collisions: scene.collisions, ..WorldSettings::default() };
     let mut builder = WorldBuilder::new(settings);

@@ -8,7 +8,7 @@ mod segments;
 use crate::scene::Scene;
 use ::halfgap::BodyState;
 
-/// Why an engine could not build or run a scene.
+/// Reason why an engine could not build or run a scene.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum EngineError {
     /// It has no means for something in the scene.
@@ -16,7 +16,7 @@ pub enum EngineError {
     Unsupported {
         /// The engine.
         engine: &'static str,
-        /// What it lacks.
+        /// The feature that it lacks.
         what: &'static str,
     },
     /// It refused the scene.
@@ -43,7 +43,7 @@ pub trait Engine {
     /// Its version.
     fn version(&self) -> &'static str;
 
-    /// What was chosen for this run, short.
+    /// Short form of the settings of this run.
     fn settings(&self) -> String;
 
     /// Sets a scene up.

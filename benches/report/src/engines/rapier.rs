@@ -10,7 +10,7 @@ use rapier2d_f64::prelude::*;
 /// The step [s] for which Rapier's lengths and frequencies were chosen.
 const STOCK_STEP: f64 = 1.0 / 60.0;
 
-/// What `Rapier` changes besides step and iterations.
+/// Changes to the settings of `Rapier` besides step and iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tuning {
     /// All else as it comes.
@@ -20,7 +20,7 @@ pub enum Tuning {
     Accurate,
 }
 
-/// How `Rapier` ties bodies together.
+/// Form in which `Rapier` ties bodies together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Joints {
     /// By impulses, as everything else.
@@ -38,9 +38,9 @@ pub struct Rapier {
     pub iterations: usize,
     /// Segments for a full circle where an outline has arcs.
     pub segments: usize,
-    /// What else is changed.
+    /// Further changes of its settings.
     pub tuning: Tuning,
-    /// How bodies are tied.
+    /// Form in which bodies are tied.
     pub joints: Joints,
 }
 

@@ -100,8 +100,8 @@ pub enum AdvanceError {
         laws: Vec<String>,
     },
     /// Steps have become so short that the duration told to [`set_duration`](crate::rigid::RigidSystem::set_duration)
-    /// would take a hopeless number of them, with no impact in between. The system is intact: it can be advanced for
-    /// less time.
+    /// would take a hopeless number of them, with no impact in between. The system is intact: with a lesser
+    /// duration set, it can be advanced further.
     #[error(
         "at {time} s the steps of bodies {bodies:?} are {step:e} s long: too many of them for {duration} s; forces on them: {laws:?}"
     )]

@@ -63,8 +63,8 @@ pub struct RigidSettings {
     /// approach speed that counts: two rows that oppose each other at a small angle stop a body that slides between
     /// them, if both are taken to rest.
     pub rest_speed: f64,
-    /// Time [s] in which forces produce `velocity_tol` or cross the target zone. A group with more events than allowed
-    /// within it is stopped without elasticity (a storm).
+    /// Time [s] in which forces produce `velocity_tol`, or move a body through half of the target zone, whichever is
+    /// longer. Bodies with more events than allowed within it are stopped without elasticity (a storm).
     pub resolution_time: f64,
 }
 

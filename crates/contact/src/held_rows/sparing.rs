@@ -14,8 +14,8 @@ impl HeldRows {
     /// same. The list is empty if no unilateral row depends on others, and may be incomplete otherwise: callers
     /// factorize the rows that are left and repeat until it is empty.
     ///
-    /// When no dependent rows are left, [`solve`](Self::solve) finds these same forces. As long as there are some, it
-    /// gives other rows no force, without which contacts may have to pull.
+    /// Once no dependent row is left, [`solve`](Self::solve) finds the forces that `force` then holds. As long as there
+    /// are some, it gives no force to rows of its own choice, and contacts may then have to pull.
     ///
     /// # Panics
     ///

@@ -1,4 +1,4 @@
-//! How far all bodies go together in a run, where nothing holds any of them to the world.
+//! The way that all bodies go together in a run, where nothing holds any of them to the world.
 
 use super::BodySpec;
 use crate::connector::ConnectorSpec;
@@ -8,8 +8,9 @@ use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::BodyId;
 use std::sync::Arc;
 
-/// Bounds the distance [m] by which the centre of mass of several bodies moves in a duration [s], with the forces at the
-/// start; `None` if a fixed body, a connector or a force law ties any of them to the world, or their motion is damped.
+/// Bounds the distance [m] by which the common centre of mass of all bodies moves in a duration [s], under the forces
+/// at the start; `None` if there is a fixed body, a connector or a force law ties a body to the world, a body is damped,
+/// or there is only one.
 ///
 /// Coordinates grow by that, and their rounding with them, although the bodies stay together.
 pub(super) fn drift(

@@ -1,5 +1,5 @@
-//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `drift` tells how far bodies go
-//! that nothing holds to the world.
+//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `drift` tells how far bodies
+//! go that nothing holds to the world.
 
 mod checks;
 mod drift;

@@ -48,8 +48,9 @@ pub struct ErrorEstimate {
     pub impacts: [usize; 2],
     /// Whether the difference grows faster than errors of integration do.
     pub chaotic: bool,
-    /// Last output time [s] up to which every body is within 1 % of its own size of the tighter run (or within four
-    /// target gaps over the smallest body's size, if that is more); `None` if it stays so to the end.
+    /// Last output time [s] up to which every body is within 1 % of its own size of the tighter run, or within four
+    /// times the tolerance or the target gap over the smallest body's size, if that is more; `None` if it stays so to
+    /// the end.
     pub trusted_until: Option<f64>,
     /// Error that stopped the tighter run early, if one did.
     #[serde(serialize_with = "message")]

@@ -41,7 +41,7 @@ pub(crate) struct Pace {
 /// Takes the mean length of every `STEPS` steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count<const STEPS: u32> {
-    /// When counting began, if it has.
+    /// Time at which counting began; `None` if it has not.
     since: Option<Time>,
     steps: u32,
 }
@@ -61,7 +61,7 @@ impl<const STEPS: u32> Count<STEPS> {
 
 impl RigidSystem {
     /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] is never returned. That error
-    /// leaves the system valid: advancing to an earlier time still works.
+    /// leaves the system valid: with a lesser duration set, it can be advanced further.
     pub fn set_duration(&mut self, duration: f64) {
         self.limits.duration = duration;
     }

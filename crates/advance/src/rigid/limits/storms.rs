@@ -48,7 +48,7 @@ const STORM_SLOW: f64 = 10.0;
 /// Recent events of one body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Recent {
-    /// When counting began, if it has.
+    /// Time at which counting began; `None` if it has not.
     since: Option<Time>,
     /// Storm load since then [-]: the sum of the loads of its events.
     load: usize,

@@ -123,12 +123,12 @@ mod tests {
         disc_on_rods(&[DVec2::ZERO])
     }
 
-    /// Such a disc on rods that end at several points.
+    /// A disc, moving at 2 m/s, on rods that end at several points.
     fn disc_on_rods(ends: &[DVec2]) -> RigidSystem {
         turning_disc_on_rods(ends, 2.0, 0.0)
     }
 
-    /// Such a disc on rods, with a spin [rad/s] that decays at a rate [1/s].
+    /// A disc, moving at 2 m/s, on rods, with a spin [rad/s] that decays at a rate [1/s].
     fn turning_disc_on_rods(ends: &[DVec2], spin: f64, angular_rate: f64) -> RigidSystem {
         let disc = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape: disc, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };

@@ -8,7 +8,7 @@ use super::group::Group;
 use super::rows::RowSource;
 use crate::ode::{Point, SegmentPolynomial, Stepper};
 
-/// How groups are stepped.
+/// Control of the steps of groups: their acceptable errors and their bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepControl {
     /// Error that one step may make, relative to `length` and to the speed of the group.
