@@ -62,7 +62,7 @@ pub struct RailHint {
     /// True if the row's normal points to the right of the path, not to the left.
     pub(super) faces_right: bool,
     /// Arc length [m] that the point last had left before a stop: tells laps of a closed path apart.
-    pub(super) left: Option<f64>,
+    pub(super) before_stop: Option<f64>,
 }
 
 /// A joint of two pieces of a path, at which its curvature, or even its direction, may jump.
@@ -178,7 +178,7 @@ impl RailPath {
             Curve::Edges(path) => path.place_at_knot(piece as usize, forward),
             Curve::Spline(_) => 0.0,
         };
-        RailHint { piece, parameter, stays: false, faces_right: false, left: None }
+        RailHint { piece, parameter, stays: false, faces_right: false, before_stop: None }
     }
 
     /// The two sides of a corner, before and after a knot: hints to stay on its pieces, whose rows face into the
@@ -331,7 +331,7 @@ impl RailPlace {
 impl Foot {
     fn hint(&self) -> RailHint {
         let (piece, parameter) = (self.piece, self.parameter);
-        RailHint { piece, parameter, stays: false, faces_right: false, left: None }
+        RailHint { piece, parameter, stays: false, faces_right: false, before_stop: None }
     }
 }
 
@@ -344,12 +344,12 @@ impl RailHint {
         Self { stays: true, ..self }
     }
 
-    /// The hint for a stop before which the point last had the arc length `left` [m] left: on a closed path, of the
+    /// The hint for a stop before which the point last had the arc length `before_stop` [m] left: on a closed path, of the
     /// gaps that differ by laps, the one nearest to it is measured. `None` if it is not known: the point then is before
     /// the stop, or just at it.
     #[must_use]
-    pub fn with_left(self, left: Option<f64>) -> Self {
-        Self { left, ..self }
+    pub fn with_before_stop(self, before_stop: Option<f64>) -> Self {
+        Self { before_stop, ..self }
     }
 
     /// True if the hint stays on its piece.
@@ -360,8 +360,8 @@ impl RailHint {
 
     /// Arc length [m] that the point last had left before a stop, if it is known.
     #[must_use]
-    pub fn left(&self) -> Option<f64> {
-        self.left
+    pub fn before_stop(&self) -> Option<f64> {
+        self.before_stop
     }
 
     /// The hint with the row of a rail facing left again, as everywhere but in a corner.

@@ -54,7 +54,7 @@ pub(super) fn stop_row(
     let bend = along * (2.0 * foot.curvature * across + foot.curvature_rate * along * foot.gap);
     let gamma = (normal.dot(ends.turning) + sign * bend) * stretch;
     let normal_rate = foot.normal * (sign * foot.curvature * along);
-    let near = hint.and_then(RailHint::left);
+    let near = hint.and_then(RailHint::before_stop);
     let gap = distance_to_stop(path, place.arc_length, (at, sign), near);
     let mut row = ends.row(gap, normal, normal_rate, gamma);
     // The foot of a point beside the rail moves faster or slower than the point itself.

@@ -152,7 +152,7 @@ fn a_stop_counts_what_is_left_of_the_rail() {
         [(0.0, -0.002), (0.5 * lap - 0.1, -0.002), (lap, lap - 0.002), (2.0 * lap, 2.0 * lap - 0.002)]
     {
         let body = at_angle(0.001);
-        let hint = circle.hint_near(body.pose.position, None).with_left(Some(left));
+        let hint = circle.hint_near(body.pose.position, None).with_before_stop(Some(left));
         let gap = stop.measure_near(0, &body, &Moving::BACKGROUND, Some(&hint)).gap;
         assert!((gap - expected).abs() < 1e-14, "{left}: {gap}");
     }

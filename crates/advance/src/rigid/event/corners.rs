@@ -83,8 +83,8 @@ impl RigidSystem {
             if !stop.is_stop_of(self.connector(rail)) || !self.is_at_end(id, &hint) {
                 return false;
             }
-            let left = self.hint_at(id, 0, self.now).and_then(|hint| hint.left());
-            let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint.with_left(left)));
+            let left = self.hint_at(id, 0, self.now).and_then(|hint| hint.before_stop());
+            let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint.with_before_stop(left)));
             sample.kinematics.rate <= rest && sample.gap.abs() <= accuracy
         })
     }

@@ -23,7 +23,7 @@ impl RigidSystem {
     /// point may go round by more than half within the segment of its body.
     pub(crate) fn hint_at(&self, id: ConnectorId, row: usize, time: Time) -> Option<RailHint> {
         let hint = self.connectors.states.get(id.index())?.hint_of(row).copied()?;
-        Some(hint.with_left(self.followed(id, time).or(hint.left())))
+        Some(hint.with_before_stop(self.followed(id, time).or(hint.before_stop())))
     }
 
     /// Distance [m] left before a stop of a closed rail at a time, followed along the segment of the group that watches
@@ -40,9 +40,9 @@ impl RigidSystem {
             let [a, b] = connector.bodies().map(|body| self.moving_at(body, at));
             let left = connector.measure_near(0, &a, &b, Some(&hint)).gap;
             let next = path.hint_near(a.pose.point_to_world(anchor.point), Some(&hint));
-            hint = if hint.is_staying() { next.staying() } else { next }.with_left(Some(left));
+            hint = if hint.is_staying() { next.staying() } else { next }.with_before_stop(Some(left));
         }
-        hint.left()
+        hint.before_stop()
     }
 
     /// Notes the distance left before a stop of a closed rail at a time.
@@ -53,7 +53,7 @@ impl RigidSystem {
         }
         let left = self.within_lap(id, self.measure_connector(id, 0, time).gap);
         let state = &mut self.connectors.states[id.index()];
-        state.hint = state.hint.map(|hint| hint.with_left(Some(left)));
+        state.hint = state.hint.map(|hint| hint.with_before_stop(Some(left)));
     }
 
     /// Notes the distances left before all stops that a group watches, whose segment ends now.
@@ -94,8 +94,8 @@ impl RigidSystem {
                 if !self.connector(id).is_stop() {
                     self.set_hint(id, hint.staying());
                 } else if !self.is_led(id) {
-                    let left = self.connectors.states[id.index()].hint.and_then(|hint| hint.left());
-                    self.connectors.states[id.index()].hint = Some(hint.with_left(left));
+                    let left = self.connectors.states[id.index()].hint.and_then(|hint| hint.before_stop());
+                    self.connectors.states[id.index()].hint = Some(hint.with_before_stop(left));
                 }
             }
             for index in 0..self.connectors.of(body).len() {
@@ -111,8 +111,8 @@ impl RigidSystem {
         for index in 0..self.connectors.of(self.connector(id).bodies()[0]).len() {
             let stop = self.connectors.of(self.connector(id).bodies()[0])[index];
             if self.connector(stop).is_stop_of(self.connector(id)) {
-                let left = self.connectors.states[stop.index()].hint.and_then(|hint| hint.left());
-                self.connectors.states[stop.index()].hint = Some(hint.with_left(left));
+                let left = self.connectors.states[stop.index()].hint.and_then(|hint| hint.before_stop());
+                self.connectors.states[stop.index()].hint = Some(hint.with_before_stop(left));
             }
         }
     }
@@ -171,9 +171,9 @@ impl RigidSystem {
         };
         for stop in stops {
             stop.is_noted = false;
-            let left = self.connectors.states[stop.id.index()].hint.and_then(|hint| hint.left());
+            let left = self.connectors.states[stop.id.index()].hint.and_then(|hint| hint.before_stop());
             // Ropes that are watched like stops have no hints.
-            let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_left(left));
+            let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_before_stop(left));
             stop.hint = hint.map(|hint| if self.is_led(stop.id) { hint.staying() } else { hint });
         }
         let mechanism = self.mechanism();

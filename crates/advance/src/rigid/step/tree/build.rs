@@ -87,12 +87,12 @@ impl Dynamics<'_> {
                 tree.hang(free, Hinge::Free, DVec2::ZERO, flyer(free));
             }
         }
-        let JointTree { hung, rest, links, .. } = &mut *tree;
+        let JointTree { hung, loop_rows, links, .. } = &mut *tree;
         hung.sort_unstable();
-        rest.rows.extend((0..rows.len()).filter(|row| hung.binary_search(row).is_err()));
+        loop_rows.rows.extend((0..rows.len()).filter(|row| hung.binary_search(row).is_err()));
         let is_sound = |link: &Link| link.mass.is_finite() && link.moment.is_finite();
         let most = if hung.len() < LOOP { hung.len() / 2 } else { hung.len() };
-        if rest.rows.len() > most.min(MOST_BESIDE) || hung.is_empty() || !links.iter().all(is_sound) {
+        if loop_rows.rows.len() > most.min(MOST_BESIDE) || hung.is_empty() || !links.iter().all(is_sound) {
             tree.clear();
             return;
         }
@@ -134,7 +134,7 @@ impl JointTree {
             on.descendants += hung;
             on.lever_square += hung as f64 * (arm - on.own).length_squared();
         }
-        self.rest.least_kept = f64::INFINITY;
+        self.loop_rows.least_kept = f64::INFINITY;
         self.stances.clear();
         self.stances.resize(self.links.len(), Stance::default());
         self.bundles.clear();

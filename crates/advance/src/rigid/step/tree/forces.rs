@@ -26,8 +26,8 @@ impl Dynamics<'_> {
             let [with, without] = [&self.stage.accelerations, &free].map(|of| of[link.place]);
             given[link.place] = link.mass * DVec2::new(with[0] - without[0], with[1] - without[1]);
         }
-        if !tree.rest.rows.is_empty() {
-            let beside = tree.rest.rows.iter().zip(&self.stage.forces).zip(&self.stage.jacobians);
+        if !tree.loop_rows.rows.is_empty() {
+            let beside = tree.loop_rows.rows.iter().zip(&self.stage.forces).zip(&self.stage.jacobians);
             for ((&row, &force), jacobian) in beside {
                 forces[row] = force;
                 for (side, place) in sides[row].iter().enumerate() {

@@ -7,14 +7,14 @@
 //! is solved only for the few rows beside the pins. All other modules work with bodies: this one translates at both
 //! ends of a step, and its dense output.
 //!
-//! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `rest` holds the
+//! `build` finds the tree, `placing` goes from coordinates to bodies, `sweeps` finds accelerations, `loop_rows` holds the
 //! rows beside the pins, `stepping` makes the steps of a group, `forces` finds the forces of its rows. Angles are those
 //! of the bodies, not those between them, so each coordinate of the tree is also a component of the group's state.
 
 mod build;
 mod forces;
+mod loop_rows;
 mod placing;
-mod rest;
 mod stepping;
 mod sweeps;
 #[cfg(test)]
@@ -22,7 +22,7 @@ mod tests;
 
 use crate::ode::SegmentPolynomial;
 use glam::DVec2;
-use rest::Rest;
+use loop_rows::LoopRows;
 use sweeps::Bundle;
 
 /// Support from which a body of a tree hangs.
@@ -93,7 +93,7 @@ pub(crate) struct JointTree {
     numbers: Numbers,
     /// Rows of the group that are those of the tree's pins.
     hung: Vec<usize>,
-    rest: Rest,
+    loop_rows: LoopRows,
     stances: Vec<Stance>,
     bundles: Vec<Bundle>,
     /// Coordinates, their velocities, and works, at the start of a step.
@@ -120,7 +120,7 @@ impl JointTree {
     pub(crate) fn clear(&mut self) {
         self.links.clear();
         self.numbers.0.clear();
-        self.rest.rows.clear();
+        self.loop_rows.rows.clear();
         self.is_bypassed = false;
     }
 
@@ -154,12 +154,12 @@ impl JointTree {
 
     /// True if the group is stepped as a tree and has no rows beside its pins: its coordinates keep to all rows.
     pub(crate) fn holds_all(&self) -> bool {
-        self.is_used() && self.rest.rows.is_empty()
+        self.is_used() && self.loop_rows.rows.is_empty()
     }
 
     /// True if the rows beside its pins close more than one loop, but few.
     pub(crate) fn has_few_loops(&self) -> bool {
-        ROWS_OF_FEW_LOOPS.contains(&self.rest.rows.len())
+        ROWS_OF_FEW_LOOPS.contains(&self.loop_rows.rows.len())
     }
 
     /// Number of coordinates.

@@ -31,10 +31,10 @@ impl Ode for Hanging<'_, '_> {
         let (rates, powers) = rates[count..].split_at_mut(count);
         stage.accelerate(physics, (bodies, laws), start.seconds() + offset, works, powers);
         tree.accelerate(&mut stage.accelerations);
-        self.0.hold_rest();
+        self.0.hold_loop_rows();
         let Group { tree, kept, .. } = &mut *self.0.group;
-        if !tree.rest.rows.is_empty() {
-            kept.note(offset, tree.rest.kept);
+        if !tree.loop_rows.rows.is_empty() {
+            kept.note(offset, tree.loop_rows.kept);
         }
         let Dynamics { group, stage, .. } = &mut *self.0;
         let (tree, accelerations) = (&group.tree, stage.accelerations.as_flattened());
@@ -131,7 +131,7 @@ impl Dynamics<'_> {
         let Group { tree, bodies, .. } = &mut *self.group;
         tree.find_stances(bodies, &self.stage.movings);
         tree.accelerate(&mut self.stage.accelerations);
-        self.hold_rest();
+        self.hold_loop_rows();
     }
 
     /// Estimates the fastest rate of the tree from the last step.

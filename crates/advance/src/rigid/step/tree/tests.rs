@@ -161,7 +161,7 @@ impl Scene {
             dynamics.find_tree_for(STEP_ERROR);
             dynamics.set_out();
             let Group { tree, state, rates, .. } = &*dynamics.group;
-            (told.coordinates, told.kept) = (tree.count(), tree.rest.least_kept);
+            (told.coordinates, told.kept) = (tree.count(), tree.loop_rows.least_kept);
             told.by_tree.clone_from(rates);
             let (state, mut rates) = (state.clone(), rates.clone());
             dynamics.find_rates(0.0, &state, &mut rates, Dynamics::hang_and_tell);

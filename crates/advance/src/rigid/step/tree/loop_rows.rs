@@ -30,7 +30,7 @@ const MOST_REFINEMENTS: usize = 10;
 
 /// The rows beside the pins of a tree, with their buffers.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rest {
+pub(super) struct LoopRows {
     /// Indices of the rows in the group.
     pub(super) rows: Vec<usize>,
     /// Accelerations of the bodies of the group under each row's unit force, row by row.
@@ -53,22 +53,22 @@ impl JointTree {
     /// Factorises G for the rows in their order, after the sweep inwards.
     fn factorize(&mut self, jacobians: &[[f64; 6]], sides: impl Fn(usize) -> [Option<u32>; 2]) {
         let bodies = self.links.len();
-        let mut columns = std::mem::take(&mut self.rest.columns);
+        let mut columns = std::mem::take(&mut self.loop_rows.columns);
         columns.clear();
         columns.resize(jacobians.len() * bodies, [0.0; 3]);
-        self.rest.factor.clear();
-        (self.rest.softness, self.rest.kept) = (0.0, f64::INFINITY);
+        self.loop_rows.factor.clear();
+        (self.loop_rows.softness, self.loop_rows.kept) = (0.0, f64::INFINITY);
         for (row, jacobian) in jacobians.iter().enumerate() {
             let column = &mut columns[row * bodies..][..bodies];
             self.pull(jacobian, sides(row), column);
         }
         for (row, jacobian) in jacobians.iter().enumerate() {
             let responses = columns.chunks(bodies).take(row + 1);
-            self.rest.factor.extend(responses.map(|column| rate(jacobian, sides(row), column)));
+            self.loop_rows.factor.extend(responses.map(|column| rate(jacobian, sides(row), column)));
             let whole = self.square_of(jacobian, sides(row));
-            self.rest.eliminate(row, whole);
+            self.loop_rows.eliminate(row, whole);
         }
-        self.rest.columns = columns;
+        self.loop_rows.columns = columns;
     }
 
     /// J M^-1 J^T of a row by itself, without pins, at most [`HEAVIER`] times that of its heavier side. The part of a
@@ -125,7 +125,7 @@ impl JointTree {
     }
 }
 
-impl Rest {
+impl LoopRows {
     /// Turns the last line of G into one of its factor, for a row whose square is `whole`.
     fn eliminate(&mut self, row: usize, whole: f64) {
         let begin = row * (row + 1) / 2;
@@ -194,8 +194,8 @@ fn rate(jacobian: &[f64; 6], sides: [Option<u32>; 2], accelerations: &[[f64; 3]]
 impl Dynamics<'_> {
     /// Gives the tree up if the rows beside its pins have turned out to depend on each other; true if they have.
     pub(crate) fn leave_singular_tree(&mut self) -> bool {
-        let rest = &self.group.tree.rest;
-        let is_singular = !rest.rows.is_empty() && rest.least_kept <= SINGULAR;
+        let loop_rows = &self.group.tree.loop_rows;
+        let is_singular = !loop_rows.rows.is_empty() && loop_rows.least_kept <= SINGULAR;
         if is_singular {
             self.group.tree.clear();
         }
@@ -204,21 +204,21 @@ impl Dynamics<'_> {
 
     /// Adds the response to the rows beside the pins to the accelerations in the stage, which are those with the pins
     /// alone.
-    pub(super) fn hold_rest(&mut self) {
-        if self.group.tree.rest.rows.is_empty() {
+    pub(super) fn hold_loop_rows(&mut self) {
+        if self.group.tree.loop_rows.rows.is_empty() {
             return;
         }
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
         let mut twin = None;
-        for &row in &self.group.tree.rest.rows {
+        for &row in &self.group.tree.loop_rows.rows {
             let held = &self.group.rows[row];
             let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
             let spins = self.group.sides[row].map(|place| self.stage.spin_at(place));
             self.stage.offsets.push(moment.kinematics.acceleration(&spins[0], &spins[1]));
             self.stage.jacobians.push(moment.kinematics.jacobian);
         }
-        self.factorize_rest();
+        self.factorize_loop_rows();
         self.respond_by_tree();
         for (acceleration, change) in self.stage.accelerations.iter_mut().zip(&self.stage.changes) {
             for k in 0..3 {
@@ -227,11 +227,11 @@ impl Dynamics<'_> {
         }
     }
 
-    fn factorize_rest(&mut self) {
+    fn factorize_loop_rows(&mut self) {
         let Group { tree, sides, .. } = &mut *self.group;
-        let rows = std::mem::take(&mut tree.rest.rows);
+        let rows = std::mem::take(&mut tree.loop_rows.rows);
         tree.factorize(&self.stage.jacobians, |row| sides[rows[row]]);
-        tree.rest.rows = rows;
+        tree.loop_rows.rows = rows;
     }
 
     /// Measures the rows beside the pins, with the bodies in place, and factorises; calls `visit` with the error [m] of
@@ -239,7 +239,7 @@ impl Dynamics<'_> {
     pub(crate) fn factorize_by_tree(&mut self, mut visit: impl FnMut(f64, f64)) {
         self.stage.jacobians.clear();
         let mut twin = None;
-        for &row in &self.group.tree.rest.rows {
+        for &row in &self.group.tree.loop_rows.rows {
             let held = &self.group.rows[row];
             let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
             self.stage.jacobians.push(moment.kinematics.jacobian);
@@ -250,7 +250,7 @@ impl Dynamics<'_> {
         self.stage.accelerations.clear();
         self.stage.accelerations.resize(bodies.len(), [0.0; 3]);
         tree.sweep_in(&self.stage.accelerations);
-        self.factorize_rest();
+        self.factorize_loop_rows();
     }
 
     /// Solves G x = -`offsets`, leaves x in `forces`, and C x in `changes`.
@@ -260,25 +260,25 @@ impl Dynamics<'_> {
         let Stage { jacobians, offsets, forces, changes, .. } = &mut *self.stage;
         changes.clear();
         changes.resize(bodies, [0.0; 3]);
-        tree.rest.solve(offsets, forces);
-        tree.rest.pull_all(forces, changes);
-        let mut left = tree.rest.softness;
-        let mut lacking = std::mem::take(&mut tree.rest.lacking);
-        let mut corrections = std::mem::take(&mut tree.rest.corrections);
+        tree.loop_rows.solve(offsets, forces);
+        tree.loop_rows.pull_all(forces, changes);
+        let mut left = tree.loop_rows.softness;
+        let mut lacking = std::mem::take(&mut tree.loop_rows.lacking);
+        let mut corrections = std::mem::take(&mut tree.loop_rows.corrections);
         for _ in 0..MOST_REFINEMENTS {
             if left <= f64::EPSILON {
                 break;
             }
             lacking.clear();
-            let rows = tree.rest.rows.iter().zip(&*jacobians).zip(&*offsets);
+            let rows = tree.loop_rows.rows.iter().zip(&*jacobians).zip(&*offsets);
             lacking
                 .extend(rows.map(|((&row, jacobian), offset)| offset + rate(jacobian, sides[row], changes)));
-            tree.rest.solve(&lacking, &mut corrections);
-            tree.rest.pull_all(&corrections, changes);
+            tree.loop_rows.solve(&lacking, &mut corrections);
+            tree.loop_rows.pull_all(&corrections, changes);
             forces.iter_mut().zip(&corrections).for_each(|(force, correction)| *force += correction);
-            left *= tree.rest.softness;
+            left *= tree.loop_rows.softness;
         }
-        (tree.rest.lacking, tree.rest.corrections) = (lacking, corrections);
+        (tree.loop_rows.lacking, tree.loop_rows.corrections) = (lacking, corrections);
         self.stage.solves += 1;
     }
 }
