@@ -46,7 +46,7 @@ pub use intervention::VelocityChange;
 pub use ledger::Ledger;
 pub use motion::flyer::{FlightLaw, Flyer};
 pub use motion::law::{ForceLaw, Snapshot, Wrench, Wrenches};
-pub use parts::{PartsError, RigidParts};
+pub use parts::{BodyPart, PartsError, RigidParts};
 pub use report::{ContactChanges, RowForce};
 pub use scales::Scales;
 pub use step::dynamics::ExtraAcceleration;

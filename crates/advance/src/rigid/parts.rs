@@ -10,14 +10,26 @@ use std::sync::Arc;
 /// Parts of which a system is made.
 #[derive(Clone, Debug, Default)]
 pub struct RigidParts {
-    /// Each body with its law of free flight and its state at the start. A [`BodyId`] is an index of this list.
-    pub bodies: Vec<(Body, FlightLaw, BodyState)>,
+    /// Bodies with their laws of free flight and their states at the start. A [`BodyId`] is an index of this list.
+    pub bodies: Vec<BodyPart>,
     /// Connectors between bodies, or between a body and the background.
     pub connectors: Vec<Connector>,
     /// Force laws beyond those of free flight.
     pub laws: Vec<Arc<dyn ForceLaw>>,
     /// Pairs of bodies that never collide with each other.
     pub excluded: Vec<(BodyId, BodyId)>,
+}
+
+/// A body, its law of free flight, and its state at the start.
+#[derive(Clone, Debug)]
+pub struct BodyPart {
+    /// Shape, inverse mass [1/kg], inverse moment of inertia [1/(kg m^2)] and elasticity [-].
+    pub body: Body,
+    /// Uniform acceleration [m/s^2] and damping rates [1/s] in free flight; ignored for a fixed body.
+    pub law: FlightLaw,
+    /// Position [m] of the centre of mass, angle [rad], velocity [m/s] and angular velocity [rad/s] at the start, in the
+    /// world frame; both velocities are ignored for a fixed body.
+    pub state: BodyState,
 }
 
 /// Reason why no system can be made of some parts or settings.
@@ -83,7 +95,7 @@ impl RigidParts {
     /// The first setting, body, connector or name that breaks its rule.
     pub(crate) fn check(&self, settings: &RigidSettings, start: Time) -> Result<(), PartsError> {
         check_settings(settings, start)?;
-        if self.bodies.iter().any(|(body, ..)| !body.is_fixed()) {
+        if self.bodies.iter().any(|part| !part.body.is_fixed()) {
             check_zone(&settings.tolerances)?;
         }
         for (index, part) in self.bodies.iter().enumerate() {
@@ -155,7 +167,7 @@ fn check_zone(&Tolerances { target_gap, accuracy, .. }: &Tolerances) -> Result<(
     keep_to(&[(POSITIVE.0, POSITIVE.1, &sizes)]).map_err(bad)
 }
 
-fn check_body((body, law, state): &(Body, FlightLaw, BodyState)) -> Result<(), Broken> {
+fn check_body(BodyPart { body, law, state }: &BodyPart) -> Result<(), Broken> {
     let sizes = [
         ("inverse mass", body.inverse_mass),
         ("inverse moment", body.inverse_moment),
@@ -206,10 +218,10 @@ mod tests {
     use halfgap_collision::{Anchor, ConnectorKind};
     use halfgap_geometry::Shape;
 
-    fn disc() -> (Body, FlightLaw, BodyState) {
+    fn disc() -> BodyPart {
         let shape = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
-        (body, FlightLaw::default(), BodyState::default())
+        BodyPart { body, law: FlightLaw::default(), state: BodyState::default() }
     }
 
     /// The error message for a system of one disc after a change of its parts or settings.
@@ -235,16 +247,15 @@ mod tests {
 
     #[test]
     fn numbers_out_of_range_are_refused() {
-        let of_body = |change: fn(&mut (Body, FlightLaw, BodyState))| {
-            refused(|parts, _| parts.bodies.iter_mut().for_each(change))
-        };
-        let spin = of_body(|disc| disc.2.angular_velocity = f64::NAN);
+        let of_body =
+            |change: fn(&mut BodyPart)| refused(|parts, _| parts.bodies.iter_mut().for_each(change));
+        let spin = of_body(|disc| disc.state.angular_velocity = f64::NAN);
         assert_eq!(spin, "the angular velocity of body 0 must be finite, got NaN");
-        let mass = of_body(|disc| disc.0.inverse_mass = -1.0);
+        let mass = of_body(|disc| disc.body.inverse_mass = -1.0);
         assert_eq!(mass, "the inverse mass of body 0 must be finite, and not negative, got -1");
-        let lively = of_body(|disc| disc.0.elasticity = 1.5);
+        let lively = of_body(|disc| disc.body.elasticity = 1.5);
         assert_eq!(lively, "the elasticity of body 0 must be between 0 and 1, got 1.5");
-        let stiff = of_body(|disc| disc.0.inverse_moment = 0.0);
+        let stiff = of_body(|disc| disc.body.inverse_moment = 0.0);
         assert_eq!(
             stiff,
             "the inverse moment of body 0 must be positive exactly if the inverse mass is, got 0"

@@ -15,7 +15,7 @@ use super::ledger::Ledger;
 use super::limits::memory::Memory;
 use super::motion::flyer::Flyer;
 use super::motion::law::{ForceLaw, Snapshot};
-use super::parts::RigidParts;
+use super::parts::{BodyPart, RigidParts};
 use super::report::Told;
 use super::search::neighbourhood::Neighbourhood;
 use super::search::pairs::{PairId, Pairs, Prediction};
@@ -156,8 +156,8 @@ impl RigidSystem {
     pub fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Result<Self, AdvanceError> {
         parts.check(&settings, start)?;
         let RigidParts { bodies, connectors, laws, excluded } = parts;
-        let flyers: Vec<Flyer> =
-            bodies.into_iter().map(|(body, law, state)| Flyer::new(body, law, state, start)).collect();
+        let flyer = |BodyPart { body, law, state }| Flyer::new(body, law, state, start);
+        let flyers: Vec<Flyer> = bodies.into_iter().map(flyer).collect();
         let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = flyers.len();

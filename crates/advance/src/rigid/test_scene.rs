@@ -1,7 +1,7 @@
 //! Settings and bodies for tests of groups: discs and a block on a floor.
 
 use super::motion::flyer::FlightLaw;
-use super::parts::RigidParts;
+use super::parts::{BodyPart, RigidParts};
 use super::step::group::Group;
 use super::step::segment::StepControl;
 use super::system::{RigidSettings, RigidSystem};
@@ -103,11 +103,11 @@ fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> RigidSystem {
         elasticity: 0.0,
     };
     let below = BodyState { position: DVec2::new(0.0, -0.5), ..BodyState::default() };
-    let mut bodies = vec![(floor, FlightLaw::default(), below)];
+    let mut bodies = vec![BodyPart { body: floor, law: FlightLaw::default(), state: below }];
     bodies.extend(placed.map(|(shape, state)| {
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
-        let gravity = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
-        (body, gravity, state)
+        let law = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
+        BodyPart { body, law, state }
     }));
     RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
         .expect("bodies that rest on a floor")

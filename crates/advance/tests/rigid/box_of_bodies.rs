@@ -2,13 +2,13 @@
 
 use glam::DVec2;
 use halfgap_advance::ode::Method;
-use halfgap_advance::rigid::{AdvanceError, FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl};
+use halfgap_advance::rigid::{
+    AdvanceError, BodyPart, FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl,
+};
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::{Pose, Relation, Shape};
-
-pub(crate) type Parts = (Body, FlightLaw, BodyState);
 
 pub(crate) const TOLERANCES: Tolerances =
     Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 };
@@ -51,7 +51,7 @@ impl Random {
 }
 
 /// A body of uniform density 1 kg/m^2 about its centroid.
-pub(crate) fn body(shape: &Shape, state: BodyState) -> Parts {
+pub(crate) fn body(shape: &Shape, state: BodyState) -> BodyPart {
     let mass = shape.mass_properties();
     let body = Body {
         shape: shape.translated(-mass.centroid),
@@ -59,12 +59,12 @@ pub(crate) fn body(shape: &Shape, state: BodyState) -> Parts {
         inverse_moment: 1.0 / (mass.area * mass.moment_per_mass),
         elasticity: 1.0,
     };
-    (body, FlightLaw::default(), state)
+    BodyPart { body, law: FlightLaw::default(), state }
 }
 
-pub(crate) fn fixed(shape: &Shape, position: DVec2) -> Parts {
+pub(crate) fn fixed(shape: &Shape, position: DVec2) -> BodyPart {
     let body = Body { shape: shape.clone(), inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 1.0 };
-    (body, FlightLaw::default(), BodyState { position, ..BodyState::default() })
+    BodyPart { body, law: FlightLaw::default(), state: BodyState { position, ..BodyState::default() } }
 }
 
 pub(crate) fn disc(radius: f64) -> Shape {
@@ -80,7 +80,7 @@ pub(crate) fn moving(position: DVec2, velocity: DVec2, angular_velocity: f64) ->
 }
 
 /// Four walls around the square [0, size]^2.
-pub(crate) fn walls(size: f64) -> Vec<Parts> {
+pub(crate) fn walls(size: f64) -> Vec<BodyPart> {
     let half = 0.5 * size;
     let (long, tall) = (block(size + 2.0, 1.0), block(1.0, size));
     vec![
@@ -92,7 +92,7 @@ pub(crate) fn walls(size: f64) -> Vec<Parts> {
 }
 
 /// Walls and bodies of the given shapes in the cells of a square grid, each cell a little larger than any of them.
-pub(crate) fn crowd(shapes: &[Shape], speed: f64, random: &mut Random) -> Vec<Parts> {
+pub(crate) fn crowd(shapes: &[Shape], speed: f64, random: &mut Random) -> Vec<BodyPart> {
     let cell = 2.2 * shapes.iter().map(Shape::reach).fold(0.0, f64::max);
     let columns = (shapes.len() as f64).sqrt().ceil();
     let mut parts = walls(cell * columns);
@@ -109,12 +109,12 @@ pub(crate) fn crowd(shapes: &[Shape], speed: f64, random: &mut Random) -> Vec<Pa
     parts
 }
 
-pub(crate) fn discs_in_a_box(count: usize, random: &mut Random) -> Vec<Parts> {
+pub(crate) fn discs_in_a_box(count: usize, random: &mut Random) -> Vec<BodyPart> {
     let shapes: Vec<Shape> = (0..count).map(|_| disc(random.between(0.1, 0.3))).collect();
     crowd(&shapes, 1.0, random)
 }
 
-pub(crate) fn system(bodies: Vec<Parts>) -> RigidSystem {
+pub(crate) fn system(bodies: Vec<BodyPart>) -> RigidSystem {
     system_of(RigidParts { bodies, ..RigidParts::default() }, Time::ZERO)
 }
 

@@ -32,7 +32,7 @@ impl ForceLaw for Home {
 /// The least gap [m] with which a disc meets a wall, that swings to and fro by a little more than there is room.
 fn gap_of_a_swing(room: f64, until: f64) -> f64 {
     let mut disc = body(&disc(0.5), moving(DVec2::new(-1.0, 0.0), DVec2::ZERO, 0.0));
-    disc.0.inverse_mass = 1.0;
+    disc.body.inverse_mass = 1.0;
     let wall = fixed(&block(1.0, 4.0), DVec2::new(room + 0.5 + 0.5, 0.0));
     let laws: Vec<Arc<dyn ForceLaw>> = vec![Arc::new(Home([BodyId(1)]))];
     let parts = RigidParts { bodies: vec![wall, disc], laws, ..RigidParts::default() };
@@ -61,7 +61,7 @@ fn a_rope_that_is_nearly_taut_is_held_where_it_is() {
     for (a, b) in [(0.0, 0.0), (0.0, 0.01)] {
         let hung = moving(DVec2::new(0.0, -1.0 - b + slack), DVec2::ZERO, 0.0);
         let mut disc = body(&disc(0.5), hung);
-        disc.1.acceleration = DVec2::new(0.0, -10.0);
+        disc.law.acceleration = DVec2::new(0.0, -10.0);
         let rope = ConnectorKind::Rope { a: anchor(BodyId::WORLD, a), b: anchor(BodyId(0), b), length: 1.0 };
         let connectors = vec![Connector::new(rope, 0.0).expect("a fine rope")];
         let parts = RigidParts { bodies: vec![disc], connectors, ..RigidParts::default() };

@@ -3,7 +3,7 @@
 use crate::box_of_bodies::*;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{RigidParts, RigidSystem};
+use halfgap_advance::rigid::{BodyPart, RigidParts, RigidSystem};
 use halfgap_collision::BodyState;
 use halfgap_geometry::Shape;
 
@@ -57,11 +57,12 @@ fn elastic_discs_run_backwards_to_where_they_started() {
         angular_velocity: -state.angular_velocity,
         ..state
     });
-    let back = start(9).into_iter().zip(turned).map(|((body, law, _), state)| (body, law, state)).collect();
-    let mut back = system(back);
+    let back = start(9).into_iter().zip(turned).map(|(part, state)| BodyPart { state, ..part });
+    let mut back = system(back.collect());
     advance(&mut back, until).expect("single impacts");
     assert_eq!(back.counts().impacts, there.counts().impacts);
-    for ((_, _, first), last) in start(9).iter().zip(states(&back, until)) {
+    for (part, last) in start(9).iter().zip(states(&back, until)) {
+        let first = part.state;
         let error = (first.position - last.position).length();
         assert!(error < 1e-9, "off by {error} m");
         assert!((first.velocity + last.velocity).length() < 1e-8);

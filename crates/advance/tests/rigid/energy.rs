@@ -20,8 +20,8 @@ fn fifty_elastic_discs_keep_their_energy_over_thousands_of_impacts() {
 #[test]
 fn reports_book_the_energy_that_impacts_take() {
     let mut parts = discs_in_a_box(20, &mut Random(2));
-    for (body, _, _) in &mut parts {
-        body.elasticity = 0.9;
+    for part in &mut parts {
+        part.body.elasticity = 0.9;
     }
     let mut system = system(parts);
     let before = energy(&system, 0.0);

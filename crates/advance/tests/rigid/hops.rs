@@ -24,11 +24,11 @@ fn kicked(gravity: f64, upward: f64) -> RigidSystem {
 fn kicked_where_fast_is(velocity_tol: f64, gravity: f64, upward: f64) -> RigidSystem {
     let height = RADII[0] + TOLERANCES.target_gap;
     let mut resting = body(&disc(RADII[0]), moving(DVec2::new(0.0, height), DVec2::ZERO, 0.0));
-    resting.1.acceleration = DVec2::new(0.0, -gravity);
+    resting.law.acceleration = DVec2::new(0.0, -gravity);
     let lower = (RADII[0] + RADII[1]) * upward / KICK;
     let place = DVec2::new(-1.8, height - lower);
     let mut kicking = body(&disc(RADII[1]), moving(place, DVec2::new(KICK, 0.0), 0.0));
-    kicking.0.inverse_mass = resting.0.inverse_mass;
+    kicking.body.inverse_mass = resting.body.inverse_mass;
     let tolerances = Tolerances { velocity_tol, ..TOLERANCES };
     let bodies = vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), resting, kicking];
     let settings = RigidSettings { tolerances, ..SETTINGS };

@@ -17,9 +17,9 @@ fn swinging(discs: usize, ties: &[fn(Anchor, Anchor) -> ConnectorKind]) -> Rigid
     let hangs = |index: usize| DVec2::new(index as f64 * (1.0 + TOLERANCES.target_gap), 0.0);
     let parts = (0..discs).map(|index| {
         let state = BodyState { position: hangs(index) + arm, ..BodyState::default() };
-        let mut parts = body(&disc(0.5), state);
-        parts.1.acceleration = DVec2::new(0.0, -10.0);
-        parts
+        let mut part = body(&disc(0.5), state);
+        part.law.acceleration = DVec2::new(0.0, -10.0);
+        part
     });
     let connectors = (0..discs).flat_map(|index| {
         ties.iter().map(move |tie| {

@@ -55,7 +55,7 @@ fn mixed_shapes_tumble_in_a_box_without_touching_deeper_than_allowed() {
     for seed in 1..=3 {
         let mut parts = crowd(&mixed_shapes(), 2.0, &mut Random(seed));
         // One disc lives inside of the ring.
-        let ring = parts[4 + 3].2;
+        let ring = parts[4 + 3].state;
         parts.push(body(&disc(0.2), moving(ring.position, DVec2::new(1.0, -3.0), 2.0)));
         let mut system = system(parts);
         let before = energy(&system, 0.0);
@@ -68,11 +68,11 @@ fn mixed_shapes_tumble_in_a_box_without_touching_deeper_than_allowed() {
 #[test]
 fn nothing_tunnels_while_all_are_pulled_and_damped() {
     let mut parts = crowd(&mixed_shapes(), 2.0, &mut Random(9));
-    for (index, (_, law, _)) in parts.iter_mut().enumerate() {
+    for (index, part) in parts.iter_mut().enumerate() {
         // Each its own way, so that pairs accelerate against each other.
-        law.acceleration = DVec2::from_angle(index as f64) * 0.5;
-        law.linear_rate = 0.02 * (index % 3) as f64;
-        law.angular_rate = 0.03 * (index % 2) as f64;
+        part.law.acceleration = DVec2::from_angle(index as f64) * 0.5;
+        part.law.linear_rate = 0.02 * (index % 3) as f64;
+        part.law.angular_rate = 0.03 * (index % 2) as f64;
     }
     watch(&mut system(parts), 5.0, 800);
 }

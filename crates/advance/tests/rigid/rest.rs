@@ -11,9 +11,9 @@ const GRAVITY: f64 = 10.0;
 /// A ball without bounce, 1 m above a floor.
 fn dropped(velocity: DVec2) -> (RigidSystem, f64) {
     let mut ball = body(&disc(0.5), moving(DVec2::new(0.0, 1.5), velocity, 0.0));
-    ball.0.elasticity = 0.0;
-    ball.1.acceleration = DVec2::new(0.0, -GRAVITY);
-    let weight = GRAVITY / ball.0.inverse_mass;
+    ball.body.elasticity = 0.0;
+    ball.law.acceleration = DVec2::new(0.0, -GRAVITY);
+    let weight = GRAVITY / ball.body.inverse_mass;
     (system(vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), ball]), weight)
 }
 
@@ -73,7 +73,7 @@ fn a_ball_that_slides_off_the_edge_falls_freely() {
 #[test]
 fn a_ball_that_is_stopped_where_nothing_pulls_it_goes_on() {
     let mut ball = body(&disc(0.5), moving(DVec2::new(0.0, 1.5), DVec2::new(0.5, -1.0), 0.0));
-    ball.0.elasticity = 0.0;
+    ball.body.elasticity = 0.0;
     let mut system = system(vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), ball]);
     advance(&mut system, 5.0).expect("it slides along");
     let state = states(&system, 5.0)[1];

@@ -14,12 +14,12 @@ const FAST: f64 = 30.0;
 /// Two discs that close in on a third, so many times lighter, so far [m] from each, and so fast [m/s].
 fn vise(resolution_time: f64, lighter: f64, room: f64, speed: f64) -> RigidSystem {
     let mut light = body(&disc(0.1), moving(DVec2::ZERO, DVec2::new(speed, 0.0), 0.0));
-    (light.0.inverse_mass, light.0.inverse_moment) = (lighter, 100.0 * lighter);
+    (light.body.inverse_mass, light.body.inverse_moment) = (lighter, 100.0 * lighter);
     let heavy = |side: f64| {
         let state = moving(DVec2::new((0.6 + room) * side, 0.0), DVec2::new(-side, 0.0), 0.0);
-        let mut parts = body(&disc(0.5), state);
-        (parts.0.inverse_mass, parts.0.inverse_moment) = (1.0, 1.0);
-        parts
+        let mut part = body(&disc(0.5), state);
+        (part.body.inverse_mass, part.body.inverse_moment) = (1.0, 1.0);
+        part
     };
     let settings = RigidSettings { resolution_time, ..SETTINGS };
     let bodies = vec![heavy(-1.0), light, heavy(1.0)];

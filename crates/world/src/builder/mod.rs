@@ -11,7 +11,7 @@ use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
-use crate::start::{Corrected, StartParts, StartRules, correct_start};
+use crate::start::{Corrected, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
 use crate::world_error::{ConnectorName, WorldError};
 pub(crate) use checks::LARGEST;
@@ -19,7 +19,7 @@ use checks::world_bounds;
 use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{FlightLaw, RigidParts, RigidSystem, Scales};
+use halfgap_advance::rigid::{BodyPart, FlightLaw, RigidParts, RigidSystem, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
 use std::slice::from_ref;
@@ -189,12 +189,12 @@ impl WorldBuilder {
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
-            self.bodies.into_iter().zip(self.laws).map(into_parts).unzip();
+            self.bodies.into_iter().zip(self.laws).map(into_part).unzip();
         let mut pool = ShapePool::default();
-        bodies.iter_mut().for_each(|(body, ..)| body.shape = pool.share(body.shape.clone()));
+        bodies.iter_mut().for_each(|part| part.body.shape = pool.share(part.body.shape.clone()));
         let rules = start_rules(&self.settings, &self.excluded, &tolerances, &scales);
-        let total = |bodies: &[StartParts]| {
-            let state = |body: BodyId| bodies[body.index()].2;
+        let total = |bodies: &[BodyPart]| {
+            let state = |body: BodyId| bodies[body.index()].state;
             energy_of(&named, &self.forces, self.settings.start_time, state, &mut Vec::new()).total()
         };
         let acting = (forces_on(&bodies, &wrenches), torques_on(&bodies, &wrenches));
@@ -411,7 +411,7 @@ fn velocity_warning(apart: Option<(ConnectorName, f64)>, tolerances: &Tolerances
 
 /// Scales of the energy after the correction at the start, under forces [N] and torques [N m] of a size.
 fn energy_scales(
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     (forces, torques): (f64, f64),
     start: &Start,
     (settings, tolerances): (&WorldSettings, &Tolerances),
@@ -426,50 +426,49 @@ fn energy_scales(
 }
 
 /// Kinetic energy of the bodies, and work of forces of a size [N] across all of them [J].
-fn usual_energy(bodies: &[StartParts], forces: f64) -> f64 {
-    let bounds = bodies.iter().map(|(body, _, state)| body.shape.bounds_at(&state.pose()));
+fn usual_energy(bodies: &[BodyPart], forces: f64) -> f64 {
+    let bounds = bodies.iter().map(|part| part.body.shape.bounds_at(&part.state.pose()));
     let size = bounds.reduce(Aabb::union).map_or(0.0, |all| all.size().length());
-    let kinetic = bodies.iter().map(|(body, _, state)| body.kinetic_energy(state));
+    let kinetic = bodies.iter().map(|part| part.body.kinetic_energy(&part.state));
     kinetic.sum::<f64>() + forces * size
 }
 
 /// Work of forces of a size [N] within the tolerance of the bodies' sizes, and energy of the bodies at a speed that is
 /// rounding of their coordinates [J].
-fn lost_energy(bodies: &[StartParts], forces: f64, settings: &WorldSettings) -> f64 {
-    let reach = movable(bodies).map(|(body, ..)| body.shape.reach()).fold(0.0, f64::max);
+fn lost_energy(bodies: &[BodyPart], forces: f64, settings: &WorldSettings) -> f64 {
+    let reach = movable(bodies).map(|part| part.body.shape.reach()).fold(0.0, f64::max);
     let rounding = settings.duration.map_or(0.0, |duration| crossing_energy(bodies, duration));
     LOST_ROUNDINGS * f64::EPSILON * rounding + forces * LOST_TOLERANCES * settings.tolerance * reach
 }
 
 /// Energy [J] of bodies that move by a rounding of their coordinates in the whole run.
-fn still_energy(bodies: &[StartParts], settings: &WorldSettings) -> f64 {
+fn still_energy(bodies: &[BodyPart], settings: &WorldSettings) -> f64 {
     let time = settings.duration.unwrap_or(TIME_TO_MOVE);
     f64::EPSILON * f64::EPSILON * crossing_energy(bodies, time)
 }
 
 /// Twice the kinetic energy [J] of the movable bodies at the speed that covers the largest coordinate in a time [s].
-fn crossing_energy(bodies: &[StartParts], time: f64) -> f64 {
-    let farthest =
-        bodies.iter().map(|(body, _, state)| state.position.abs().max_element() + body.shape.reach());
-    let speed = farthest.fold(0.0, f64::max) / time;
-    let mass: f64 = movable(bodies).map(|(body, ..)| body.inverse_mass.recip()).sum();
+fn crossing_energy(bodies: &[BodyPart], time: f64) -> f64 {
+    let farthest = |part: &BodyPart| part.state.position.abs().max_element() + part.body.shape.reach();
+    let speed = bodies.iter().map(farthest).fold(0.0, f64::max) / time;
+    let mass: f64 = movable(bodies).map(|part| part.body.inverse_mass.recip()).sum();
     mass * speed * speed
 }
 
-fn movable(bodies: &[StartParts]) -> impl Iterator<Item = &StartParts> {
-    bodies.iter().filter(|(body, ..)| !body.is_fixed())
+fn movable(bodies: &[BodyPart]) -> impl Iterator<Item = &BodyPart> {
+    bodies.iter().filter(|part| !part.body.is_fixed())
 }
 
 /// Sum of the sizes of the forces [N] on the movable bodies.
-fn forces_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
-    let movable = bodies.iter().zip(wrenches).filter(|((body, ..), _)| !body.is_fixed());
-    let forces = movable.map(|((body, law, _), wrench)| wrench.force + law.acceleration / body.inverse_mass);
+fn forces_on(bodies: &[BodyPart], wrenches: &[Wrench]) -> f64 {
+    let movable = bodies.iter().zip(wrenches).filter(|(part, _)| !part.body.is_fixed());
+    let forces = movable.map(|(part, wrench)| wrench.force + part.law.acceleration / part.body.inverse_mass);
     forces.map(|force| force.length()).sum()
 }
 
 /// Sum of the sizes of the torques [N m] on the movable bodies: their work over a radian [J].
-fn torques_on(bodies: &[StartParts], wrenches: &[Wrench]) -> f64 {
-    let movable = bodies.iter().zip(wrenches).filter(|((body, ..), _)| !body.is_fixed());
+fn torques_on(bodies: &[BodyPart], wrenches: &[Wrench]) -> f64 {
+    let movable = bodies.iter().zip(wrenches).filter(|(part, _)| !part.body.is_fixed());
     movable.map(|(_, wrench)| wrench.torque.abs()).sum()
 }
 
@@ -496,9 +495,8 @@ fn centered(body: &BodySpec) -> Shape {
     body.shape.translated(-center_of_mass(body))
 }
 
-type Parts = (Named, StartParts);
-
-fn into_parts((spec, law): (BodySpec, FlightLaw)) -> Parts {
+/// Splits the specification of a body into the data that the world keeps and the part for the system.
+fn into_part((spec, law): (BodySpec, FlightLaw)) -> (Named, BodyPart) {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
     let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
     let inverse =
@@ -515,5 +513,5 @@ fn into_parts((spec, law): (BodySpec, FlightLaw)) -> Parts {
     } else {
         BodyState { velocity: DVec2::ZERO, angular_velocity: 0.0, ..spec.state }
     };
-    (named, (body, law, state))
+    (named, BodyPart { body, law, state })
 }

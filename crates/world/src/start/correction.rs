@@ -1,10 +1,11 @@
 //! Least corrections, weighted by mass, that satisfy rows: displacements for gaps, changes of velocity for rates.
 
 use super::joined::{name_of, rows};
-use super::{StartParts, moving};
+use super::moving;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
+use halfgap_advance::rigid::BodyPart;
 use halfgap_collision::{BodyId, Collision, Connector, ConnectorKind, ConnectorSample, Tolerances};
 use halfgap_contact::{DualActiveSet, InverseInertia, Problem, Row, Settings, Solution, Solver};
 
@@ -27,7 +28,7 @@ struct Correction {
 /// Moves the bodies so that gaps and connectors come to fit, to first order, or a fraction of the way. Returns that
 /// fraction, 1 for all of it; `None` if no displacement fits.
 pub(super) fn correct_positions(
-    bodies: &mut [StartParts],
+    bodies: &mut [BodyPart],
     records: &[Collision],
     connectors: &[Connector],
 ) -> Option<f64> {
@@ -38,7 +39,7 @@ pub(super) fn correct_positions(
 /// Moves the bodies so that the `held` gaps come to their target, from either side, and others are lifted where they
 /// are too small. Returns as [`correct_positions`] does.
 pub(super) fn bring_to_target(
-    bodies: &mut [StartParts],
+    bodies: &mut [BodyPart],
     held: &[Collision],
     others: &[Collision],
     connectors: &[Connector],
@@ -53,11 +54,11 @@ pub(super) fn bring_to_target(
     apply(bodies, &corrections)
 }
 
-fn apply(bodies: &mut [StartParts], corrections: &[Correction]) -> Option<f64> {
+fn apply(bodies: &mut [BodyPart], corrections: &[Correction]) -> Option<f64> {
     let changes = least_changes(bodies, corrections)?;
     let turn = changes.iter().fold(0.0f64, |most, change| most.max(change[2].abs()));
     let share = if turn > LARGEST_TURN { LARGEST_TURN / turn } else { 1.0 };
-    for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
+    for (BodyPart { state, .. }, change) in bodies.iter_mut().zip(changes) {
         state.position += share * DVec2::new(change[0], change[1]);
         state.angle += share * change[2];
     }
@@ -65,7 +66,7 @@ fn apply(bodies: &mut [StartParts], corrections: &[Correction]) -> Option<f64> {
 }
 
 /// True if a gap can be lifted while the connectors come to fit, with all other contacts left out.
-pub(super) fn can_lift(bodies: &[StartParts], record: &Collision, connectors: &[Connector]) -> bool {
+pub(super) fn can_lift(bodies: &[BodyPart], record: &Collision, connectors: &[Connector]) -> bool {
     let corrections: Vec<_> = std::iter::once(lift(record)).chain(join(bodies, connectors)).collect();
     least_changes(bodies, &corrections).is_some()
 }
@@ -82,7 +83,7 @@ fn lift(record: &Collision) -> Correction {
 }
 
 fn join<'a>(
-    bodies: &'a [StartParts],
+    bodies: &'a [BodyPart],
     connectors: &'a [Connector],
 ) -> impl Iterator<Item = Correction> + use<'a> {
     rows(bodies, connectors).map(|(_, connector, sample)| Correction {
@@ -97,7 +98,7 @@ fn join<'a>(
 /// and its rate [m/s]. Where connectors contradict each other, velocities are left as they are if no connector comes
 /// apart faster than the speed that counts as slow.
 pub(super) fn correct_velocities(
-    bodies: &mut [StartParts],
+    bodies: &mut [BodyPart],
     named: &[Named],
     connectors: &[Connector],
     tolerances: &Tolerances,
@@ -124,7 +125,7 @@ pub(super) fn correct_velocities(
             Err(WorldError::ConnectorComesApart { connector, rate })
         };
     };
-    for ((_, _, state), change) in bodies.iter_mut().zip(changes) {
+    for (BodyPart { state, .. }, change) in bodies.iter_mut().zip(changes) {
         state.velocity += DVec2::new(change[0], change[1]);
         state.angular_velocity += change[2];
     }
@@ -132,7 +133,7 @@ pub(super) fn correct_velocities(
 }
 
 /// Returns the row of a rail whose point is within a distance [m] of a corner: that of the side along which it moves.
-fn along_corner(bodies: &[StartParts], connector: &Connector, within: f64) -> Option<ConnectorSample> {
+fn along_corner(bodies: &[BodyPart], connector: &Connector, within: f64) -> Option<ConnectorSample> {
     let ConnectorKind::Rail { a: anchor, path } = &connector.kind else { return None };
     let [a, b] = connector.bodies().map(|body| moving(bodies, body));
     let sides = path.corner_at(a.pose.point_to_world(anchor.point), within)?;
@@ -142,9 +143,9 @@ fn along_corner(bodies: &[StartParts], connector: &Connector, within: f64) -> Op
 
 /// Size of the speeds whose difference a rate is [m/s]. Components across the row count, too: the direction of a row is
 /// known to rounding only.
-fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
+fn rate_size(bodies: &[BodyPart], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
     let sizes = ends.iter().zip(jacobian.chunks_exact(3)).map(|(end, part)| {
-        let Some((body, _, state)) = bodies.get(end.index()) else { return 0.0 };
+        let Some(BodyPart { body, state, .. }) = bodies.get(end.index()) else { return 0.0 };
         let arm = part[2].abs().max(body.shape.reach());
         DVec2::new(part[0], part[1]).length() * state.velocity.length() + arm * state.angular_velocity.abs()
     });
@@ -153,9 +154,9 @@ fn rate_size(bodies: &[StartParts], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f
 
 /// Returns the change of (x, y, angle) of each body, least in the mass metric, that undoes all rows; `None` if there is
 /// none.
-fn least_changes(bodies: &[StartParts], corrections: &[Correction]) -> Option<Vec<[f64; 3]>> {
+fn least_changes(bodies: &[BodyPart], corrections: &[Correction]) -> Option<Vec<[f64; 3]>> {
     let mut problem = Problem::new();
-    for (body, _, _) in bodies {
+    for BodyPart { body, .. } in bodies {
         let inertia = InverseInertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment };
         problem.add_body(inertia).ok()?;
     }
@@ -172,7 +173,7 @@ fn least_changes(bodies: &[StartParts], corrections: &[Correction]) -> Option<Ve
     let mut changes = vec![[0.0; 3]; bodies.len()];
     for (Correction { bodies: ends, jacobian, .. }, &force) in corrections.iter().zip(&solution.force) {
         for (end, part) in ends.iter().zip(jacobian.chunks_exact(3)) {
-            let Some((body, _, _)) = bodies.get(end.index()) else { continue };
+            let Some(BodyPart { body, .. }) = bodies.get(end.index()) else { continue };
             let change = &mut changes[end.index()];
             let inverse = [body.inverse_mass, body.inverse_mass, body.inverse_moment];
             for (place, entry) in part.iter().enumerate() {

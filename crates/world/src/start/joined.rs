@@ -1,8 +1,9 @@
 //! Errors of the connectors at the start, and their rows.
 
-use super::{StartParts, moving};
+use super::moving;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
+use halfgap_advance::rigid::BodyPart;
 use halfgap_collision::{BodyId, Connector, ConnectorSample};
 
 /// A connector and its error.
@@ -27,7 +28,7 @@ pub(super) fn name_of(index: usize, named: &[Named], connectors: &[Connector]) -
 
 /// Refuses the first connector whose error is larger than allowed [m].
 pub(super) fn require_small_errors(
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     named: &[Named],
     connectors: &[Connector],
     allowed: f64,
@@ -43,23 +44,23 @@ pub(super) fn require_small_errors(
 }
 
 /// Returns the connector with the largest error.
-pub(super) fn worst_connector(bodies: &[StartParts], connectors: &[Connector]) -> Option<ConnectorOff> {
+pub(super) fn worst_connector(bodies: &[BodyPart], connectors: &[Connector]) -> Option<ConnectorOff> {
     let off = connectors.iter().enumerate();
     let off = off.map(|(index, connector)| ConnectorOff { index, error: error_of(bodies, connector) });
     off.max_by(|p, q| p.error.total_cmp(&q.error))
 }
 
-fn error_of(bodies: &[StartParts], connector: &Connector) -> f64 {
+fn error_of(bodies: &[BodyPart], connector: &Connector) -> f64 {
     let [a, b] = connector.bodies().map(|body| moving(bodies, body));
     connector.error(&a, &b, None)
 }
 
 /// Every row of every connector that ties a movable body, with the connector's index.
 pub(super) fn rows<'a>(
-    bodies: &'a [StartParts],
+    bodies: &'a [BodyPart],
     connectors: &'a [Connector],
 ) -> impl Iterator<Item = (usize, &'a Connector, ConnectorSample)> {
-    let is_fixed = |body: BodyId| body.is_world() || bodies[body.index()].0.is_fixed();
+    let is_fixed = |body: BodyId| body.is_world() || bodies[body.index()].body.is_fixed();
     let movable =
         connectors.iter().enumerate().filter(move |(_, one)| !one.bodies().into_iter().all(is_fixed));
     movable.flat_map(|(index, connector)| {

@@ -21,8 +21,8 @@ use crate::near::NearPairs;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
-use halfgap_advance::rigid::FlightLaw;
-use halfgap_collision::{Body, BodyId, BodyState, Collision, Connector, Moving, Tolerances};
+use halfgap_advance::rigid::BodyPart;
+use halfgap_collision::{BodyId, BodyState, Collision, Connector, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
 use regain::regain_touches;
 use tight::TightPairs;
@@ -41,9 +41,6 @@ const LEAST_GAIN: f64 = 0.5;
 const FARTHEST: f64 = 10.0;
 /// Longest way of a body, as a fraction of its reach, if that is more.
 const FARTHEST_OF_REACH: f64 = 0.1;
-
-/// A body, the law of its free flight, and its state at the start.
-pub(crate) type StartParts = (Body, FlightLaw, BodyState);
 
 /// Errors accepted at the start, and thresholds that the correction is to reach.
 #[derive(Clone, Copy, Debug)]
@@ -65,14 +62,14 @@ pub(crate) struct StartRules<'a> {
 
 impl StartRules<'_> {
     /// Returns the pairs of bodies near enough to touch.
-    fn near_pairs<'a>(&self, near: &'a mut NearPairs, bodies: &[StartParts]) -> &'a [(BodyId, BodyId)] {
+    fn near_pairs<'a>(&self, near: &'a mut NearPairs, bodies: &[BodyPart]) -> &'a [(BodyId, BodyId)] {
         if !self.collisions {
             return &[];
         }
         let skin = self.tolerances.distance_tol();
-        let boxes = bodies
-            .iter()
-            .map(|(body, _, state)| (body.shape.bounds_at(&state.pose()).grown(skin), body.is_fixed()));
+        let boxes = bodies.iter().map(|BodyPart { body, state, .. }| {
+            (body.shape.bounds_at(&state.pose()).grown(skin), body.is_fixed())
+        });
         near.find(boxes, self.excluded)
     }
 }
@@ -88,7 +85,7 @@ pub(crate) struct Corrected {
 
 /// Corrects positions and velocities at the start.
 pub(crate) fn correct_start(
-    bodies: &mut [StartParts],
+    bodies: &mut [BodyPart],
     named: &[Named],
     connectors: &[Connector],
     rules: &StartRules<'_>,
@@ -97,7 +94,7 @@ pub(crate) fn correct_start(
     let pairs = rules.near_pairs(&mut near, bodies);
     require_shallow(bodies, named, pairs, rules.overlap)?;
     require_small_errors(bodies, named, connectors, rules.connector_error)?;
-    let given: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
+    let given: Vec<BodyState> = bodies.iter().map(|part| part.state).collect();
     let mut tight = TightPairs::default();
     let (mut rounds, mut known) = (Rounds::default(), KnownTouches::default());
     let mut lifted: Vec<Touch> = Vec::new();
@@ -137,7 +134,7 @@ pub(crate) fn correct_start(
             }
         }
         // The result is of no use: start anew from the given positions, without the pairs that cannot be lifted.
-        bodies.iter_mut().zip(&given).for_each(|((_, _, state), given)| *state = *given);
+        bodies.iter_mut().zip(&given).for_each(|(part, given)| part.state = *given);
         if !widen(&mut tight, bodies, connectors, (rules, &mut near)) {
             return Err(failure);
         }
@@ -146,8 +143,7 @@ pub(crate) fn correct_start(
     }
     regain_touches(bodies, (&lifted, &given), connectors, (rules, &mut near));
     let apart = correct_velocities(bodies, named, connectors, rules.tolerances)?;
-    let moves =
-        bodies.iter().zip(&given).map(|((_, _, state), given)| state.position.distance(given.position));
+    let moves = bodies.iter().zip(&given).map(|(part, given)| part.state.position.distance(given.position));
     Ok(Corrected { displacement: moves.fold(0.0, f64::max), apart })
 }
 
@@ -187,7 +183,7 @@ impl Rounds {
 /// Lets pairs that are too near at the given positions keep their gaps; returns false if there are none left that can.
 fn widen(
     tight: &mut TightPairs,
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     connectors: &[Connector],
     (rules, near): (&StartRules<'_>, &mut NearPairs),
 ) -> bool {
@@ -211,21 +207,21 @@ fn all_lacking(records: &[Collision]) -> f64 {
 }
 
 /// True if no body has gone farther than `farthest` [m], or than a fraction of its reach if that is more.
-fn are_near(bodies: &[StartParts], given: &[BodyState], farthest: f64) -> bool {
+fn are_near(bodies: &[BodyPart], given: &[BodyState], farthest: f64) -> bool {
     let is_near = |reach: f64, way: f64| way <= farthest.max(FARTHEST_OF_REACH * reach);
-    bodies.iter().zip(ways(bodies, given)).all(|((body, _, _), way)| is_near(body.shape.reach(), way))
+    bodies.iter().zip(ways(bodies, given)).all(|(part, way)| is_near(part.body.shape.reach(), way))
 }
 
 /// Upper bounds of the distance [m] that the points of each body have moved.
-fn ways(bodies: &[StartParts], given: &[BodyState]) -> Vec<f64> {
-    let way = |((body, _, state), given): (&StartParts, &BodyState)| {
+fn ways(bodies: &[BodyPart], given: &[BodyState]) -> Vec<f64> {
+    let way = |(BodyPart { body, state, .. }, given): (&BodyPart, &BodyState)| {
         state.position.distance(given.position) + (state.angle - given.angle).abs() * body.shape.reach()
     };
     bodies.iter().zip(given).map(way).collect()
 }
 
-fn moving(bodies: &[StartParts], body: BodyId) -> Moving {
-    if body.is_world() { Moving::BACKGROUND } else { Moving::from(&bodies[body.index()].2) }
+fn moving(bodies: &[BodyPart], body: BodyId) -> Moving {
+    if body.is_world() { Moving::BACKGROUND } else { Moving::from(&bodies[body.index()].state) }
 }
 
 /// Returns the error of a failed correction: an overlap that it caused, else the smallest gap if one is too small, else

@@ -5,14 +5,15 @@
 use super::correction::bring_to_target;
 use super::joined::worst_connector;
 use super::touching::{Touch, is_below_zone, record_of, touch, touching};
-use super::{MOST_ROUNDS, StartParts, StartRules, ways};
+use super::{MOST_ROUNDS, StartRules, ways};
 use crate::near::NearPairs;
+use halfgap_advance::rigid::BodyPart;
 use halfgap_collision::{BodyState, Collision, Connector};
 
 /// Brings the lifted gaps to their target, from both sides, if some of them lie beyond it. Leaves the bodies as they
 /// are if none does, or if that is not possible. `given` holds the bodies before they were lifted.
 pub(super) fn regain_touches(
-    bodies: &mut [StartParts],
+    bodies: &mut [BodyPart],
     (lifted, given): (&[Touch], &[BodyState]),
     connectors: &[Connector],
     (rules, near): (&StartRules<'_>, &mut NearPairs),
@@ -22,7 +23,7 @@ pub(super) fn regain_touches(
     if !measured(bodies, lifted, rules).iter().any(is_lost) {
         return;
     }
-    let corrected: Vec<BodyState> = bodies.iter().map(|(_, _, state)| *state).collect();
+    let corrected: Vec<BodyState> = bodies.iter().map(|part| part.state).collect();
     for _ in 0..MOST_ROUNDS {
         let ways = ways(bodies, given);
         let pairs = rules.near_pairs(near, bodies);
@@ -38,10 +39,10 @@ pub(super) fn regain_touches(
             break;
         }
     }
-    bodies.iter_mut().zip(&corrected).for_each(|((_, _, state), corrected)| *state = *corrected);
+    bodies.iter_mut().zip(&corrected).for_each(|(part, corrected)| part.state = *corrected);
 }
 
 /// Returns the records of known places at the present positions of the bodies.
-fn measured(bodies: &[StartParts], touches: &[Touch], rules: &StartRules<'_>) -> Vec<Collision> {
+fn measured(bodies: &[BodyPart], touches: &[Touch], rules: &StartRules<'_>) -> Vec<Collision> {
     touches.iter().filter_map(|&touch| record_of(bodies, touch, rules)).collect()
 }

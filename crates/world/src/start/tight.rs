@@ -1,8 +1,8 @@
 //! Pairs that connectors, or other bodies, keep from being lifted, such as a wheel on a fixed axle that just touches
 //! its floor. They keep their given gap, if they do not overlap.
 
-use super::StartParts;
 use super::correction::can_lift;
+use halfgap_advance::rigid::BodyPart;
 use halfgap_collision::{BodyId, Collision, Connector};
 
 /// Pairs that keep their gaps.
@@ -23,7 +23,7 @@ impl TightPairs {
     /// Returns false if no pair was added.
     pub(super) fn widen(
         &mut self,
-        bodies: &[StartParts],
+        bodies: &[BodyPart],
         connectors: &[Connector],
         too_near: &[Collision],
     ) -> bool {

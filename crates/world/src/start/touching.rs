@@ -1,22 +1,22 @@
 //! Contacts of bodies at the start, and the depths of their overlaps.
 
-use super::{StartParts, StartRules};
+use super::StartRules;
 use crate::overlap::overlap_depth;
 use crate::world::Named;
 use crate::world_error::WorldError;
+use halfgap_advance::rigid::BodyPart;
 use halfgap_collision::{BodyId, Collision, Moment, Moving, detect_pair, record_features};
 use halfgap_geometry::FeatureId;
 
 /// Refuses the first overlap deeper than allowed [m].
 pub(super) fn require_shallow(
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     named: &[Named],
     pairs: &[(BodyId, BodyId)],
     allowed: f64,
 ) -> Result<(), WorldError> {
     for &(a, b) in pairs {
-        let [(body_a, _, state_a), (body_b, _, state_b)] = [&bodies[a.index()], &bodies[b.index()]];
-        let depth = overlap_depth(&body_a.shape, &state_a.pose(), &body_b.shape, &state_b.pose());
+        let depth = depth_between([a, b].map(|body| &bodies[body.index()]));
         if let Some(depth) = depth.filter(|depth| *depth > allowed) {
             let (first, second) = (named[a.index()].name.clone(), named[b.index()].name.clone());
             return Err(WorldError::Overlap { first, second, depth, allowed });
@@ -28,7 +28,7 @@ pub(super) fn require_shallow(
 /// Returns two bodies that a correction has moved into each other by more than rounding [m], and the depth [m]. `ways`
 /// holds the distance that each body has been moved.
 pub(super) fn deep_overlap(
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     pairs: &[(BodyId, BodyId)],
     rounding: f64,
     ways: &[f64],
@@ -36,17 +36,21 @@ pub(super) fn deep_overlap(
     let moved =
         pairs.iter().map(|&(a, b)| [a, b]).filter(|pair| pair.iter().any(|body| ways[body.index()] > 0.0));
     let mut deep = moved.filter_map(|pair| {
-        let [(body_a, _, state_a), (body_b, _, state_b)] = pair.map(|body| &bodies[body.index()]);
-        let depth = overlap_depth(&body_a.shape, &state_a.pose(), &body_b.shape, &state_b.pose())?;
+        let depth = depth_between(pair.map(|body| &bodies[body.index()]))?;
         (depth > rounding).then_some((pair, depth))
     });
     deep.next()
 }
 
+/// Depth [m] of the overlap of two bodies in their states, as by [`overlap_depth`]; `None` if they are apart.
+fn depth_between([a, b]: [&BodyPart; 2]) -> Option<f64> {
+    overlap_depth(&a.body.shape, &a.state.pose(), &b.body.shape, &b.state.pose())
+}
+
 /// Returns records of all places where bodies touch, including overlaps no deeper than the overlap accepted at the
 /// start plus the `ways` [m] that both bodies have been moved since.
 pub(super) fn touching(
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     pairs: &[(BodyId, BodyId)],
     rules: &StartRules<'_>,
     ways: &[f64],
@@ -59,8 +63,8 @@ pub(super) fn touching(
     records
 }
 
-fn moment(bodies: &[StartParts], id: BodyId) -> Moment<'_> {
-    let (body, _, state) = &bodies[id.index()];
+fn moment(bodies: &[BodyPart], id: BodyId) -> Moment<'_> {
+    let BodyPart { body, state, .. } = &bodies[id.index()];
     Moment { id, body, moving: Moving::from(state) }
 }
 
@@ -69,7 +73,7 @@ pub(super) type Touch = ([BodyId; 2], [FeatureId; 2]);
 
 /// Returns the record of a known place at the present positions of the bodies.
 pub(super) fn record_of(
-    bodies: &[StartParts],
+    bodies: &[BodyPart],
     ([a, b], features): Touch,
     rules: &StartRules<'_>,
 ) -> Option<Collision> {
@@ -91,7 +95,7 @@ impl KnownTouches {
     pub(super) fn complete(
         &mut self,
         records: &mut Vec<Collision>,
-        bodies: &[StartParts],
+        bodies: &[BodyPart],
         rules: &StartRules<'_>,
     ) {
         let mut present: Vec<Touch> = records.iter().filter_map(touch).collect();

@@ -125,7 +125,7 @@ mod tests {
     use super::SIGN_AT;
     use crate::rigid::motion::flyer::FlightLaw;
     use crate::rigid::motion::law::{ForceLaw, Snapshot, Wrenches};
-    use crate::rigid::parts::RigidParts;
+    use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::system::RigidSystem;
     use crate::rigid::test_scene::FINE;
     use crate::time::Time;
@@ -167,12 +167,9 @@ mod tests {
         let body = BodyId(0);
         let shape = Shape::disc(0.5).expect("a fine radius");
         let disc = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
+        let disc = BodyPart { body: disc, law: FlightLaw::default(), state: BodyState::default() };
         let clock = Clock { rings: later.seconds() + delay, bodies: [body] };
-        let parts = RigidParts {
-            bodies: vec![(disc, FlightLaw::default(), BodyState::default())],
-            laws: vec![Arc::new(clock)],
-            ..RigidParts::default()
-        };
+        let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(clock)], ..RigidParts::default() };
         let mut system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it floats");
         let mut group = system.groups.take(body).expect("the law makes a group");
         group.start = later;

@@ -107,10 +107,10 @@ mod tests {
     use super::super::cause::Cause;
     use super::super::impacts::ImpactReport;
     use super::*;
-    use crate::rigid::RigidParts;
     use crate::rigid::motion::flyer::FlightLaw;
     use crate::rigid::system::RigidSettings;
     use crate::rigid::test_scene::FINE;
+    use crate::rigid::{BodyPart, RigidParts};
     use crate::time::Time;
     use glam::DVec2;
     use halfgap_collision::{Body, BodyState, Tolerances};
@@ -132,7 +132,7 @@ mod tests {
         let body = |shape: Result<Shape, _>, inverse_mass: f64, position: DVec2, state: BodyState| {
             let shape = shape.expect("a fine size");
             let body = Body { shape, inverse_mass, inverse_moment: inverse_mass, elasticity: 0.0 };
-            (body, FlightLaw::default(), BodyState { position, ..state })
+            BodyPart { body, law: FlightLaw::default(), state: BodyState { position, ..state } }
         };
         let going = |x: f64, y: f64| BodyState { velocity: DVec2::new(x, y), ..BodyState::default() };
         let side = 0.5 + gap;

@@ -440,10 +440,10 @@ fn spin([x, y, angular]: [f64; 3]) -> Spin {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::RigidParts;
     use crate::rigid::event::cause::EventWork;
     use crate::rigid::motion::flyer::FlightLaw;
     use crate::rigid::test_scene::{FINE, resting_discs};
+    use crate::rigid::{BodyPart, RigidParts};
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
@@ -454,14 +454,15 @@ mod tests {
         let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
         let post = |x: f64| {
             let tall = shape(Shape::block(0.2, 1.0));
-            let post = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
-            let position = DVec2::new(x, -0.5 - GAP);
-            (post, FlightLaw::default(), BodyState { position, ..BodyState::default() })
+            let body = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
+            let state = BodyState { position: DVec2::new(x, -0.5 - GAP), ..BodyState::default() };
+            BodyPart { body, law: FlightLaw::default(), state }
         };
         let mover = |shape: Shape, y: f64, acceleration: f64| {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 3.0, elasticity: 0.0 };
             let law = FlightLaw { acceleration: DVec2::new(0.0, acceleration), ..FlightLaw::default() };
-            (body, law, BodyState { position: DVec2::new(0.0, y), ..BodyState::default() })
+            let state = BodyState { position: DVec2::new(0.0, y), ..BodyState::default() };
+            BodyPart { body, law, state }
         };
         let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
         let disc = mover(shape(Shape::disc(0.1)), -0.1 - GAP, push);
@@ -501,10 +502,11 @@ mod tests {
         };
         let wall = |side: f64| {
             let apart = 1.0 + FINE.tolerances.target_gap;
-            (body(Shape::block(1.0, 8.0), 0.0), FlightLaw::default(), at(side * apart, -1e-14 * side))
+            let state = at(side * apart, -1e-14 * side);
+            BodyPart { body: body(Shape::block(1.0, 8.0), 0.0), law: FlightLaw::default(), state }
         };
-        let fall = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
-        let block = (body(Shape::block(1.0, 1.0), 1.0), fall, at(0.0, 0.0));
+        let law = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
+        let block = BodyPart { body: body(Shape::block(1.0, 1.0), 1.0), law, state: at(0.0, 0.0) };
         let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
         let system = RigidSystem::new(parts, FINE, Time::ZERO).expect("it falls");
         assert!(system.group_of(BodyId(2)).is_none(), "nothing holds it");

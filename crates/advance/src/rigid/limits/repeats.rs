@@ -55,7 +55,7 @@ pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
 mod tests {
     use super::*;
     use crate::rigid::test_scene::FINE;
-    use crate::rigid::{FlightLaw, RigidParts};
+    use crate::rigid::{BodyPart, FlightLaw, RigidParts};
     use glam::DVec2;
     use halfgap_collision::{Body, BodyId, BodyState};
     use halfgap_geometry::{FeatureId, Shape};
@@ -67,7 +67,7 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let position = DVec2::new(side * (0.5 + 0.5e-10), 0.0);
             let state = BodyState { position, velocity: DVec2::new(-side, 0.0), ..BodyState::default() };
-            (body, FlightLaw::default(), state)
+            BodyPart { body, law: FlightLaw::default(), state }
         };
         let parts = RigidParts { bodies: vec![disc(-1.0), disc(1.0)], ..RigidParts::default() };
         let system = RigidSystem::new(parts, FINE, Time::from_seconds(1.0)).expect("nothing rests");

@@ -46,7 +46,7 @@ mod tests {
     use super::super::pairs::Prediction;
     use super::*;
     use crate::rigid::test_scene::FINE;
-    use crate::rigid::{FlightLaw, RigidParts, VelocityChange};
+    use crate::rigid::{BodyPart, FlightLaw, RigidParts, VelocityChange};
     use crate::system::EventDriven;
     use glam::DVec2;
     use halfgap_collision::{Body, BodyState};
@@ -66,7 +66,8 @@ mod tests {
             let shape = Shape::block(side, side).expect("a fine size");
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let (position, velocity) = (DVec2::new(x, 0.0), DVec2::new(speed, 0.0));
-            (body, FlightLaw::default(), BodyState { position, velocity, ..BodyState::default() })
+            let state = BodyState { position, velocity, ..BodyState::default() };
+            BodyPart { body, law: FlightLaw::default(), state }
         });
         let parts = RigidParts { bodies: Vec::from(bodies), ..RigidParts::default() };
         RigidSystem::new(parts, FINE, Time::ZERO).expect("nothing rests")

@@ -312,7 +312,7 @@ mod tests {
     use super::super::pairs::Pair;
     use super::*;
     use crate::rigid::test_scene::{FINE, resting_discs};
-    use crate::rigid::{FlightLaw, RigidParts};
+    use crate::rigid::{BodyPart, FlightLaw, RigidParts};
     use glam::DVec2;
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
@@ -336,7 +336,7 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let (position, velocity) = (DVec2::new(side, 0.1 * side), DVec2::new(-side, 0.0));
             let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
-            (body, FlightLaw::default(), state)
+            BodyPart { body, law: FlightLaw::default(), state }
         };
         let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
         let mut system = RigidSystem::new(parts, FINE, Time::from_seconds(10.0)).expect("nothing rests");

@@ -112,7 +112,7 @@ impl Dynamics<'_> {
 #[cfg(test)]
 mod tests {
     use crate::rigid::test_scene::FINE;
-    use crate::rigid::{FlightLaw, RigidParts, RigidSystem};
+    use crate::rigid::{BodyPart, FlightLaw, RigidParts, RigidSystem};
     use crate::time::Time;
     use glam::DVec2;
     use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorKind};
@@ -141,8 +141,8 @@ mod tests {
             let rod = ConnectorKind::Rod { a, b, length: point.distance(position) };
             Connector::new(rod, 0.0).expect("a fine rod")
         });
-        let connectors = rods.collect();
-        let parts = RigidParts { bodies: vec![(body, law, state)], connectors, ..RigidParts::default() };
+        let (bodies, connectors) = (vec![BodyPart { body, law, state }], rods.collect());
+        let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         RigidSystem::new(parts, FINE, Time::ZERO).expect("it hangs")
     }
 

@@ -54,7 +54,7 @@ impl Dynamics<'_> {
 #[cfg(test)]
 mod tests {
     use crate::rigid::test_scene::FINE;
-    use crate::rigid::{FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl};
+    use crate::rigid::{BodyPart, FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl};
     use crate::time::Time;
     use glam::DVec2;
     use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorKind, RailPath};
@@ -85,7 +85,7 @@ mod tests {
         let state = BodyState { position, velocity, ..BodyState::default() };
         let rail = ConnectorKind::Rail { a: Anchor { body: BodyId(0), point: DVec2::ZERO }, path };
         let connectors = vec![Connector::new(rail, 0.0).expect("a fine rail")];
-        let bodies = vec![(body, FlightLaw::default(), state)];
+        let bodies = vec![BodyPart { body, law: FlightLaw::default(), state }];
         let settings = RigidSettings { steps: StepControl { local_error, ..FINE.steps }, ..FINE };
         let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         let mut system = RigidSystem::new(parts, settings, Time::ZERO).expect("it runs");
