@@ -469,7 +469,7 @@ mod tests {
     use crate::world_of;
 
     #[test]
-    fn what_overlaps_is_seen() {
+    fn overlapping_bodies_are_seen() {
         let disc = "shape = { disc = { radius = 1.0 } }\nmass = 1.0\n";
         let world = world_of(&format!(
             "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 1.0, collisions = false }}\n\

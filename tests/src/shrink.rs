@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_refusal_does_not_need_goes() {
+    fn parts_that_a_refusal_does_not_need_go() {
         let disc = |name: &str, x: f64| json!({ "name": name, "mass": 2.0, "position": [x, 0.0], "shape": { "disc": { "radius": 0.5 } } });
         let scene = json!({
             "format": "halfgap-scene-1", "title": "t", "run": { "duration": 1.0 },

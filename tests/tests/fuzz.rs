@@ -18,7 +18,7 @@ use std::time::Duration;
 const COUNT: u64 = 380;
 
 #[test]
-fn what_must_hold_holds_in_generated_billiards() {
+fn all_invariants_hold_in_generated_billiards() {
     silence_panics();
     let mut kinds: BTreeMap<String, u64> = BTreeMap::new();
     let mut broken = Vec::new();
@@ -232,7 +232,7 @@ const BEYOND_ROUNDING: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_rounding_decides_ends_in_an_error() {
+fn scenes_that_rounding_decides_end_in_an_error() {
     for &(seed, what) in BEYOND_ROUNDING {
         let verdict = trial(&scene_of_seed(seed).to_string(), PATIENT);
         assert!(matches!(verdict, Verdict::Stopped(_)), "{seed}, {what}: {verdict:?}");
@@ -281,7 +281,7 @@ fn ropes_are_taut_within_a_coarse_zone() {
 }
 
 #[test]
-fn what_takes_over_from_a_contact_that_has_sunk_is_seen() {
+fn a_contact_that_takes_over_from_one_that_has_sunk_is_seen() {
     // Blocks fit from wall to wall: rows that contradict each other drift, and a block that rolled from one
     // corner to the next along its wall went through it. What else happens in such a jam is not looked at.
     let scene =
@@ -295,7 +295,7 @@ fn what_takes_over_from_a_contact_that_has_sunk_is_seen() {
 }
 
 #[test]
-fn what_was_broken_once_holds() {
+fn scenes_that_were_broken_once_hold() {
     // What just touches at the start, and cannot be lifted, counts as shallow.
     let holds = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));
     require(ONCE_BROKEN, scene_of_seed, holds);
@@ -329,7 +329,7 @@ const COARSE_BROKEN: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_was_broken_once_in_coarse_zones_holds() {
+fn scenes_with_coarse_zones_that_were_broken_once_hold() {
     let at_start = |why: &str| why.starts_with("t = 0 s");
     let holds = |verdict: &Verdict| match verdict {
         Verdict::Finished => true,
@@ -360,7 +360,7 @@ const VARIED_BROKEN: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_was_broken_once_in_variations_holds() {
+fn variations_that_were_broken_once_hold() {
     require(VARIED_BROKEN, variation_of_seed, |verdict| *verdict == Verdict::Finished);
 }
 
@@ -380,7 +380,7 @@ const DRIVEN_THROUGH: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_sinks_without_contact_forces_is_not_driven_through() {
+fn a_body_that_sinks_without_contact_forces_is_not_driven_through() {
     let sinks = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));
     require(DRIVEN_THROUGH, variation_of_seed, sinks);
 }
@@ -406,7 +406,7 @@ fn nothing_comes_apart_where_contacts_carry_impulses_only() {
 }
 
 #[test]
-fn what_is_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks() {
+fn a_block_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks() {
     /// A hundred for each of its steps.
     const MOST: u64 = 10_000;
     // A block that turns by 45 rad/s lies against a disc: what was stopped fired again when it had sunk by
@@ -420,7 +420,7 @@ fn what_is_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks()
 }
 
 #[test]
-fn what_strong_forces_press_into_each_other_ends_a_run_that_would_go_on_for_hours() {
+fn bodies_that_strong_forces_press_together_end_a_run_that_would_go_on_for_hours() {
     // A spring presses a light corner into a box, a hundred times as far in a step as it may sink.
     let scene = impulses_of_seed(50_401_174).to_string();
     let scene = Scene::parse(&scene, SceneFormat::Json).expect("scenes of seeds are scenes");

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_never_happens_comes_last() {
+    fn an_event_that_never_happens_comes_last() {
         let mut queue = EventQueue::new();
         (0..9).for_each(|source| queue.set(SourceId(source), Time::NEVER));
         queue.set(SourceId(9), Time::from_seconds(1.0));

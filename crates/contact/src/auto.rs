@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_no_pivots_is_not() {
+    fn a_problem_that_takes_no_pivots_is_not_handed_over() {
         let (mut auto, mut solution) = (Auto::default(), Solution::new());
         auto.solve(&pyramid(14, 0.5), &mut solution).expect("forces of a pyramid");
         assert_eq!((solution.method, solution.iterations), (Method::DualActiveSet, 0));

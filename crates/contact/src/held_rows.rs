@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn what_depends_on_nothing_is_as_stiff_as_before() {
+    fn rows_that_depend_on_no_others_are_as_stiff_as_before() {
         // A heavy body hangs from a light one, which a pin holds; beside them a body is pinned twice.
         let (light, heavy) = (
             InverseInertia { inverse_mass: 1e3, inverse_moment: 1e3 },

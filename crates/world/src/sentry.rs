@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_bounces_by_less_than_the_gap_that_is_asked_for_comes_to_rest_however_often_somebody_looks() {
+    fn a_block_that_bounces_by_less_than_the_gap_asked_for_comes_to_rest_however_often_it_is_looked_at() {
         let overrides = ToleranceOverrides {
             target_gap: Some(5e-3),
             accuracy: Some(3e-3),
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_turned_over_before_the_first_look_counts() {
+    fn the_energy_turned_over_before_the_first_look_counts() {
         // The disc falls by 0.5 m and lies there: nothing moves at the time of a look.
         let mut world = slow_disc();
         world.start.energy += 1e-5;
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn who_looks_often_is_strict() {
+    fn frequent_looks_are_strict() {
         // The usual energy here is some 10 J, but so far next to nothing of it is in play.
         for (first, is_astray) in [(0.02, true), (0.1, false)] {
             let mut world = slow_disc();

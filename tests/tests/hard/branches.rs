@@ -157,7 +157,7 @@ fn a_bar_on_two_equal_rods_goes_round_level() {
 }
 
 #[test]
-fn what_lies_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
+fn a_load_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
     for tolerance in TOLERANCES {
         let mut shop = Workshop::new(tolerance);
         let axles = [DVec2::ZERO, DVec2::new(2.5, 0.0)];
@@ -208,7 +208,7 @@ fn what_lies_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
 }
 
 #[test]
-fn what_is_not_moved_onto_its_rows_is_not_led_either() {
+fn a_bar_that_is_not_moved_onto_its_rows_is_not_led_either() {
     // It keeps to nothing, but does not stop.
     for start in (0..=11).map(|index| 0.5 + f64::from(index) / 6.0) {
         let mut shop = Workshop::of(WorldSettings {

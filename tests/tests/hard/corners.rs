@@ -113,7 +113,7 @@ fn a_disc_that_swings_too_far_leaves_its_corner_where_it_presses_no_more() {
 }
 
 #[test]
-fn what_comes_into_a_sharp_corner_stays_there() {
+fn a_bead_that_comes_into_a_sharp_corner_stays_there() {
     for [left, right] in [[1.05, 1.05], [1.2, 0.9], [0.9, 1.4]] {
         let mut shop = Workshop::new(1e-8);
         let state = at_rest(-0.5 * f64::cos(left), 0.5 * f64::sin(left));
@@ -232,7 +232,7 @@ fn a_bead_that_just_passes_a_corner_has_passed_it() {
 }
 
 #[test]
-fn what_is_struck_out_of_a_corner_goes_along_the_side_that_opens_the_other_whichever_way_the_path_runs() {
+fn a_body_struck_out_of_a_corner_goes_along_the_side_that_opens_the_other_whichever_way_the_path_runs() {
     // The body hangs by an arm, which makes one side much easier to move than the other.
     for is_reversed in [false, true] {
         let sides = [0.2_f64, 0.9];

@@ -240,7 +240,7 @@ fn bounce_beside(tolerance: f64, spin: f64, width: f64, bullet: f64) -> f64 {
 }
 
 #[test]
-fn what_is_fast_elsewhere_does_not_make_a_bounce_slow() {
+fn a_large_speed_or_size_elsewhere_does_not_make_a_bounce_slow() {
     for tolerance in [1e-1, 1e-2, 1e-3, 1e-5] {
         let cases =
             [("a bullet", 0.0, 10.0, 1e4), ("its spin", 1e4, 10.0, 0.0), ("a long floor", 0.0, 1e5, 0.0)];

@@ -153,7 +153,7 @@ fn attracted(place: DVec2, speed: f64) -> World {
 }
 
 #[test]
-fn what_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
+fn a_body_that_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
     // Nearest are they at speed^2 4 s^2/m = 1e-4 m, a five-thousandth of their size.
     let mut world = attracted(DVec2::ZERO, 0.005);
     advance(&mut world, 10.0);
@@ -165,7 +165,7 @@ fn what_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
 }
 
 #[test]
-fn what_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
+fn a_body_that_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
     let mut world = attracted(DVec2::new(10.0, 3.0), 0.0);
     let error = world.advance_to(10.0, &mut |_| {}).expect_err("the force has no bound");
     assert!(matches!(error, RunError::Unresolved { length, .. } if length < 1e-4), "{error}");
@@ -294,7 +294,7 @@ fn books_are_weighed_by_what_goes_on_between_looks() {
 }
 
 #[test]
-fn what_stands_still_once_its_start_was_corrected_is_at_rest() {
+fn a_disc_that_stands_still_once_its_start_was_corrected_is_at_rest() {
     // A disc that a pin and a rod hold altogether is given a velocity: what is left of it is rounding, of which
     // projections may take as much as there is.
     for tolerance in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {

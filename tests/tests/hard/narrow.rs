@@ -231,7 +231,7 @@ fn discs_that_part_slowly_within_their_target_zone_take_no_steps_of_their_own() 
 }
 
 #[test]
-fn what_fits_without_play_is_held_as_by_a_pin() {
+fn a_disc_that_fits_without_play_is_held_as_by_a_pin() {
     for tolerance in [1e-3, 1e-6, 1e-8, 1e-10] {
         // A disc hangs in a ring of its own radius.
         let mut shop = Workshop::new(tolerance);

@@ -194,7 +194,7 @@ fn slid_askew(gap: f64, slow: f64, [rear, front]: [f64; 2], speed: f64, step: f6
 /// What rests may be at an angle of up to a hundredth there. Neither the side nor the corner of the next tile is in
 /// its way, and contacts whose normals differ by that angle do not hold it together.
 #[test]
-fn what_lies_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
+fn a_block_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
     let heights = [0.45, 0.6, 0.8, 1.0, 1.2, 1.5];
     let (mut runs, mut worst) = (0, 0.0f64);
     for (gap, slow) in [(5e-3, 0.5), (5e-3, 0.1), (2e-3, 0.1)] {
@@ -213,7 +213,7 @@ fn what_lies_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
 
 /// A step is one where it leaves the block less room than contacts have, and none where the block is above it.
 #[test]
-fn what_lies_askew_in_a_wide_zone_is_stopped_by_a_step() {
+fn a_block_askew_in_a_wide_zone_is_stopped_by_a_step() {
     let speed = |heights: [f64; 2], step: f64| slid_askew(5e-3, 0.1, heights, 1.0, step).velocity.x;
     for step in [1.5e-3, 2e-3, 4e-3] {
         let stopped = speed([3.8e-3, 2.8e-3], step);

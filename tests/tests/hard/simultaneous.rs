@@ -195,7 +195,7 @@ fn ring_at_ceiling(height: f64, tolerance: f64) -> DVec2 {
 }
 
 #[test]
-fn what_is_pressed_together_is_struck_together_whatever_its_steps_err_by() {
+fn bodies_pressed_together_are_struck_together_whatever_their_steps_err_by() {
     // Dense output has what is held close and open faster than what rests.
     let mut worst = 0.0f64;
     for height in [1.75, 1.8, 1.85, 1.9, 1.95] {

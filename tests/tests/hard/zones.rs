@@ -7,7 +7,7 @@ use halfgap_tests::data;
 use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, disc};
 
 #[test]
-fn what_is_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_the_steps() {
+fn a_disc_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_the_steps() {
     for accuracy in [4.5e-3, 3e-3] {
         for time_step in [2.5e-2, 5e-3, 1e-3, 5e-4] {
             for elasticity in [0.0, 0.3, 0.8] {

@@ -64,7 +64,7 @@ fn two_pendulums(collisions: bool) -> World {
 }
 
 #[test]
-fn what_nothing_can_meet_moves_by_the_same_bits_and_costs_less_where_nobody_looks() {
+fn bodies_that_nothing_can_meet_move_by_the_same_bits_and_cost_less_where_nobody_looks() {
     let (mut watched, mut unwatched) = (two_pendulums(true), two_pendulums(false));
     let same = |one: &World, other: &World| {
         one.bodies().all(|body| bits(&one.state(body)) == bits(&other.state(body)))

@@ -306,7 +306,7 @@ fn bead_before_corner(end: [f64; 2], comes_forward: bool, stop: &str, pull: f64)
 const ENDS: [[f64; 2]; 5] = [[2.0, 0.17], [2.0, 1.0], [2.0, -1.0], [1.0, 1.0], [0.2, 0.8]];
 
 #[test]
-fn what_bounces_off_a_stop_in_a_corner_does_not_turn() {
+fn a_bead_that_bounces_off_a_stop_in_a_corner_does_not_turn() {
     for end in ENDS {
         for (upper, off) in [(true, 0.0), (false, 0.0), (true, 1e-12), (false, -1e-12)] {
             let stop = format!("at = {:?}, upper = {upper}, elasticity = 0.5", 1.0 + off);
@@ -322,7 +322,7 @@ fn what_bounces_off_a_stop_in_a_corner_does_not_turn() {
 }
 
 #[test]
-fn what_bounces_ever_lower_comes_to_rest_at_a_stop_near_a_corner() {
+fn a_bead_that_bounces_ever_lower_comes_to_rest_at_a_stop_near_a_corner() {
     for end in ENDS {
         for (upper, at) in [(true, 0.99_f64), (true, 1.0), (false, 1.01), (false, 1.000001), (false, 1.0)] {
             let stop = format!("at = {at:?}, upper = {upper}, elasticity = 0.5");
@@ -372,7 +372,7 @@ rail_stop = {{ a = {{ body = "bead", point = [0.0, 0.0] }}, at = {at:?}, upper =
 }
 
 #[test]
-fn what_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
+fn a_bead_that_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
     // At every tenth of a second it is looked at, also where it lies just behind the stop.
     for at in [2.0, 2.7995, 2.9, 2.9999, 3.0001, 6.0] {
         let mut world = bead_on_arc(std::f64::consts::TAU, &format!("at = {at}, upper = false"));
@@ -388,7 +388,7 @@ fn what_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
 }
 
 #[test]
-fn what_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
+fn a_bead_that_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
     // At the bottom of the ring, and never on the stopped side, whatever the tolerance: it goes on as without the stop.
     let scene = |tolerance: f64, stop: &str| {
         let path =
@@ -456,7 +456,7 @@ fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
 }
 
 #[test]
-fn what_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
+fn a_bead_that_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
     // Thrown up through the stop, a bead comes down on it, within one step or several.
     for (speed, behind) in [(1.0, 1e-3), (1.0, 0.02), (0.2, 1e-4), (2.0, 1e-6)] {
         for tolerance in [1e-3, 1e-6, 1e-9] {
@@ -488,7 +488,7 @@ fn what_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
 }
 
 #[test]
-fn what_is_stopped_in_a_corner_without_bounce_slides_back_where_its_piece_leads_down() {
+fn a_bead_stopped_in_a_corner_without_bounce_slides_back_where_its_piece_leads_down() {
     for end in [[2.0, 0.17], [1.0, 1.0], [0.2, 0.8], [0.0, 0.01]] {
         for upper in [true, false] {
             let mut world =

@@ -83,7 +83,7 @@ fn a_ball_thrown_up_slowly_is_not_held_back() {
 }
 
 #[test]
-fn what_opens_at_the_target_gap_never_fires() {
+fn a_ball_that_departs_at_the_target_gap_never_fires() {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
     let ball = shop.body("ball", disc(0.5), 1.0, thrown(0.0, 0.5, DVec2::new(0.0, 1e-9)));

@@ -83,7 +83,7 @@ fn an_elastic_ball_that_bounces_as_high_as_the_gap_comes_to_rest_in_the_end() {
 }
 
 #[test]
-fn what_is_carried_along_takes_few_steps_and_meets_what_is_in_its_way() {
+fn sliding_blocks_take_few_steps_and_meet_the_wall_or_the_edge_in_their_way() {
     // At 30 m/s a block slides along a floor of 200 m, against a wall at its end, and another over its edge.
     /// At half a block a step it would be hundreds.
     const MOST_STEPS: u64 = 60;

@@ -72,7 +72,7 @@ fn slow_ball(velocity: f64) -> World {
 }
 
 #[test]
-fn what_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
+fn a_ball_that_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
     for speed in [1e-3, 0.4] {
         let mut world = slow_ball(-speed);
         let ball = world.find("ball").expect("it is there");
@@ -89,7 +89,7 @@ fn what_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
 }
 
 #[test]
-fn what_opens_slowly_at_the_start_flies() {
+fn a_ball_that_departs_slowly_at_the_start_flies() {
     for speed in [1e-3, 0.4] {
         let mut world = slow_ball(speed);
         let ball = world.find("ball").expect("it is there");
@@ -130,7 +130,7 @@ fn discs_that_meet_slowly_at_the_start_go_on_together() {
 }
 
 #[test]
-fn what_closes_fast_at_the_start_bounces_beside_what_is_caught() {
+fn a_disc_that_closes_fast_at_the_start_bounces_beside_one_that_is_caught() {
     let mut shop = Workshop::new(1e-8);
     shop.builder = catching();
     shop.fixed("floor", block(9.0, 1.0), DVec2::new(0.0, -0.5));

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_far_away_is_no_faster() {
+    fn a_scene_far_from_the_origin_is_no_faster() {
         let speed_at = |place: DVec2| {
             let mut scales = Scales { acceleration: 10.0, ..Scales::default() };
             scales.set_bounds(Aabb { min: place - 4.0, max: place + 4.0 });

@@ -81,7 +81,7 @@ fn steps_follow_the_slow_motion() {
 }
 
 #[test]
-fn what_decays_is_followed_as_far_as_the_tolerance_asks() {
+fn a_transient_is_followed_as_far_as_the_tolerance_asks() {
     // From rest the velocity goes to 1 within some 1e-6 s; the heat of that is 1/2.
     let (state, _, _) = solve(Method::RadauIia5, 0.0, 1e-8, 100_000);
     assert!((state[2] - 0.5).abs() < 1e-7, "{state:?}");
@@ -89,7 +89,7 @@ fn what_decays_is_followed_as_far_as_the_tolerance_asks() {
 }
 
 #[test]
-fn what_has_yet_to_decay_is_not_stepped_over() {
+fn a_transient_that_has_yet_to_decay_is_not_stepped_over() {
     let (mut dragged, mut stepper) = (Dragged::default(), Stepper::new(Method::RadauIia5));
     let scales = [1e-4; 2];
     stepper.set_scales(&scales);
@@ -104,7 +104,7 @@ fn what_has_yet_to_decay_is_not_stepped_over() {
 }
 
 #[test]
-fn what_holds_steps_up_is_told() {
+fn the_decay_that_holds_steps_up_is_told() {
     let mut dragged = Dragged::default();
     for (method, step) in [(Method::Dop853, 3e-6), (Method::DormandPrince5, 2e-6), (Method::RadauIia5, 1e-3)]
     {
@@ -207,7 +207,7 @@ impl Ode for Trembling {
 }
 
 #[test]
-fn what_rests_goes_long_steps_however_its_rates_are_rounded() {
+fn a_system_at_rest_takes_long_steps_however_its_rates_are_rounded() {
     let (mut trembling, mut stepper) = (Trembling::default(), Stepper::new(Method::RadauIia5));
     let scales = [1e-8];
     stepper.set_scales(&scales);
@@ -294,7 +294,7 @@ impl Ode for Pair {
 }
 
 #[test]
-fn what_becomes_fast_in_place_of_something_else_is_told() {
+fn a_component_that_becomes_fast_in_place_of_another_is_told() {
     let (mut stepper, step, scales) = (Stepper::new(Method::RadauIia5), 1e-2, [1e-6; 2]);
     stepper.set_scales(&scales);
     let mut told = |decay: [f64; 2], steps: usize| {

@@ -85,7 +85,7 @@ fn the_time_of_the_bounces_cut_off_is_told() {
 }
 
 #[test]
-fn what_does_not_bounce_has_no_bounces_to_cut_off() {
+fn a_ball_without_bounce_has_no_bounces_to_cut_off() {
     let rest = rest(0.0);
     assert_eq!((rest.bouncing, rest.impacts), (0.0, 1));
 }

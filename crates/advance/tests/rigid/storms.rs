@@ -46,7 +46,7 @@ fn goes_on_elastically(system: &mut RigidSystem, impacts: u64) {
 }
 
 #[test]
-fn what_forces_can_resolve_is_no_storm_however_many_impacts_there_are() {
+fn a_motion_that_forces_can_resolve_is_no_storm_however_many_impacts_there_are() {
     let mut system = vise(1e-10, 1e4, 0.5, SLOW);
     goes_on_elastically(&mut system, 150);
     assert_eq!(system.ledger_at(Time::from_seconds(END)).captures, 0.0);
@@ -86,18 +86,18 @@ fn one_impact_more_than_a_row_may_have_in_the_resolution_time_is_without_elastic
 }
 
 #[test]
-fn what_goes_far_between_its_impacts_may_have_fifty_times_as_many() {
+fn a_disc_that_goes_far_between_its_impacts_may_have_fifty_times_as_many() {
     ends_after(1500, 1e10, 0.5, SLOW);
 }
 
 #[test]
-fn what_would_cost_much_energy_may_have_as_many_though_it_goes_nowhere() {
+fn costly_impacts_may_be_fifty_times_as_many_though_the_disc_goes_nowhere() {
     let mut system = vise(2.0 * END, 1e4, 4.0 * TOLERANCES.target_gap, FAST);
     goes_on_elastically(&mut system, 100);
 }
 
 #[test]
-fn what_would_cost_much_energy_may_have_a_hundred_times_as_many_again() {
+fn costly_impacts_far_apart_may_be_a_hundred_times_as_many_again() {
     let mut system = vise(2.0 * END, 1e8, 0.5, SLOW);
     let before = energy(&system, 0.0);
     advance(&mut system, END).expect("they part again");

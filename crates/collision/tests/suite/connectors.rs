@@ -110,7 +110,7 @@ fn aligned_connectors_are_satisfied() {
 }
 
 #[test]
-fn what_is_satisfied_is_not_moved() {
+fn a_satisfied_connector_moves_no_body() {
     let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
     let rope = fine(ConnectorKind::Rope { a, b, length: 2.0 });
     let near = [still(0.5, 0.0, 0.0), still(0.0, 1.0, 0.0)];
@@ -200,7 +200,7 @@ fn a_point_that_a_rail_has_seen_may_be_on_a_continuation_that_passes_the_path() 
 }
 
 #[test]
-fn what_is_no_connector_is_refused() {
+fn bad_connectors_are_refused() {
     let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
     let refused = |kind| Connector::new(kind, 0.5).expect_err("no connector");
     assert_eq!(refused(ConnectorKind::Pin { a, b: a }), ConnectorError::SameBody);

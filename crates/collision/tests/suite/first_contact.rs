@@ -406,7 +406,7 @@ fn a_rule_with_a_wider_gap_than_all_others_fires() {
 /// A disc leaves a corner of the ground so slowly that it has sunk below the target gap of the next side by the time
 /// that it comes over it, while the corner, which it touched before, fires later.
 #[test]
-fn what_sinks_beside_a_side_touches_it_when_it_comes_upon_it() {
+fn a_disc_that_sinks_beside_a_side_touches_it_when_it_comes_upon_it() {
     let corners = [
         (22.56, -3.0),
         (22.56, 0.195_099_590_626_241_71),

@@ -481,7 +481,7 @@ fn small_misfits_are_made_exact() {
 }
 
 #[test]
-fn what_is_no_rail_is_refused() {
+fn bad_rails_are_refused() {
     let through = |points: &[(f64, f64)], closed| {
         let points: Vec<DVec2> = points.iter().copied().map(DVec2::from).collect();
         RailPath::through(&points, closed).expect_err("no spline")

@@ -177,7 +177,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_found_satisfies_the_problem(
+        fn the_answer_found_satisfies_the_problem(
             rows in prop::collection::vec(prop::array::uniform8(-1.0..1.0f64), 1..=FEW),
             offset in prop::array::uniform8(-1.0..1.0f64),
             bilateral in prop::array::uniform8(prop::bool::weighted(0.2)),

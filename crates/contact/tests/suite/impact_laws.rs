@@ -244,7 +244,7 @@ fn held_rows_at_rest_take_part_in_a_simultaneous_impact() {
 }
 
 #[test]
-fn what_opens_by_rounding_rests_in_a_simultaneous_impact() {
+fn a_row_that_opens_by_rounding_rests_in_a_simultaneous_impact() {
     // The first disc strikes one that touches a third: by what holds these they go apart, or together, a little.
     let mover = |velocity: f64| Mover { inverse: [1.0, 1.0, 2.0], velocity: [velocity, 0.0, 0.0] };
     let touch = |bodies| Touch { bodies, angle: std::f64::consts::PI, moments: [0.0; 2], elasticity: 1.0 };

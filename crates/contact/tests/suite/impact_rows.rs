@@ -526,7 +526,7 @@ fn an_impulse_that_is_carried_comes_back_as_far_as_it_is_needed() -> Result<(), 
 }
 
 #[test]
-fn what_slides_over_two_slopes_is_not_stopped_by_what_it_carries() -> Result<(), ImpactError> {
+fn a_point_that_slides_over_two_slopes_is_not_stopped_by_carried_impulses() -> Result<(), ImpactError> {
     // A point of 1 kg rises at 1 mm/s in a hollow of 1e-4 rad, along which it slides at 1 m/s.
     let body = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
     let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };

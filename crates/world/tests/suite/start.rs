@@ -53,7 +53,7 @@ fn a_pin_that_is_a_little_off_is_put_together_by_the_lighter_body() {
 }
 
 #[test]
-fn what_fits_is_not_moved() {
+fn a_bob_that_fits_its_rod_is_not_moved() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let place = DVec2::new(0.1, 0.7);
     let bob = builder.add(disc("bob", 1.0, place));
@@ -257,7 +257,7 @@ fn aligned_bodies_are_moved_one_after_another() {
 }
 
 #[test]
-fn what_names_no_body_is_refused() {
+fn a_connector_that_names_no_body_is_refused() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let bob = builder.add(disc("bob", 1.0, DVec2::ZERO));
     builder.add_connector(pin(center(bob), center(BodyId(7))));
@@ -266,7 +266,7 @@ fn what_names_no_body_is_refused() {
 }
 
 #[test]
-fn what_is_too_far_out_to_compute_with_is_refused_by_name_and_number() {
+fn a_body_too_far_out_to_compute_with_is_refused_by_name_and_number() {
     let near = || disc("near", 1.0, DVec2::ZERO);
     let refusal = |body: BodySpec| {
         let mut builder = WorldBuilder::new(WorldSettings::default());

@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_in_from_just_beyond_and_leaves_before_the_first_node_is_found() {
+    fn a_function_that_rises_from_just_below_and_falls_before_the_first_node_is_found() {
         let after_rise = |room: f64| {
             let f = |t: f64| t * (room - t) - 1e-18;
             fall_after_rise(&std::array::from_fn(|index| f(node(index, 2.0))), 2.0, f)
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn what_starts_below_zero_and_goes_on_falling_has_fallen() {
+    fn a_function_that_starts_below_zero_and_goes_on_falling_has_fallen() {
         const BELOW: f64 = 1e-14;
         let fall = |allowed: f64, rate: f64| {
             let f = |t: f64| -BELOW - rate * t;
@@ -432,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn what_starts_below_zero_must_rise_first() {
+    fn a_function_that_starts_below_zero_must_rise_first() {
         assert_eq!(sampled(1.0, |t| t - 2.0), None);
         let fall = sampled(4.0, |t| (t - 0.5) * (3.0 - t)).expect("it falls at 3");
         assert!((fall - 3.0).abs() < 1e-12);

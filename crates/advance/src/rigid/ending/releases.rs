@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_lose_its_force_is_looked_at_when_its_time_comes() {
+    fn a_contact_that_may_lose_its_force_is_looked_at_when_its_time_comes() {
         let leader = BodyId(1);
         let mut system = resting_discs(&[0.0]);
         let mut group = system.groups.take(leader).expect("it is held");

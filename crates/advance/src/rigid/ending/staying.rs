@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_slides_along_a_floor_stays_up_to_its_end() {
+    fn a_disc_that_slides_along_a_floor_stays_up_to_its_end() {
         // The floor ends 1 m from the disc, which neither speeds up nor turns.
         for speed in [-150.0, 0.0, 1.0, 7.5, 7.99, 8.01, 9.0, 50.0] {
             let expected = speed * SPAN < 1.0;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rolls_over_a_round_corner_stays_up_to_its_ends() {
+    fn a_block_that_rolls_over_a_round_corner_stays_up_to_its_ends() {
         let spins = (0..=60).map(|index| 0.25 * f64::from(index));
         let answers = spins.map(|spin| {
             let [said, done] =

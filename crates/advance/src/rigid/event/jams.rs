@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_room_is_not_held_by_the_angle_of_its_sides() {
+    fn a_shuttle_with_room_is_not_held_by_the_angle_of_its_sides() {
         assert!((velocity_after(FAR, 0.0).y + 1.0).abs() < 1e-9);
         // Where it touches both walls, it is a wedge.
         let velocity = velocity_after(NEAR, 0.0);
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_room_is_pressed_against_one_side_only() {
+    fn a_shuttle_with_room_is_pressed_against_one_side_only() {
         let velocity = velocity_after(FAR, 1.0);
         assert!((velocity.y + 1.0).abs() < 1e-4, "{velocity}");
         assert!(velocity.x.abs() < 1e-4, "the wall stops it: {velocity}");

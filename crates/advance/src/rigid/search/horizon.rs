@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_come_after_the_first_contact_is_not_looked_for() {
+    fn contacts_after_the_first_one_are_not_looked_for() {
         let system = squares_in_a_row();
         let known = |a, b| {
             let pair = system.pairs.get(system.pairs.between(a, b).expect("they are near each other"));

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_projection_takes_is_noted_once() {
+    fn the_energy_that_a_projection_takes_is_noted_once() {
         let mut system = pendulum();
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         let taken = system.with_group(&mut group, |dynamics, tools| {
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_the_end_of_a_short_step_is_no_velocity() {
+    fn a_shift_of_the_end_of_a_short_step_is_no_velocity() {
         let mut system = pendulum();
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         group.next_step = Some(1e-9);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_swings_between_the_ends_of_a_step_makes_it_shorter() {
+    fn a_motion_that_swings_between_the_ends_of_a_step_makes_it_shorter() {
         /// Rate [1/s] at which the spin decays.
         const RATE: f64 = 1e6;
         /// Product of that rate and the length of a step whose error estimate does not show the decay.

@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_back_is_a_loop() {
+    fn a_chain_that_comes_back_is_a_loop() {
         // A chain from the world, a tree, and two chains that each hang by themselves.
         assert!(!any(&[[None, Some(0)], [Some(0), Some(1)], [Some(2), Some(1)]]));
         assert!(!any(&[[Some(1), Some(0)], [Some(1), Some(2)], [Some(1), None]]));

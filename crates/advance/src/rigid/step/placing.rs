@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_is_where_it_is_placed() {
+    fn a_body_that_is_put_is_where_it_is_placed() {
         for system in [resting_discs(&[0.0]), block_on_its_corner()] {
             let [placed, put] = placed_and_put(system, BodyId(1));
             assert!(placed[1].velocity.distance(DVec2::ZERO) > 0.0);

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn what_shorter_steps_do_not_mend_passes_astride() {
+    fn an_error_that_shorter_steps_do_not_mend_passes_astride() {
         const LOCAL_ERROR: f64 = 1e-9;
         let mut kept = seen(1.0, 0.46, 0.0);
         assert!(kept.passes_astride(1.0, 3.0, LOCAL_ERROR));
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rows_keep_otherwise_leads_no_step() {
+    fn shares_that_show_no_point_ahead_lead_no_step() {
         // The point is behind, or far ahead, or before the first stage, or astride; or the share does not vanish.
         for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
             assert_eq!(seen(1.0, point, floor).better_length(1.0, 1.0, METHOD), None, "{point}");
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_measured_otherwise_compares_with_what_was_before() {
+    fn shares_in_another_measure_compare_with_those_before() {
         /// Makes a step that starts 0.5 s before a point, with roots of the shares in some unit.
         fn step(kept: &mut Kept, unit: f64) {
             kept.open();
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_made_shorter_does_not_end_at_a_point() {
+    fn a_shortened_step_does_not_end_at_a_point() {
         let kept = seen(1.0, 0.3, 0.0);
         for (factor, expected) in [(0.9, 0.643), (0.5, 0.0667), (0.2, 0.2)] {
             let [asked, led] = kept.shorter_lengths(1.0, factor, METHOD);

@@ -102,7 +102,7 @@ fn units_from_1e_minus_12_to_1e12_make_no_difference() {
 }
 
 #[test]
-fn what_is_not_a_number_is_named_by_its_row() {
+fn numbers_that_are_not_finite_are_named_by_their_row() {
     let wrong = Problem::from_dense(&[vec![1.0, 0.0], vec![0.0, f64::NAN]], &[0.0, 0.0]);
     assert!(matches!(wrong, Err(ProblemError::NotFinite { row: 1, .. })));
     let wrong = Problem::from_dense(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[f64::INFINITY, 0.0]);

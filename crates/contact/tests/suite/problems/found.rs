@@ -78,7 +78,7 @@ fn contacts_that_contradict_each_other_by_rounding_are_made_to_agree_once() {
 }
 
 #[test]
-fn what_takes_more_digits_than_usual_is_solved() {
+fn problems_that_take_more_digits_than_usual_are_solved() {
     for name in ["truss_of_9_rods", "ropes_nearly_parallel", "block_jammed_in_a_pit"] {
         let (_, judged) = solved(&mut Auto::default(), name);
         assert!(judged.growth < 1e9 && judged.backward <= 1e-14, "{name}: {judged:?}");
@@ -119,7 +119,7 @@ fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
 }
 
 #[test]
-fn what_rounding_makes_of_a_ray_is_no_proof() -> Result<(), Box<dyn std::error::Error>> {
+fn a_ray_made_by_rounding_is_no_proof() -> Result<(), Box<dyn std::error::Error>> {
     // Two contacts with forces of 1e4 and 1e5, one of them of a light body with a moment far too small for
     // it, and a joint.
     let inverse_mass = [9145.108044063347, 9145.108044063347, 0.00012616026371794375];
@@ -149,7 +149,7 @@ fn a_row_that_rounding_left_out_of_the_basis_is_taken_in() {
 }
 
 #[test]
-fn what_has_no_solution_is_proven() {
+fn problems_without_a_solution_are_proven_infeasible() {
     for name in [
         "doubled_joint_off_by_1e-4",
         "contradicting_matrix_35",
@@ -188,7 +188,7 @@ fn beside_discs(name: &str, discs: usize, offset: f64) -> Problem {
 }
 
 #[test]
-fn what_has_no_solution_has_none_beside_other_bodies() {
+fn a_problem_without_a_solution_has_none_beside_other_bodies() {
     let (name, mut solution) = ("nine_rows_of_whole_numbers", Solution::new());
     for discs in [0, 24, 35, 39, 100] {
         let problem = beside_discs(name, discs, -1.0);
