@@ -1,4 +1,4 @@
-//! What a user does to a world while it runs, and stops at events of his choice.
+//! Interventions of callers while a world runs, and stops at events that they choose.
 
 use glam::DVec2;
 use halfgap::geometry::Shape;
@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 const GRAVITY: f64 = 10.0;
 
-/// Discs of 1 kg and 0.5 m that rest on each other on a floor at y = 0, and bounce by an elasticity.
+/// Discs of 1 kg and 0.5 m that rest on each other on a floor at y = 0, with an elasticity.
 fn tower(count: usize, elasticity: f64) -> (World, Vec<BodyId>) {
     let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(5.0), ..WorldSettings::default() });
     let floor = Shape::block(10.0, 1.0).expect("a fine size");
@@ -90,7 +90,7 @@ fn an_impulse_goes_through_all_that_touches() {
         .intervene(&[Intervention::Impulse { body: discs[0], impulse, point }], &mut |_| ())
         .expect("it rises");
     for &disc in &discs {
-        // They go up together.
+        // All discs go up together.
         assert!((world.state(disc).velocity.y - 1.0).abs() < 1e-9, "{:?}", world.state(disc));
     }
 }
@@ -99,7 +99,7 @@ fn an_impulse_goes_through_all_that_touches() {
 fn a_blow_on_a_pendulum_turns_all_of_it() {
     let (mut world, [upper, lower]) = double_pendulum();
     world.advance_to(0.5, &mut |_| ()).expect("it hangs still");
-    // At its end: the equations of impulses of two pinned rods.
+    // The blow is at the end of the lower rod: impulse equations of two pinned rods.
     let blow =
         Intervention::Impulse { body: lower, impulse: DVec2::new(7.0, 0.0), point: DVec2::new(0.0, -2.0) };
     world.intervene(&[blow], &mut |_| ()).expect("it swings");
@@ -189,7 +189,7 @@ fn nothing_else_is_touched() {
     assert_ne!(alone.state(discs[2]), struck.state(discs[2]));
 }
 
-/// A disc that bounces, and when it does.
+/// A disc that has just been thrown up at 4 m/s from a floor, on which it bounces with an elasticity of 0.8.
 fn bouncing() -> (World, BodyId) {
     let (mut world, discs) = tower(1, 0.8);
     world.intervene(&[upwards(discs[0], 4.0)], &mut |_| ()).expect("it flies");
@@ -286,8 +286,8 @@ fn a_door_that_hardly_moves_is_no_trouble() {
     }
 }
 
-/// A plank on a block that juts out over another block, which is slid in and stopped there: all of 1 kg. Each is
-/// so many gaps above what it stands on, and in a state of its own if there are any.
+/// A plank on a block that juts out over another block, which is slid in and stopped there: all of 1 kg. Each part is
+/// a given number of gaps above the one that it stands on; `states` replaces the places and speeds.
 fn plank(gaps: f64, states: Option<&[BodyState]>) -> (World, Vec<BodyId>) {
     let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(2.0), ..WorldSettings::default() });
     let block = |width: f64, height: f64| Shape::block(width, height).expect("a fine size");
@@ -333,7 +333,8 @@ fn a_body_driven_into_another_group_takes_it_along() {
 
 #[test]
 fn a_block_pushed_in_a_world_at_rest_comes_to_rest_on_the_block_it_meets() {
-    // Seen from above: height [m], angle [rad] and mass [kg] of two blocks, and how the first is thrown.
+    // Seen from above: height [m], angle [rad] and mass [kg] of two blocks; velocity [m/s] across and spin [rad/s] of
+    // the first.
     let cases = [
         ([(-0.0031, -0.9055, 1.2996), (-0.1980, 0.0256, 1.1553)], (-0.1982, 0.8662)),
         ([(-0.3179, -0.0742, 0.9418), (-0.1198, -0.0241, 1.2524)], (0.1671, 0.8994)),
