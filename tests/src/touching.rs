@@ -32,7 +32,7 @@ fn not_touching(world: &World, contact: &ContactForce, rounding: f64) -> Option<
     })
 }
 
-/// Reports a contact that pulls. Contacts of the same two bodies count together: where there are more than are needed,
+/// Reports a contact that pulls. Contacts of the same two bodies count together: where there are more than necessary,
 /// their single forces are not unique.
 fn pulling(
     world: &World,
