@@ -1,4 +1,4 @@
-//! Target zones that are wide, as scenes may ask for.
+//! Wide target zones, as scenes may ask for them.
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::Scene;
@@ -40,7 +40,7 @@ fn a_disc_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_t
 
 #[test]
 fn a_corner_beside_the_end_of_a_tooth_is_no_gap() {
-    // Where a pin lets go of a tooth, its corner is beside the tooth's end and far below the line on which that lies.
+    // Where a pin lets go of a tooth, the pin's corner is beside the tooth's end and far below the line of that end.
     let scene = Scene::read(data("music_box.json")).expect("a scene that can be read");
     let mut world = World::from_scene(&scene).expect("a world that can be built");
     advance(&mut world, 1.75);
