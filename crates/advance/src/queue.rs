@@ -225,7 +225,7 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
-    /// Time [s] too short for the first number of a time of some seconds to resolve.
+    /// Time [s] too short for the first number of a [`Time`] of some seconds to resolve.
     const LITTLE: f64 = 1e-20;
 
     fn time((seconds, rest): (u8, u8)) -> Time {

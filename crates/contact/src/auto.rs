@@ -385,7 +385,7 @@ mod tests {
         let outcome = dual.run_or_hand_over(&crooked_pyramid(14), Start::Nothing, &mut found);
         assert!(matches!(outcome, Ok(Some(HandOver::Pivots))), "{outcome:?}");
         assert_eq!(dual.pivots, 0);
-        // A box on a floor has many wrong rows, too, but a pivot rights many of them.
+        // A box on a floor has many wrong rows, too, but a single pivot rights many of them.
         let mut floor = Problem::new();
         let body = floor.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
         for place in 0..200 {

@@ -55,7 +55,7 @@ mod tests {
     fn a_drift_is_not_chaos() {
         let drift = shifts(|time| 1e-8 * time * time);
         assert_eq!(judge(&drift, 1e-8), Growth { chaotic: false, trusted_until: None });
-        // Not exact enough: lost in the end, but not chaotic.
+        // A drift that is lost in the end is inexact, but not chaotic.
         let loose = shifts(|time| 1e-5 * time * time);
         assert_eq!(judge(&loose, 1e-5), Growth { chaotic: false, trusted_until: Some(31.0) });
     }

@@ -152,8 +152,8 @@ mod tests {
     /// Length of a segment [s].
     const SPAN: f64 = 0.125;
 
-    /// Whether the contact of body 1, with a changed start, is said to stay on its features along a segment, and
-    /// whether it does.
+    /// Runs the contact of body 1 along a segment from a changed start. Returns whether it is said to stay on its
+    /// features, and whether it does.
     fn said_and_done(mut system: RigidSystem, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         set_out(&mut group);
@@ -198,7 +198,7 @@ mod tests {
         });
         let counts = answers
             .fold([0, 0], |[said, done], answer| [said + i32::from(answer[0]), done + i32::from(answer[1])]);
-        // Bounds tell so of most that stay.
+        // Bounds say so of most of the contacts that stay.
         assert!(counts[1] < 60 && 4 * counts[0] > 3 * counts[1], "{counts:?}");
     }
 }

@@ -337,7 +337,7 @@ mod tests {
         let Tolerances { target_gap, .. } = system.settings.tolerances;
         let bodies = [BodyId(0), BodyId(1)];
         let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
-        // With contact forces it sinks by no more than can be told.
+        // With contact forces the contact sinks by no more than can be told.
         assert_eq!(system.sinks_to(touch, -1e-3), -1e-3 - system.sink());
         system.settings.impulse_step = Some(1e-3);
         let room = system.room_to_sink(bodies);

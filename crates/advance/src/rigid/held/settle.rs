@@ -447,8 +447,8 @@ mod tests {
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
-    /// Whether a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is pushed up with
-    /// an acceleration [m/s^2].
+    /// True if the contact of a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is
+    /// pushed up with an acceleration [m/s^2].
     fn beam_holds_disc_below(push: f64) -> bool {
         const GAP: f64 = FINE.tolerances.target_gap;
         let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
@@ -530,7 +530,7 @@ mod tests {
     #[test]
     fn a_contact_that_others_keep_from_coming_back_does_not_hop() {
         assert!(beam_holds_disc_below(1.0));
-        // Without the posts the beam would come down on it at once.
+        // Without the posts the beam would come down on the disc at once.
         assert!(!beam_holds_disc_below(1e-7));
     }
 }

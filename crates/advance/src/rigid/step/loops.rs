@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use halfgap_collision::{BodyId, ConnectorId};
 
-    /// Whether connectors of two rows each close a loop, given the places among three bodies that they join.
+    /// True if connectors of two rows each, between the given places of three bodies, close a loop.
     fn any(ends: &[[Option<u32>; 2]]) -> bool {
         let row = |connector: usize, index: usize| HeldRow {
             source: RowSource::Connector(ConnectorId(connector as u32), index),

@@ -237,7 +237,7 @@ mod tests {
 
     const METHOD: Method = Method::Dop853;
 
-    /// Shares at the stages of a step of a length [s]: `floor` plus the square of the way to a point [s], up to a
+    /// Shares at the stages of a step of a length [s]: `floor` plus the square of the distance to a point [s], up to a
     /// factor.
     fn seen(length: f64, point: f64, floor: f64) -> Kept {
         let mut kept = Kept::default();
@@ -297,7 +297,7 @@ mod tests {
         for (error, passes) in [(20.0, false), (10.0, false), (15.0, true), (1e4, false)] {
             assert_eq!(kept.passes_astride(1.0, error, LOCAL_ERROR), passes, "{error}");
         }
-        // With a coarse tolerance an error norm above 4 is no rounding.
+        // With a coarse tolerance an error norm above 4 is not rounding.
         let mut kept = seen(1.0, 0.46, 0.0);
         for error in [10.0, 15.0] {
             assert!(!kept.passes_astride(1.0, error, 1e-5), "{error}");
@@ -320,7 +320,7 @@ mod tests {
 
     #[test]
     fn shares_in_another_measure_compare_with_those_before() {
-        /// Makes a step that starts 0.5 s before a point, with roots of the shares in some unit.
+        /// Makes a step that starts 0.5 s before a point, with the roots of the shares in some unit.
         fn step(kept: &mut Kept, unit: f64) {
             kept.open();
             for node in [0.1, 0.2, 0.4] {
