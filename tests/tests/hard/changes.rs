@@ -153,7 +153,7 @@ fn hinge(shop: &mut Workshop, (body, point): (BodyId, DVec2), bar: BodyId) {
     shop.builder.add_connector(ConnectorSpec { collide: true, ..ConnectorSpec::new(pin) });
 }
 
-/// Place [m] of the pin on such a bar.
+/// Place [m] of the pin on a bar that [`hinge`] pins, in coordinates of the bar.
 const HINGE: DVec2 = DVec2::new(-0.4, 0.0);
 
 /// Two bars on a hinge at the origin: as they fold, their corners meet when the bars are at right angles.

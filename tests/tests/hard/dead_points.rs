@@ -26,7 +26,7 @@ fn a_door_that_falls_flush_against_a_wall_comes_back_as_its_elasticity_says() {
         for elasticity in [1.0, 0.5] {
             let (mut world, bar) = door(tolerance, 0.5, elasticity);
             advance(&mut world, 1.0);
-            // It is there after 0.5 s, but for the gap under its lower end.
+            // The bar reaches the wall after 0.5 s, but for the gap under its lower end.
             let what = format!("door at {tolerance:e}, e = {elasticity}");
             let state = world.state(bar);
             within(&format!("{what}: rate [rad/s]"), state.angular_velocity - elasticity, 1e-9);

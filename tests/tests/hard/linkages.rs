@@ -227,7 +227,8 @@ fn turning_parallelogram(tolerance: f64, across: f64, turned: f64) -> (World, Bo
 
 #[test]
 fn a_parallelogram_turns_on_through_its_dead_points_whatever_the_tolerance() {
-    // It turns as if its cranks were one, through 63 points where it could change to its other way of turning.
+    // The linkage turns as if its cranks were one, through 63 points where it could change to its other way of
+    // turning.
     for tolerance in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
         let mut worst: f64 = 0.0;
         for (across, turned) in [(1.6, 0.7), (0.4, 0.0), (2.0, -1.9), (1.0, 0.2)] {

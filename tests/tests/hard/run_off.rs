@@ -130,7 +130,7 @@ fn a_tip_slides_off_the_end_of_an_arc_without_a_blow() {
     for power in 6..13 {
         let mut world = tip_on_sector(10.0_f64.powi(-power));
         assert_eq!(impacts(&mut world, 0.4), 0, "at a tolerance of 1e-{power}");
-        // It has fallen behind the end.
+        // The tip has fallen behind the end of the arc.
         let tip = world.find("tip").expect("it is there");
         assert!(world.state(tip).angle < -0.03, "{:?}", world.state(tip));
     }

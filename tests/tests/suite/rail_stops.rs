@@ -452,7 +452,7 @@ fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
             ));
             let bead = world.find("bead").expect("the bead");
             world.advance_to(4.0, &mut |_| ()).expect("it goes on");
-            // It slides down three sides, to the lowest corner and over it, and comes to rest there.
+            // The bead slides down three sides, to the lowest corner and over it, and comes to rest there.
             let state = world.state(bead);
             let off = state.position.distance(DVec2::NEG_Y);
             assert!(off < 1e-6, "{start} m, {at} m, {tolerance}: {state:?}");

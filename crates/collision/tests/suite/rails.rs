@@ -241,7 +241,8 @@ fn a_hint_leads_to_the_same_place_along_the_path() {
     let mut random = Random(2);
     for path in all() {
         for _ in 0..2000 {
-            // Close to the path, and far from crossing itself: what is near along it is the nearest.
+            // Close to the path, and far from its crossing with itself, the place near along the path is the nearest
+            // of all.
             let along = random.between(0.0, path.length());
             let on_path = path.place_at(along);
             let point = on_path.point() + on_path.normal() * random.between(-0.02, 0.02);

@@ -124,7 +124,7 @@ fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
     assert!((moved - (moments[0].pose.position - flight.moving_at(late).pose.position)).length() < 1e-15);
     assert!((record.geometry.impact_arm_primary - DVec2::new(0.0, -0.5)).length() < 1e-15);
     assert!((record.geometry.arms.normal.x - (0.1 + 0.3 * early)).abs() < 1e-15);
-    // Free fall is what the estimate assumes: y = 1.1 - t - 5 t^2 meets 1 + target.
+    // The estimate assumes free fall: y = 1.1 - t - 5 t^2 meets 1 + target.
     let exact = (-1.0 + (1.0f64 + 20.0 * (0.1 - TOLERANCES.target_gap)).sqrt()) / 10.0;
     assert!((record.estimate().expect("it closes in between") - exact).abs() < 1e-12);
 }

@@ -549,7 +549,7 @@ fn a_point_that_slides_over_two_slopes_is_not_stopped_by_carried_impulses() -> R
         rows.iter().zip(impact.impulses()).map(|(row, impulse)| row.response[entry] * impulse).sum::<f64>()
     };
     assert!(change(0).abs() < 2e-4, "slowed by {} m/s", change(0));
-    // It goes up the side that it comes to.
+    // The point goes up the side that it comes to.
     assert!((rise + change(1) - angle * slide).abs() < 1e-7, "rises at {} m/s", rise + change(1));
     Ok(())
 }
