@@ -1,5 +1,5 @@
-//! Bodies that force laws alone move, press or bring to rest: contacts that end under such forces, pairs that drift
-//! far away, springs that have settled.
+//! Bodies that force laws alone move, press or bring to rest: contacts ended by force laws, pairs that drift far away,
+//! springs that have settled.
 
 use super::within;
 use halfgap::{BodyId, Event};

@@ -173,8 +173,8 @@ fn a_block_falls_through_a_channel_as_wide_as_itself() {
 #[test]
 fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else() {
     // A disc falls into a groove with a round bottom, 5e-10 m wider than itself, and bounces there. A contact that
-    // opens fires again at its own target, which in such a fit is a fraction of the clearance: at the target of others
-    // it would fire all the time.
+    // opens fires again at its own target, which is a fraction of the clearance in a fit as tight as this: at the
+    // target of others it would fire all the time.
     let (disc, bottom) = (0.06742892346340036, 0.06742892396340036);
     let mut world = world_of(&format!(
         "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 0.6, tolerance = 1e-5 }}\n\

@@ -171,7 +171,7 @@ fn a_heap_of_discs_that_rests_keeps_the_contacts_it_began_with() {
         }
         let mut world = shop.build();
         world.advance_to(1.0, &mut |event| panic!("{across} across: {event:?}")).expect("it rests");
-        // It took hundreds or thousands with other contacts, which were let go and caught again.
+        // It took hundreds or thousands of evaluations with other contacts, which were let go and caught again.
         assert!(world.statistics().evaluations < 100, "{across} across: {:?}", world.statistics());
     }
 }

@@ -50,8 +50,8 @@ fn a_disc_leaves_a_circle_where_the_cosine_is_two_thirds_of_its_height() {
 
 #[test]
 fn a_ball_thrown_up_slowly_is_not_held_back() {
-    // It bounces once. Its speed is then below the velocity tolerance: slow enough to be caught when it comes down, not
-    // when it goes up.
+    // The ball bounces once. Its speed is then below the velocity tolerance: slow enough to be caught when it comes
+    // down, not when it goes up.
     let settings = WorldSettings {
         overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
         ..WorldSettings::default()
@@ -155,7 +155,7 @@ fn a_contact_goes_from_line_to_arc_and_back_when_the_disc_does() {
     let state = world.state(disc);
     assert!(state.position.x.abs() < 1e-8, "{} m from its start after ten rounds", state.position.x);
     assert!((state.velocity - DVec2::new(speed, 0.0)).length() < 1e-8, "{}", state.velocity);
-    // It changes four times a round, first after half of the straight.
+    // The contact changes four times a round, first after half of the straight.
     assert_eq!(changes.len(), 40, "{changes:?}");
     assert!((changes[0] - 0.5).abs() < 1e-8, "{changes:?}");
 }
@@ -281,7 +281,7 @@ fn a_contact_without_force_that_has_opened_bounces_when_it_comes_back() {
         })
         .unwrap_or_else(|error| panic!("{error}"));
     let [(time, row)] = impacts[..] else { panic!("it comes back once: {impacts:?}") };
-    // It fires within the target zone, a little below its target.
+    // The contact fires within the target zone, a little below its target.
     let late = 0.1 * world.tolerances().accuracy;
     assert!((row.gap - GAP).abs() < late && (time - 2.0).abs() < 2.0 * late, "{row:?} at {time} s");
     assert!((row.velocity_before + 2.0 / 3.0).abs() < 4.0 * late, "{row:?}");

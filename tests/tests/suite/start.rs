@@ -140,7 +140,7 @@ fn a_disc_that_closes_fast_at_the_start_bounces_beside_one_that_is_caught() {
     let start = world.state(fast).position.y;
     advance(&mut world, 0.2);
     assert_eq!(world.state(slow).velocity, DVec2::ZERO);
-    // It goes up at 2 m/s for 0.2 s, with gravity against it.
+    // The disc goes up at 2 m/s for 0.2 s, with gravity against it.
     let rise = world.state(fast).position.y - start;
     assert!((rise - 0.2).abs() < 1e-9, "{rise} m");
 }

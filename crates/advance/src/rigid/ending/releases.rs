@@ -219,7 +219,7 @@ mod tests {
         let leader = BodyId(1);
         let mut system = resting_discs(&[0.0]);
         let mut group = system.groups.take(leader).expect("it is held");
-        // As if the disc's force fell from twice its weight, and were gone before the end.
+        // As if the disc's force fell from 20 N, twice its weight, to -20 N at the end.
         group.forces[0] = 20.0;
         group.end_forces[0] = -20.0;
         system.with_group(&mut group, |dynamics, _| {
