@@ -61,7 +61,7 @@ fn main() {
     }
 }
 
-/// Bodies all alike: 1.25 kg, a third of a kg m².
+/// Inertia of all bodies: 1.25 kg and a third of a kg m².
 const BLOCK: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
 /// Prints the table of held rows.
@@ -90,7 +90,7 @@ fn measure_held_rows() {
     }
 }
 
-/// Number of bodies, sides and coefficients of the rows.
+/// Number of bodies; sides and coefficients of each row.
 type Scene = (usize, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>);
 
 /// A pyramid of blocks, each on two corners of each block below.
@@ -174,7 +174,7 @@ fn corner(arm: f64) -> CollisionRow {
     impact_row([WorldBody(0), WorldBody::WORLD], [0.0, 1.0, arm, 0.0, -1.0, -arm], -1.0, false)
 }
 
-/// Touching discs in a row, the first of which moves; between two walls if so wished.
+/// Touching discs in a row, the first of which moves, optionally between two walls.
 fn discs(count: u32, walls: bool) -> Vec<CollisionRow> {
     let along = [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
     let speed = |disc: u32| if disc == 1 { -1.0 } else { 0.0 };
@@ -202,7 +202,7 @@ fn struck_chain(links: u32) -> Vec<CollisionRow> {
     rows
 }
 
-/// Microseconds that `work` takes: the least mean of some batches.
+/// Time [µs] that `work` takes: the least mean over some batches.
 fn least_mean(mut work: impl FnMut()) -> f64 {
     let begin = Instant::now();
     work();
@@ -215,7 +215,7 @@ fn least_mean(mut work: impl FnMut()) -> f64 {
     (0..25).map(mean).fold(f64::INFINITY, f64::min)
 }
 
-/// One line of the table.
+/// Measures one problem and returns its line of the table.
 fn measure(name: &str, file: &ContactFile) -> String {
     let problem = file.problem().unwrap();
     let next = file.b_next.as_ref().map(|b| {
@@ -270,8 +270,8 @@ fn measure(name: &str, file: &ContactFile) -> String {
     )
 }
 
-/// The problem with the next right-hand side, every coefficient changed by up to 1e-3 of itself, by a series
-/// of numbers from its place `first` on.
+/// The problem with the next right-hand side, in which every coefficient is changed by up to 1e-3 of itself, by the
+/// terms of a number sequence from index `first` on.
 fn perturbed(file: &ContactFile, first: usize) -> Problem {
     let RowsField { triplets, .. } = file.j.as_ref().unwrap();
     let golden = f64::midpoint(5.0_f64.sqrt(), 1.0);
@@ -285,7 +285,7 @@ fn perturbed(file: &ContactFile, first: usize) -> Problem {
     problem
 }
 
-/// Microseconds that `work` takes, less what reading the clock does.
+/// Time [µs] that `work` takes, less the time of reading the clock.
 fn time(work: impl FnOnce() -> bool) -> f64 {
     static CLOCK: OnceLock<f64> = OnceLock::new();
     let clock = CLOCK.get_or_init(|| (0..1000).map(|_| elapsed(|| true)).fold(f64::INFINITY, f64::min));
@@ -303,7 +303,7 @@ fn median(mut times: Vec<f64>) -> Option<f64> {
     times.get(times.len() / 2).copied()
 }
 
-/// min ½ vᵀM v subject to J v + b ≥ 0, = 0 on bilateral rows.
+/// Solves min ½ vᵀM v subject to J v + b ≥ 0 (= 0 on bilateral rows).
 fn clarabel(file: &ContactFile) -> bool {
     let j = file.j.as_ref().unwrap();
     let mass = file.inverse_mass.as_ref().unwrap();

@@ -1,4 +1,4 @@
-//! How many impacts per second? Free discs and rounded polygons in a box.
+//! Impacts per second of free discs and rounded polygons in a box.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use halfgap::geometry::Shape;

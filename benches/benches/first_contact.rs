@@ -1,11 +1,11 @@
-//! What does it cost to find when two moving bodies first touch?
+//! Cost of finding the first contact of two moving bodies.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use halfgap_collision::{BodyState, Flight, MovingShape, Search, SearchSettings, Tolerances, first_contact};
 use halfgap_geometry::{DVec2, Shape};
 use std::hint::black_box;
 
-/// Body a flies at body b from 5 m away at 2 m/s.
+/// Motions in which body a flies at body b from 5 m away at 2 m/s.
 fn flights(spin: f64, miss: f64) -> [Flight; 2] {
     let thrown = BodyState {
         position: DVec2::new(-5.0, miss),

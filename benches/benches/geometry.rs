@@ -1,4 +1,4 @@
-//! What do gaps and queries cost?
+//! Cost of gaps and queries.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use halfgap_geometry::{

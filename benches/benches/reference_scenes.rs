@@ -1,4 +1,4 @@
-//! What do the scenes of the reference engine cost, and what did they cost there?
+//! Cost of the scenes of the reference engine, beside their cost in that engine.
 //!
 //! `cargo bench -p halfgap-benches --bench reference_scenes [-- FILTER]` measures each scene from start to
 //! end, stepping only: without parsing and set-up. Then it prints a table in Markdown, with the time of the
@@ -93,16 +93,16 @@ const REFERENCE_MS: [(&str, f64); 78] = [
     ("straight_straight__six_blocks_settle2", 952.0),
 ];
 
-/// No scene is to take more than this part of the reference's time.
+/// Largest time of a scene, as a fraction of the reference's time.
 const GOAL: f64 = 1.0 / 20.0;
 
-/// How a scene went.
+/// Timing of one scene.
 struct Timing {
     name: &'static str,
     reference_ms: f64,
     /// Times of whole runs [ms].
     runs: Vec<f64>,
-    /// Why it stopped before its end, if it did.
+    /// Reason why a run stopped before its end, if it did.
     stopped: Option<String>,
 }
 

@@ -16,15 +16,15 @@ use std::time::{Duration, Instant};
 
 /// Number of intervals between the states that are checked in each run.
 const LOOKS: u32 = 50;
-/// Number of stops from one check to the next, at which only the clock and the energy are read: so a run without events
-/// is told from one that hangs, and the energy of bodies that pass close by each other is seen.
+/// Number of stops from one check to the next, at which only the clock and the energy are read: this tells a run
+/// without events from one that hangs, and shows the energy of bodies that pass close by each other.
 const STOPS: u32 = 40;
 /// Error allowed in the energy books, in tolerances of the energy turned over; one more is allowed for each step.
 const ENERGY_TOLERANCES: f64 = 1e4;
 /// Error allowed in the energy books for rounding, as a fraction of the energy turned over.
 const ENERGY_ROUNDING: f64 = 1e-9;
 /// Fraction of the energy turned over that captures may take, beside the error allowed in the books: contacts begin
-/// slowly. More is an impact that was taken for one.
+/// slowly. A larger share means that an impact was taken for a contact.
 const CAPTURED: f64 = 5e-2;
 /// Error allowed in a connector, in tolerances of the largest coordinate.
 const CONNECTOR_TOLERANCES: f64 = 10.0;
@@ -256,7 +256,7 @@ struct Inspector {
     slow_is_given: bool,
     turned_over: f64,
     start_potential: f64,
-    /// Energy [J] that may be rounding.
+    /// Energy [J] that counts as rounding.
     no_energy: f64,
     /// The first overlap that was less deep than the target gap.
     shallow: Option<String>,
@@ -317,7 +317,7 @@ impl Inspector {
         let allowed = (CONNECTOR_TOLERANCES * self.tolerance + CONNECTOR_ROUNDINGS) * coordinate;
         for (connector, &(kind, zone)) in (0..).map(ConnectorId).zip(&self.connectors) {
             let error = world.connector_error(connector);
-            // Not a number is not within either.
+            // A NaN is not within the bounds either.
             if error.is_nan() || error > allowed.max(zone) {
                 return broken("connector off", format!("{kind} {} is off by {error:e} m", connector.0));
             }
@@ -389,7 +389,7 @@ fn penetration(world: &World, a: BodyId, b: BodyId) -> Option<Relation> {
     (relation != Relation::Apart).then_some(relation)
 }
 
-/// About the least shift [m] of a body that frees it of another, rather more than less.
+/// Estimate of the least shift [m] of a body that frees it of another, rather too large than too small.
 fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     let (of_a, of_b) = (world.state(a).pose(), world.state(b).pose());
     let frees = |depth: f64| {
@@ -404,7 +404,7 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     let mut depths: Vec<f64> = (-16..1).map(|power| size * 10f64.powi(power)).chain([gap]).collect();
     depths.sort_by(f64::total_cmp);
     let Some(first) = depths.iter().position(|&depth| frees(depth)) else { return f64::INFINITY };
-    // And between that power of ten and the one before.
+    // Bisection between that power of ten and the one before.
     let (mut less, mut enough) = (if first > 0 { depths[first - 1] } else { 0.0 }, depths[first]);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (less + enough);
@@ -413,9 +413,9 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
     enough
 }
 
-/// Energy [J] that may be rounding: that of a speed that is rounding of coordinates, and the work of weights and other
-/// forces along a distance within the tolerance of a body's size. Where a spring presses on a held body, steps err by
-/// that much and projections take it back, though nothing moves.
+/// Energy [J] that counts as rounding: that of a speed at the rounding of coordinates, and the work of weights and
+/// other forces along a distance within the tolerance of a body's size. Where a spring presses on a held body, steps
+/// err by that much and projections take it back, though nothing moves.
 fn no_energy(scene: &Scene, world: &World) -> f64 {
     let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
     let reach = world.bodies().filter(|&body| !world.is_fixed(body)).map(|body| world.shape(body).reach());
@@ -469,7 +469,7 @@ mod tests {
     use crate::world_of;
 
     #[test]
-    fn what_overlaps_is_seen() {
+    fn overlapping_bodies_are_seen() {
         let disc = "shape = { disc = { radius = 1.0 } }\nmass = 1.0\n";
         let world = world_of(&format!(
             "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 1.0, collisions = false }}\n\

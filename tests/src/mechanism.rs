@@ -95,7 +95,7 @@ impl Workshop {
         self.body(name, block(along.length(), 0.1), 1.0, state)
     }
 
-    /// The point of a body that is at a place of the world now.
+    /// The point of a body that lies at a given place of the world now.
     #[must_use]
     pub fn anchor(&self, body: BodyId, place: DVec2) -> Anchor {
         if body.is_world() {
@@ -138,13 +138,13 @@ pub fn block(width: f64, height: f64) -> Shape {
     Shape::block(width, height).expect("fine sides")
 }
 
-/// At rest at a place.
+/// State of a body at rest at a place.
 #[must_use]
 pub fn at_rest(x: f64, y: f64) -> BodyState {
     BodyState { position: DVec2::new(x, y), ..BodyState::default() }
 }
 
-/// In motion without spin.
+/// State of a body in motion without spin.
 #[must_use]
 pub fn thrown(x: f64, y: f64, velocity: DVec2) -> BodyState {
     BodyState { velocity, ..at_rest(x, y) }

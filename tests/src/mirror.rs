@@ -1,9 +1,9 @@
-//! Scenes seen in a mirror: x becomes -x, and with it angles, and whatever turns.
+//! Scenes seen in a mirror: x becomes -x, so that angles and turning quantities change their sign, too.
 
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 
-/// Numbers that change their sign with x.
+/// Numbers that change their sign together with x.
 const TURNING: [&str; 4] = ["angle", "angular_velocity", "torque", "rate"];
 
 /// A scene, as its file holds it, seen in a mirror.

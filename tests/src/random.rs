@@ -26,22 +26,22 @@ impl Random {
         bits ^ (bits >> 31)
     }
 
-    /// A number from 0 (included) to 1 (not).
+    /// A number from 0 (included) to 1 (excluded).
     pub fn unit(&mut self) -> f64 {
         (self.next_bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number between two.
+    /// A number between two bounds.
     pub fn between(&mut self, least: f64, most: f64) -> f64 {
         least + (most - least) * self.unit()
     }
 
-    /// Ten to a power between two.
+    /// Ten to a power between two bounds.
     pub fn power_of_ten(&mut self, least: f64, most: f64) -> f64 {
         10f64.powf(self.between(least, most))
     }
 
-    /// True with a probability.
+    /// True with a given probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
@@ -51,7 +51,7 @@ impl Random {
         (self.unit() * count as f64) as usize
     }
 
-    /// One of some.
+    /// One element of a slice.
     pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len())]
     }

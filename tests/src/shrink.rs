@@ -29,7 +29,7 @@ pub fn shrink(scene: &Value, budget: Budget) -> Value {
     }
 }
 
-/// Scenes with a little less, the boldest first.
+/// Scenes with a little less in them, the boldest first.
 fn candidates(scene: &Value) -> Vec<Value> {
     let mut all = Vec::new();
     for list in ["force", "connector"] {
@@ -81,7 +81,7 @@ fn without(scene: &Value, list: &str, index: usize) -> Value {
     less
 }
 
-/// Without a body and everything that names it.
+/// The scene without a body and without everything that names it.
 fn without_body(scene: &Value, index: usize) -> Value {
     let name = scene["body"][index]["name"].to_string();
     let mut less = without(scene, "body", index);
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_refusal_does_not_need_goes() {
+    fn parts_that_a_refusal_does_not_need_go() {
         let disc = |name: &str, x: f64| json!({ "name": name, "mass": 2.0, "position": [x, 0.0], "shape": { "disc": { "radius": 0.5 } } });
         let scene = json!({
             "format": "halfgap-scene-1", "title": "t", "run": { "duration": 1.0 },

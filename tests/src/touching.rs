@@ -32,7 +32,7 @@ fn not_touching(world: &World, contact: &ContactForce, rounding: f64) -> Option<
     })
 }
 
-/// Reports a contact that pulls. Contacts of the same two bodies count together: where there are more than are needed,
+/// Reports a contact that pulls. Contacts of the same two bodies count together: where there are more than necessary,
 /// their single forces are not unique.
 fn pulling(
     world: &World,
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_apart_or_pulls_is_no_contact() {
+    fn bodies_apart_or_pulled_are_in_no_contact() {
         assert_eq!(wrong(2.0 + 1e-10, 5.0), None);
         assert_eq!(wrong(2.001, 5.0), Some("contact apart"));
         assert_eq!(wrong(2.0 + 1e-10, -5.0), Some("contact pulls"));

@@ -1,4 +1,4 @@
-//! A steady state allocates nothing: a gas of discs however many impacts go by, groups however many steps they take.
+//! A steady state allocates nothing: neither a gas of discs over many impacts, nor groups over many steps.
 #![allow(unsafe_code, reason = "an allocator that counts is the only way to see allocations")]
 
 use halfgap::geometry::{DVec2, Shape};
@@ -10,7 +10,7 @@ use std::cell::Cell;
 use std::fmt::Write;
 
 thread_local! {
-    /// Of this thread: other tests run beside.
+    /// Allocations of this thread: other tests run at the same time.
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
@@ -55,7 +55,8 @@ fn gas() -> String {
     scene
 }
 
-/// Runs a world from a time [s] at which it is warm to another; returns the allocations between, and the events told.
+/// Runs a world from a time [s] at which it is warm to another; returns the number of allocations in between, and of
+/// events.
 fn allocations(world: &mut World, warm: f64, end: f64) -> (u64, u64) {
     world.advance_to(warm, &mut |_| {}).expect("it goes on");
     let before = ALLOCATIONS.get();
@@ -147,7 +148,7 @@ fn a_stack_at_rest_allocates_nothing() {
         let height = 0.25 + 0.5 * f64::from(index);
         shop.dull(&format!("block {index}"), block(1.0, 0.5), 1.0, at_rest(0.0, height));
     }
-    // A step is as long as its accelerations are sound, which is long where nothing moves.
+    // A step is as long as its accelerations are sound, so steps are long where nothing moves.
     let mut world = shop.build();
     let steps_allocate = allocations(&mut world, 1e4, 1e5);
     assert_eq!(steps_allocate, (0, 0), "{:?}", world.statistics());

@@ -1,8 +1,8 @@
-//! Generated scenes of bodies that fly and collide: what must hold does.
+//! Generated scenes of bodies that fly and collide: the invariants hold.
 //!
-//! The example `fuzz` runs scenes of all kinds, as many as one likes.
+//! The example `fuzz` runs any number of scenes of all kinds.
 //!
-//! A binary of its own: what keeps panics quiet here would keep those of other tests quiet, too.
+//! This is a binary of its own: the hook that silences panics here would silence those of other tests, too.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{Finding, RunError, World};
@@ -14,11 +14,11 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Scenes of a run.
+/// Number of generated billiards.
 const COUNT: u64 = 380;
 
 #[test]
-fn what_must_hold_holds_in_generated_billiards() {
+fn all_invariants_hold_in_generated_billiards() {
     silence_panics();
     let mut kinds: BTreeMap<String, u64> = BTreeMap::new();
     let mut broken = Vec::new();
@@ -36,7 +36,7 @@ fn what_must_hold_holds_in_generated_billiards() {
     assert!(kinds.get("finished").is_some_and(|count| *count > COUNT * 9 / 10), "{kinds:#?}");
 }
 
-/// Time enough wherever the tests run: what was slow once is told by its events.
+/// Budget that suffices wherever the tests run: a run that was slow once shows by its number of events.
 const PATIENT: Budget = Budget { events: 300_000, wall: Duration::from_secs(20) };
 
 /// Scenes of all kinds in which something was wrong once, by seed.
@@ -216,8 +216,8 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     ),
 ];
 
-/// Scenes that rounding decides: forces without bound on bodies of which the coordinates say too little, or
-/// masses too far apart. The engine says so itself.
+/// Scenes that rounding decides: unbounded forces on bodies whose coordinates have too few digits, or masses too far
+/// apart. The engine reports that itself.
 const BEYOND_ROUNDING: &[(u64, &str)] = &[
     (20_433, "bodies that attract each other pass at micrometres, 70 km from the origin"),
     (9_007_432, "a lever four billion times lighter than what turns it, at its dead point"),
@@ -232,15 +232,15 @@ const BEYOND_ROUNDING: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_rounding_decides_ends_in_an_error() {
+fn scenes_that_rounding_decides_end_in_an_error() {
     for &(seed, what) in BEYOND_ROUNDING {
         let verdict = trial(&scene_of_seed(seed).to_string(), PATIENT);
         assert!(matches!(verdict, Verdict::Stopped(_)), "{seed}, {what}: {verdict:?}");
     }
 }
 
-/// At their dead point a pin and a slot ask for angles of a millionth, and 13 km from the origin coordinates
-/// do not hold that: whether the energy books close is luck. If they do not, the run tells.
+/// At their dead point a pin and a slot ask for angles of a millionth, and 13 km from the origin coordinates do not
+/// resolve them: whether the energy books close is luck. If they do not, the run reports it.
 #[test]
 fn books_that_rounding_opens_are_told() {
     let json = scene_of_seed(4_202_738).to_string();
@@ -281,9 +281,9 @@ fn ropes_are_taut_within_a_coarse_zone() {
 }
 
 #[test]
-fn what_takes_over_from_a_contact_that_has_sunk_is_seen() {
-    // Blocks fit from wall to wall: rows that contradict each other drift, and a block that rolled from one
-    // corner to the next along its wall went through it. What else happens in such a jam is not looked at.
+fn a_contact_that_takes_over_from_one_that_has_sunk_is_seen() {
+    // Blocks fit from wall to wall: rows that contradict each other drift, and a block that rolled from one corner to
+    // the next along its wall went through it. All else that happens in that jam is left unchecked.
     let scene =
         Scene::parse(&variation_of_seed(14_724).to_string(), SceneFormat::Json).expect("it is a scene");
     let mut world = World::from_scene(&scene).expect("it can be built");
@@ -295,13 +295,13 @@ fn what_takes_over_from_a_contact_that_has_sunk_is_seen() {
 }
 
 #[test]
-fn what_was_broken_once_holds() {
-    // What just touches at the start, and cannot be lifted, counts as shallow.
+fn scenes_that_were_broken_once_hold() {
+    // A touch at the start that cannot be lifted counts as shallow.
     let holds = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));
     require(ONCE_BROKEN, scene_of_seed, holds);
 }
 
-/// Scenes with zones that one can see in which something was wrong once, by seed.
+/// Scenes with zones wide enough to be seen in which something was wrong once, by seed.
 const COARSE_BROKEN: &[(u64, &str)] = &[
     (40_000_273, "to be lifted off the floor a linkage was turned by half a radian, into the floor"),
     (40_002_321, "the same, and the run began with a gain of energy"),
@@ -329,7 +329,7 @@ const COARSE_BROKEN: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_was_broken_once_in_coarse_zones_holds() {
+fn scenes_with_coarse_zones_that_were_broken_once_hold() {
     let at_start = |why: &str| why.starts_with("t = 0 s");
     let holds = |verdict: &Verdict| match verdict {
         Verdict::Finished => true,
@@ -360,7 +360,7 @@ const VARIED_BROKEN: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_was_broken_once_in_variations_holds() {
+fn variations_that_were_broken_once_hold() {
     require(VARIED_BROKEN, variation_of_seed, |verdict| *verdict == Verdict::Finished);
 }
 
@@ -372,7 +372,7 @@ fn a_light_block_between_heavy_ones_that_lean_a_little_gets_the_impulses_that_it
     assert!(matches!(verdict, Verdict::Finished | Verdict::Shallow(_)), "{verdict:?}");
 }
 
-/// Variations whose contacts carry impulses only in which something went through something else once, by seed.
+/// Variations whose contacts carry impulses only in which a body went through another once, by seed.
 const DRIVEN_THROUGH: &[(u64, &str)] = &[
     (707, "what had sunk was no part of the blow that drove it on"),
     (823, "what had turned while it sank touched elsewhere, too deep to be seen"),
@@ -380,7 +380,7 @@ const DRIVEN_THROUGH: &[(u64, &str)] = &[
 ];
 
 #[test]
-fn what_sinks_without_contact_forces_is_not_driven_through() {
+fn a_body_that_sinks_without_contact_forces_is_not_driven_through() {
     let sinks = |verdict: &Verdict| matches!(verdict, Verdict::Finished | Verdict::Shallow(_));
     require(DRIVEN_THROUGH, variation_of_seed, sinks);
 }
@@ -392,7 +392,7 @@ const IMPULSES_ONLY: &[(u64, &str)] = &[
     (50_300_177, "what was turned as it was put back sank elsewhere, too deep to be seen"),
 ];
 
-/// The same for a quarter of its time.
+/// The scene for a quarter of its duration.
 fn briefly(mut scene: Value) -> Value {
     scene["run"]["duration"] = (0.25 * scene["run"]["duration"].as_f64().expect("a number")).into();
     scene
@@ -406,11 +406,11 @@ fn nothing_comes_apart_where_contacts_carry_impulses_only() {
 }
 
 #[test]
-fn what_is_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks() {
-    /// A hundred for each of its steps.
+fn a_block_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks() {
+    /// A hundred for each of the scene's steps.
     const MOST: u64 = 10_000;
-    // A block that turns by 45 rad/s lies against a disc: what was stopped fired again when it had sunk by
-    // what can just be told, two million times.
+    // A block that turns at 45 rad/s lies against a disc: once stopped, it fired again each time that it had sunk by
+    // the least depth that can be told, two million times.
     let scene = briefly(impulses_of_seed(50_300_060)).to_string();
     let scene = Scene::parse(&scene, SceneFormat::Json).expect("scenes of seeds are scenes");
     let mut world = World::from_scene(&scene).expect("it can be built");
@@ -420,7 +420,7 @@ fn what_is_pressed_on_by_its_turning_does_not_collide_on_and_on_while_it_sinks()
 }
 
 #[test]
-fn what_strong_forces_press_into_each_other_ends_a_run_that_would_go_on_for_hours() {
+fn bodies_that_strong_forces_press_together_end_a_run_that_would_go_on_for_hours() {
     // A spring presses a light corner into a box, a hundred times as far in a step as it may sink.
     let scene = impulses_of_seed(50_401_174).to_string();
     let scene = Scene::parse(&scene, SceneFormat::Json).expect("scenes of seeds are scenes");
@@ -429,8 +429,8 @@ fn what_strong_forces_press_into_each_other_ends_a_run_that_would_go_on_for_hour
     assert!(matches!(outcome, Err(RunError::Pressed { .. })), "{outcome:?}");
 }
 
-/// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but
-/// its books, which are not looked at.
+/// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but its
+/// books, which are left unchecked.
 fn require_sound(scene: &Value, what: &str) {
     let scene = Scene::parse(&scene.to_string(), SceneFormat::Json).expect("scenes of seeds are scenes");
     let mut world = World::from_scene(&scene).expect("it can be built");

@@ -3,9 +3,9 @@
 //! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
 //! [--merge FILE]... [--passes N] [--gas]`
 //!
-//! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of
-//! an earlier table, and `--passes` goes through everything so many times: of equal runs the least time is
-//! kept, for a machine may be busy. `--gas` measures impacts per second of free bodies instead.
+//! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an
+//! earlier table, and `--passes` is the number of passes through everything: of equal runs the least time is kept, for
+//! a machine may be busy. `--gas` measures impacts per second of free bodies instead.
 
 use halfgap_report::scene::Scene;
 use halfgap_report::sweep::{Effort, Row, merge};
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 type Sweep = fn(&Scene, &Effort) -> Vec<Row>;
 
-/// The engines and how each is swept.
+/// The engines, each with its sweep.
 const SWEEPS: [(&str, Sweep); 3] =
     [("halfgap", sweep::halfgap_rows), ("rapier", sweep::rapier_rows), ("box2d", sweep::box2d_rows)];
 
@@ -51,7 +51,7 @@ fn options() -> Result<Options, String> {
             "--merge" => options.merge.push(value()?.into()),
             "--passes" => options.passes = value()?.parse().map_err(|_| "--passes wants a number")?,
             "--gas" => options.gas = true,
-            // What cargo adds.
+            // Arguments that cargo adds.
             "--bench" => {}
             other => return Err(format!("unknown option {other}")),
         }
@@ -86,7 +86,7 @@ fn run_all(options: &Options, scenes: &[Scene]) -> Result<Vec<Row>, Box<dyn Erro
             let found = sweep(scene, &options.effort);
             found.iter().for_each(print);
             merge(&mut rows, found);
-            // A long sweep that is broken off leaves what it has.
+            // A long sweep that is broken off leaves the runs made so far.
             fs::write(options.out.join("runs.csv"), csv::table(&rows))?;
         }
     }

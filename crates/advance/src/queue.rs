@@ -225,7 +225,7 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
-    /// Time [s] too short for the first number of a time of some seconds to resolve.
+    /// Time [s] too short for the first number of a [`Time`] of some seconds to resolve.
     const LITTLE: f64 = 1e-20;
 
     fn time((seconds, rest): (u8, u8)) -> Time {
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_never_happens_comes_last() {
+    fn an_event_that_never_happens_comes_last() {
         let mut queue = EventQueue::new();
         (0..9).for_each(|source| queue.set(SourceId(source), Time::NEVER));
         queue.set(SourceId(9), Time::from_seconds(1.0));

@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn mistakes_in_an_option_are_explained() {
         for (text, why) in [
             ("mass", "FIELD=A..B/N"),
             ("mass=1..2", "FIELD=A..B/N"),

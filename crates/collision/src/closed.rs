@@ -170,8 +170,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_behind_a_hole_and_does_not_move_against_it_never_closes() {
-        // A corner four radii outside of the hole of a body with which it falls, up to the last digit of its velocity.
+    fn a_corner_behind_a_hole_that_does_not_move_against_it_never_closes() {
+        // A corner four radii outside of a body's hole, with which it falls, up to the last digit of its velocity.
         let acceleration = DVec2::new(0.0, -10.0);
         let hole = Polynomial { position: DVec2::ZERO, velocity: DVec2::new(0.2, -0.3), acceleration };
         for towards in [-f64::EPSILON, f64::EPSILON] {

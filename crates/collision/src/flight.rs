@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_hardly_damped_stays_as_long_as_what_is_not() {
+    fn a_hardly_damped_body_stays_as_long_as_an_undamped_one() {
         let start = BodyState { velocity: DVec2::new(1.0, 4.0), ..BodyState::default() };
         let gravity = DVec2::new(0.0, -10.0);
         for linear_rate in [0.0, 1e-12, 1e-7, 1e-3, 1.0, 30.0] {
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_move_stays_for_ever() {
+    fn a_body_that_does_not_move_stays_for_ever() {
         for linear_rate in [0.0, 0.5] {
             let flight = Flight::new(BodyState::default(), DVec2::ZERO, linear_rate, 0.0);
             assert_eq!(flight.stays_within(0.2, 1.0), None);

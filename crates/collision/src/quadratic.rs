@@ -45,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn what_recedes_never_closes() {
+    fn a_receding_point_never_closes() {
         assert_eq!(first_closing_time(1.0, 0.0, 0.0), None);
         assert_eq!(first_closing_time(1.0, 2.0, 1.0), None);
         assert_eq!(first_closing_time(1.0, -1.0, 1.0), None);

@@ -385,7 +385,7 @@ mod tests {
         let outcome = dual.run_or_hand_over(&crooked_pyramid(14), Start::Nothing, &mut found);
         assert!(matches!(outcome, Ok(Some(HandOver::Pivots))), "{outcome:?}");
         assert_eq!(dual.pivots, 0);
-        // A box on a floor has many wrong rows, too, but a pivot rights many of them.
+        // A box on a floor has many wrong rows, too, but a single pivot rights many of them.
         let mut floor = Problem::new();
         let body = floor.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 }).expect("a body");
         for place in 0..200 {
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_no_pivots_is_not() {
+    fn a_problem_that_takes_no_pivots_is_not_handed_over() {
         let (mut auto, mut solution) = (Auto::default(), Solution::new());
         auto.solve(&pyramid(14, 0.5), &mut solution).expect("forces of a pyramid");
         assert_eq!((solution.method, solution.iterations), (Method::DualActiveSet, 0));

@@ -171,8 +171,8 @@ mod tests {
     use crate::solver::Solver;
     use crate::warm::WarmStart;
 
-    /// Discs of 1 kg in rows of a given number, each on two of the row below, in directions that vary by some tenths of
-    /// a radian; those at the ends of a row lean on walls.
+    /// Discs of 1 kg in rows of `across` discs, each on two of the row below, in directions that vary by some tenths
+    /// of a radian; the discs at the ends of a row lean on walls.
     fn heap(across: usize, rows: usize) -> Problem {
         let mut problem = Problem::new();
         let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 8.0 };

@@ -334,7 +334,7 @@ mod tests {
         let (expected, rates) = accelerations(inertia, rows, jacobians, &force);
         let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
         for row in 0..rows.len() {
-            // Rows count as dependent with up to the root of the threshold left of them.
+            // Rows whose remainder is up to the root of the threshold count as dependent.
             let rounding = if held.is_dependent(row) { 1e-4 } else { 1e-11 };
             let left = rates[row] + offset[row];
             assert!(
@@ -355,7 +355,7 @@ mod tests {
 
     #[test]
     fn soft_rows_hold_as_much_and_share_it() {
-        // A body on two pins and, twice as far out, a third: of six rows three depend on the others.
+        // A body on two pins and, twice as far out, a third: three of the six rows depend on the others.
         let (sides, arms) = ([[Some(0), None]; 6], [-1.0, 1.0, 2.0]);
         let jacobians: Vec<[f64; 6]> = arms
             .into_iter()
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn what_depends_on_nothing_is_as_stiff_as_before() {
+    fn rows_that_depend_on_no_others_are_as_stiff_as_before() {
         // A heavy body hangs from a light one, which a pin holds; beside them a body is pinned twice.
         let (light, heavy) = (
             InverseInertia { inverse_mass: 1e3, inverse_moment: 1e3 },
@@ -500,10 +500,10 @@ mod tests {
         })
     }
 
-    /// Bodies, their rows, the coefficients of these, and a motion of the bodies.
+    /// Bodies, their rows, the coefficients of the rows, and a motion of the bodies.
     type Linkage = (Vec<InverseInertia>, Vec<[Option<u32>; 2]>, Vec<[f64; 6]>, Vec<[f64; 3]>);
 
-    /// Pins: a tree, some loops, some of them twice.
+    /// Linkages of pins: a tree, some loops, some pins given twice.
     fn any_linkage() -> impl Strategy<Value = Linkage> {
         let arms = prop::array::uniform2(prop::array::uniform2(-1.0..1.0f64));
         let joint = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), arms, 0..6);

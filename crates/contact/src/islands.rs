@@ -260,7 +260,7 @@ mod tests {
 
     #[test]
     fn the_columns_of_a_part_ascend_as_those_of_the_whole() -> Result<(), ProblemError> {
-        // The first row touches the last body, and a floor, column 1, that the others touch, too.
+        // The first row touches the last body, and a floor, column 1, that the third row touches, too.
         let rows = [(0, 1, 3.0), (0, 3, 1.0), (1, 2, 2.0), (2, 0, 5.0), (2, 1, 6.0), (2, 3, 4.0)];
         let problem = Problem::from_rows(&rows, &[1.0, 0.0, 2.0, 4.0], &[-1.0, -2.0, -3.0])?;
         let mut islands = Islands::default();

@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn connectors_do_not_come_first_where_pivots_would_not_end() {
-        // A chain on a floor, whose links touch it with both ends: rows that depended on each other are off by a
+        // A chain on a floor, whose links touch it with both ends: rows that would depend on each other are off by a
         // thousandth.
         const LINKS: usize = 500;
         let off = |k: usize| 1.0 + 1e-3 * (k as f64 * 2.4).sin();
@@ -302,7 +302,7 @@ mod tests {
                 let offset = 6.0 * ((7 * link + 3 * k) as f64).sin() - 3.0;
                 problem.add_row(&Row::new(body, [0.0, 1.0, side * arm(k)], offset)).expect("a row");
             }
-            // The contacts before it hold all of its link.
+            // The contacts before the pin hold all of its link.
             let pin = Row::new(body, [0.0, 1.0, -arm(0)], 0.0);
             let pin = before.map_or(pin, |before| pin.against(before, [0.0, -1.0, -arm(1)]));
             problem.add_row(&pin.bilateral()).expect("a row");

@@ -49,7 +49,7 @@ fn fill(problem: &mut Problem, boxes: usize, step: usize) {
     }
 }
 
-/// Allocations of filling and solving warm, after steps that made all the room.
+/// Allocations while a problem is filled and solved warm, after steps that made all the room.
 fn allocations(solver: &mut dyn Solver, boxes: usize) -> usize {
     let (mut problem, mut solution, mut warm) = (Problem::new(), Solution::new(), WarmStart::new());
     fill(&mut problem, boxes, 0);
@@ -76,8 +76,8 @@ fn a_warm_solve_of_known_size_allocates_nothing() {
     }
 }
 
-/// Fills `problem` with boxes in a pyramid of so many layers at one step, each box of its own width: contacts
-/// that nearly depend on each other take many pivots, and are handed over.
+/// Fills `problem` with boxes in a pyramid of the given number of layers at one step, each box of its own width:
+/// contacts that nearly depend on each other take many pivots, and are handed over.
 fn fill_crooked(problem: &mut Problem, layers: usize, step: usize) {
     problem.clear();
     let (mut first_below, mut bodies) = (0, 0);

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_angle_has_no_sine() {
+    fn numbers_that_are_not_finite_have_no_sine() {
         for angle in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(sin_cos(angle).0.is_nan() && sin_cos(angle).1.is_nan());
         }

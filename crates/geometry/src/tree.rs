@@ -358,7 +358,7 @@ mod tests {
 
     #[test]
     fn all_near_corners_are_visited_and_few_that_are_far() {
-        // Two trees of few leaves, and trees that are descended.
+        // Two trees of few leaves, which are not descended, and larger trees, which are.
         for [few, many] in [[3, 8], [8, 9], [5, 60], [60, 70]] {
             let (a, b) = (polygon(few), polygon(many));
             for step in 0..40 {

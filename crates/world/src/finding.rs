@@ -428,7 +428,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rounding_moves_where_nothing_else_does_is_no_energy() {
+    fn rounding_where_nothing_else_moves_is_no_energy() {
         let settings = WorldSettings { duration: Some(1.0), ..WorldSettings::default() };
         let mut builder = WorldBuilder::new(settings);
         builder.add(disc("still", 1.0));
@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_worst_is_told_once() {
+    fn the_worst_finding_of_a_kind_is_told_once() {
         let world = WorldBuilder::new(WorldSettings::default()).build().expect("nothing in it");
         let overlap = |depth, time| Finding::Overlap { first: "a".into(), second: "b".into(), depth, time };
         let mut findings = Findings::default();

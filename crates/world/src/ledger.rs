@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_booked_is_the_error() {
+    fn the_change_that_is_not_booked_is_the_error() {
         let ledger = Ledger {
             now: Energy { kinetic: 3.0, potential: -1.0 },
             start: 5.0,

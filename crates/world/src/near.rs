@@ -113,7 +113,7 @@ mod tests {
             }
             expected.sort_unstable();
             let mut near = NearPairs::default();
-            // Twice: nothing is left of the first time.
+            // The second search must not see anything of the first.
             for _ in 0..2 {
                 prop_assert_eq!(near.find(boxes.iter().copied(), &excluded), expected.as_slice());
             }

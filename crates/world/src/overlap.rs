@@ -127,7 +127,7 @@ mod tests {
     fn shapes_that_cover_each_other_overlap_by_all_they_have() {
         let hexagon: Vec<DVec2> =
             (0..6).map(|corner| DVec2::from_angle(TAU * f64::from(corner) / 6.0)).collect();
-        // Each with the depth of its middle, of a ring of that of its wall.
+        // Expected depth: that of the shape's middle, for a ring that of the middle of its wall.
         let shapes = [
             (Shape::disc(0.7), 0.7),
             (Shape::ring(1.0, 0.6), 0.2),

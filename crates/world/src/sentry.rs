@@ -201,7 +201,7 @@ mod tests {
         assert!((error - 1e-3).abs() < 1e-9, "{error}");
         let message = "at 40 s the world no longer holds together: connector 0 (rod of \"world\" and \"bob\") is off by 0.001 m";
         assert!(outcome.as_ref().is_err_and(|error| error.to_string() == message));
-        // The error is repeated, as any other, except for a time that is past.
+        // The error is repeated, as any other error, except for a time that has passed.
         assert_eq!(world.advance_to(LATER_STILL + 1.0, &mut |_| ()), outcome);
         let stop = Intervention::Velocity { body: BodyId(0), velocity: DVec2::ZERO, angular_velocity: 0.0 };
         assert_eq!(world.intervene(&[stop], &mut |_| ()), outcome);
@@ -232,7 +232,7 @@ mod tests {
         assert!(!world.sentry.is_sound, "nobody knows");
     }
 
-    /// A disc that is about to bounce off a floor, in a world where every speed that it has counts as slow.
+    /// A disc about to bounce off a floor, in a world where every speed that it reaches counts as slow.
     fn slow_disc() -> World {
         let overrides = ToleranceOverrides { velocity_tol: Some(10.0), ..ToleranceOverrides::default() };
         let settings = WorldSettings { overrides, duration: Some(1.0), ..WorldSettings::default() };
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_bounces_by_less_than_the_gap_that_is_asked_for_comes_to_rest_however_often_somebody_looks() {
+    fn a_block_that_bounces_by_less_than_the_gap_asked_for_comes_to_rest_however_often_it_is_looked_at() {
         let overrides = ToleranceOverrides {
             target_gap: Some(5e-3),
             accuracy: Some(3e-3),
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_turned_over_before_the_first_look_counts() {
+    fn the_energy_turned_over_before_the_first_look_counts() {
         // The disc falls by 0.5 m and lies there: nothing moves at the time of a look.
         let mut world = slow_disc();
         world.start.energy += 1e-5;
@@ -305,8 +305,8 @@ mod tests {
     }
 
     #[test]
-    fn who_looks_often_is_strict() {
-        // The usual energy here is some 10 J, but so far next to nothing of it is in play.
+    fn frequent_looks_are_strict() {
+        // The usual energy here is some 10 J, but so far almost none of it is in play.
         for (first, is_astray) in [(0.02, true), (0.1, false)] {
             let mut world = slow_disc();
             world.advance_to(0.0, &mut |_| ()).expect("the first look");

@@ -1,9 +1,9 @@
-//! Scenes from seeds: a dozen bodies at most, of all shapes, tied and pushed in all ways, with extreme but
-//! legal numbers.
+//! Scenes from seeds: a dozen bodies at most, of all shapes, tied and pushed in many ways, with extreme but legal
+//! numbers.
 //!
-//! A scene is made as JSON, as a file would hold it: what a seed makes can be written down, run by the
-//! command and made smaller. `shapes` makes the shapes, `ties` the connectors and forces; `variations`
-//! changes the reference scenes instead.
+//! A scene is made as JSON, as a file would hold it: the scene of a seed can be written down, run by the command and
+//! made smaller. `shapes` makes the shapes, `ties` the connectors and forces; `variations` changes the reference
+//! scenes instead.
 
 mod shapes;
 mod ties;
@@ -17,19 +17,19 @@ use halfgap::scene::{Scene, SceneFormat};
 use serde_json::{Value, json};
 use shapes::Outline;
 
-/// Chances that a scene is of some kind.
+/// Probabilities of the kinds of scenes.
 const ROOM: f64 = 0.45;
 const ROUND_ROOM: f64 = 0.6;
 const FLOOR: f64 = 0.85;
 const SCALED: f64 = 0.2;
 const FAR_AWAY: f64 = 0.05;
-/// Target gap of coarse scenes, as a fraction of the smallest body's radius: it can be seen.
+/// Target gap of coarse scenes, as a fraction of the smallest body's radius: wide enough to be seen.
 const COARSE_GAP: f64 = 5e-3;
 /// Accuracy of coarse scenes, as a fraction of the target gap.
 const COARSE_ACCURACY: f64 = 0.6;
 /// Velocity tolerance of coarse scenes, as a fraction of an ordinary speed.
 const COARSE_SPEED: f64 = 0.2;
-/// Steps of a scene whose contacts carry impulses only.
+/// Number of steps of a scene whose contacts carry impulses only.
 const IMPULSE_STEPS: f64 = 400.0;
 /// Impact laws: the default one, which most scenes use, thrice.
 const LAWS: [&str; 8] = [
@@ -42,12 +42,12 @@ const LAWS: [&str; 8] = [
     "serial_separate_lastpass",
     "serial_grouped_lastpass",
 ];
-/// Index in them from which on every law comes once.
+/// Index in [`LAWS`] from which on every law comes once.
 const ONCE_FROM: usize = 2;
-/// Tries to find a free place for a body.
+/// Number of tries to find a free place for a body.
 const TRIES: usize = 60;
 
-/// A body as far as the rest of a scene must know it.
+/// A body, as far as the rest of a scene must know it.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     name: String,
@@ -123,8 +123,8 @@ pub fn billiard_of_seed(seed: u64) -> Value {
     scene
 }
 
-/// The scene of a seed as older engines would run it: with a zone in which things touch that one can see, and
-/// in half of all scenes with a speed that is slow for whatever moves.
+/// The scene of a seed as older engines would run it: with a target zone wide enough to be seen, and in half of all
+/// scenes with a velocity tolerance that is high for everything that moves.
 #[must_use]
 pub fn coarse_of_seed(seed: u64) -> Value {
     let mut scene = scene_of_seed(seed);
@@ -139,7 +139,7 @@ pub fn coarse_of_seed(seed: u64) -> Value {
     scene
 }
 
-/// The scene of a seed with contacts that carry impulses only, in steps in which most bodies move by little
+/// The scene of a seed with contacts that carry impulses only, in steps in which most bodies move by a small fraction
 /// of their size.
 #[must_use]
 pub fn impulses_of_seed(seed: u64) -> Value {
@@ -185,7 +185,7 @@ fn run(random: &mut Random, units: &Units) -> Value {
     run
 }
 
-/// Fixed bodies about the place.
+/// Fixed bodies around the place of a scene.
 fn walls(random: &mut Random, units: &Units, room: f64) -> Vec<Value> {
     let elasticity = 1.0;
     let wall = |name: &str, shape: Value, at: [f64; 2]| {
@@ -261,7 +261,8 @@ fn body(
     Some((body, Placed { name, position, angle, center_of_mass: outline.center, radius, mass }))
 }
 
-/// A place where the circle about a body meets no other; now and then it just touches another or the floor.
+/// A place where the circle about a body meets no other circle; now and then it just touches another body or the
+/// floor.
 fn place(
     random: &mut Random,
     units: &Units,
@@ -284,7 +285,7 @@ fn place(
         let inside = (0..2).all(|axis| (position[axis] - units.origin[axis]).abs() <= free);
         let apart = |other: &Placed| {
             let [x, y] = [position[0] - other.position[0], position[1] - other.position[1]];
-            // A rounding of the distance is an overlap that is lifted at the start.
+            // An overlap by a rounding of the distance is lifted at the start.
             x.hypot(y) * (1.0 + 1e-12) >= other.radius + outline.radius
         };
         if free > 0.0 && inside && placed.iter().all(apart) {

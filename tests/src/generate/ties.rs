@@ -1,4 +1,4 @@
-//! Connectors and forces between bodies that have their places.
+//! Connectors and forces between bodies that are already placed.
 
 use super::{Placed, Units};
 use crate::random::Random;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 /// An ordinary gravity [m/s^2].
 const GRAVITY: f64 = 10.0;
 
-/// An end of a connector or a spring: a body and where on it, or the background.
+/// An end of a connector or a spring: a body, or the background, and a point on it.
 fn end(body: Option<&Placed>, place: [f64; 2]) -> Value {
     match body {
         Some(body) => json!({ "body": body.name, "point": body.to_shape(place) }),

@@ -1,5 +1,5 @@
-//! Reference scenes with other numbers: places, speeds, masses, laws. They have parts that people build by hand: flush
-//! blocks, symmetric heaps, chains, gears, rails.
+//! Reference scenes with other numbers: places, speeds, masses, laws. They have features of scenes built by hand:
+//! flush blocks, symmetric heaps, chains, gears, rails.
 
 use super::{LAWS, ONCE_FROM};
 use crate::random::Random;
@@ -7,7 +7,7 @@ use crate::{reference_scene_file, reference_scene_names};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Bodies of the largest scene that is varied.
+/// Largest number of bodies of a scene that is varied.
 const MOST_BODIES: usize = 30;
 /// Longest run [s].
 const LONGEST: f64 = 8.0;
@@ -114,7 +114,7 @@ fn tied_bodies(scene: &Value) -> BTreeSet<String> {
     ends.flatten().collect()
 }
 
-/// Adds up to an amount, either way, to a number or to both numbers of a vector; one that is absent is 0.
+/// Adds up to an amount, in either direction, to a number or to both numbers of a vector; an absent number is 0.
 fn add(random: &mut Random, body: &mut Map<String, Value>, name: &str, amount: f64) {
     let mut plus = |number: Option<f64>| number.unwrap_or(0.0) + amount * random.between(-1.0, 1.0);
     let is_vector = ["position", "velocity"].contains(&name);

@@ -1,4 +1,4 @@
-//! Loops that are closed by rods, slots or contacts, through points where they could go on in two ways.
+//! Loops closed by rods, slots or contacts, at points where they could go on in two ways.
 
 use super::within;
 use halfgap::geometry::DVec2;
@@ -7,12 +7,12 @@ use halfgap_tests::mechanism::{Workshop, advance, block, connector_error, disc};
 
 const WORLD: BodyId = BodyId::WORLD;
 const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
-/// How fast [rad/s] they turn at first, and for how long [s].
+/// Spin [rad/s] of the mechanisms at first, and duration [s] of the runs.
 const SPIN: f64 = 3.0;
 const DURATION: f64 = 2.0;
 
-/// How long [s] a mechanism of one freedom takes from one angle to another, of which mass times velocity squared is
-/// `metric` [kg m^2] times the square of the rate; it begins with [`SPIN`].
+/// Time [s] that a mechanism of one freedom takes from one angle to another. Twice its kinetic energy is `metric` [kg
+/// m^2] times the square of the rate, which is [`SPIN`] at first.
 fn elapsed(metric: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     const PIECES: i32 = 20_000;
     let step = (to - from) / f64::from(2 * PIECES);
@@ -75,8 +75,9 @@ fn a_slider_passes_the_pivot_of_its_crank() {
     }
 }
 
-/// A point that goes round on a rod of 1 m, and one that two rods of 1.5 m tie to it and to a point of the world 1 m
-/// from the first rod's: when the former comes by that, the latter could stay where it is, or go round, too.
+/// A near point that goes round on a rod of 1 m, and a far point that two rods of 1.5 m tie to the near one and to a
+/// point of the world 1 m from the pivot. When the near point passes that point of the world, the far one could stay
+/// where it is, or go round, too.
 fn kite(tolerance: f64, start: f64) -> (World, [BodyId; 2]) {
     let mut shop = weightless(tolerance);
     let point = |name: &str, [position, rate]: [DVec2; 2], shop: &mut Workshop| {
@@ -123,11 +124,11 @@ fn a_kite_of_rods_opens_again_as_it_has_closed() {
     }
 }
 
-/// Between the ends of two rods of 1 m.
+/// Point halfway between the pivots of the two rods of 1 m.
 const MIDDLE: DVec2 = DVec2::new(0.5, 0.0);
 
-/// A bar that goes round level on two rods of the same length, from such an angle of theirs: where they are flat, one
-/// could go on one way and the other the other.
+/// A bar that goes round level on two rods of the same length, which start at a given angle [rad]: where the rods are
+/// flat, one could go on one way and the other the other way.
 fn bar_on_two_rods(shop: &mut Workshop, start: f64) -> BodyId {
     let arm = DVec2::from_angle(start);
     let state = BodyState { position: MIDDLE + arm, velocity: SPIN * arm.perp(), ..BodyState::default() };
@@ -157,7 +158,7 @@ fn a_bar_on_two_equal_rods_goes_round_level() {
 }
 
 #[test]
-fn what_lies_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
+fn a_load_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
     for tolerance in TOLERANCES {
         let mut shop = Workshop::new(tolerance);
         let axles = [DVec2::ZERO, DVec2::new(2.5, 0.0)];
@@ -208,8 +209,8 @@ fn what_lies_on_a_platform_that_two_wheels_carry_round_stays_on_it() {
 }
 
 #[test]
-fn what_is_not_moved_onto_its_rows_is_not_led_either() {
-    // It keeps to nothing, but does not stop.
+fn a_bar_that_is_not_moved_onto_its_rows_is_not_led_either() {
+    // The bar drifts off its rows, but does not stop.
     for start in (0..=11).map(|index| 0.5 + f64::from(index) / 6.0) {
         let mut shop = Workshop::of(WorldSettings {
             tolerance: 1e-9,

@@ -1,5 +1,5 @@
-//! A cam with a roller on it: the contact goes round base, flanks and nose, and every flank meets the roller
-//! from behind half a turn later, as far as its line goes on without end.
+//! A cam with a roller on it: the contact goes round base, flanks and nose. Half a turn later the line of every flank,
+//! continued without end, passes the roller from behind.
 
 use super::within;
 use halfgap::geometry::{DVec2, EdgeSpec, PathSpec, Shape};
@@ -30,7 +30,7 @@ fn outline() -> Shape {
     Shape::from_paths(&[PathSpec { start: BASE * up, edges }]).expect("a fine cam")
 }
 
-/// Height of the roller over the cam's axle [m] where the nose points along an angle [rad].
+/// Height [m] of the roller over the cam's axle, for a direction of the nose [rad].
 fn lift(cam: f64) -> f64 {
     let seen = ((FRAC_PI_2 - cam + PI).rem_euclid(TAU) - PI).abs();
     let flank_end = flank() - (REACH * flank().sin() / (BASE + ROLLER)).atan();

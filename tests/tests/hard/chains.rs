@@ -1,4 +1,4 @@
-//! Chains of events that end, or that do not.
+//! Sequences of events that end, or that do not.
 
 use super::{bounced, within};
 use halfgap::BodyState;
@@ -14,8 +14,8 @@ fn a_ball_rests_when_its_geometric_series_ends_at_every_tolerance() {
         let mut world = shop.build();
         // Half a second down, then bounces of 2 v/g with v halved each time: 0.5 + 0.5 + 0.25 + ... s.
         let rest = rest_time(&mut world, 5.0);
-        // Caught below the velocity tolerance v: what is left of the series is 2 v/(g (1 - e)) at most. The
-        // gap makes each fall shorter by its size over the speed.
+        // The ball is caught below the velocity tolerance v: at most 2 v/(g (1 - e)) of the series is left. The gap
+        // makes each fall shorter by its size over the speed.
         let caught = 2.0 * world.tolerances().velocity_tol / (GRAVITY * 0.5);
         let what = format!("ball bounces to rest at tolerance {tolerance:.0e}: time [s]");
         within(&what, rest - 1.5, caught + 100.0 * world.tolerances().target_gap);
@@ -48,7 +48,7 @@ fn a_ball_that_loses_nothing_bounces_for_a_thousand_seconds() {
     let ball = shop.body("ball", disc(0.5), 1.0, at_rest(0.0, 1.75));
     let mut world = shop.build();
     let gap = world.tolerances().target_gap;
-    // Where it falls at 2.5 m/s: at its top the height would not tell the time.
+    // Measured where it falls at 2.5 m/s: at the top of a bounce the height would not tell the time.
     let time = 1000.25;
     advance(&mut world, time);
     let height = 1.75 - bounced(1.25 - gap, time);

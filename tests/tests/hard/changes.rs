@@ -6,7 +6,7 @@ use halfgap::{Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, Con
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 use std::f64::consts::FRAC_PI_2;
 
-/// The tolerance of most of these cases.
+/// Tolerance of most of these cases.
 const TOLERANCE: f64 = 1e-10;
 
 #[test]
@@ -30,14 +30,15 @@ fn a_disc_slides_from_line_to_convex_arc_and_leaves_where_theory_says() {
     );
 }
 
-/// Speed [m/s] that a falling body had at a time, from its energy now.
+/// Speed [m/s] of a falling body at an earlier time, from its present energy.
 fn release_speed(world: &World, body: BodyId, time: f64) -> f64 {
     let state = world.state(body);
     let fallen = world.time() - time;
     (state.velocity + DVec2::new(0.0, GRAVITY * fallen)).length()
 }
 
-/// The last contact that ends up to a time [s]: when, and its normal. One that passes to the next feature ends too.
+/// Time [s] and normal of the last contact that ends before a given time [s]. A contact that passes to the next
+/// feature ends, too.
 fn last_end(world: &mut World, until: f64) -> (f64, DVec2) {
     let mut last = None;
     world
@@ -58,7 +59,7 @@ fn a_slow_disc_turns_about_the_corner_of_a_table_before_it_leaves() {
     shop.dull("disc", disc(0.5), 1.0, thrown(-1.0, 0.5, DVec2::new(speed, 0.0)));
     let mut world = shop.build();
     let (_, normal) = last_end(&mut world, 3.0);
-    // Once its centre is past the corner it goes round it at 0.5 m: cos = 2/3 + v^2/(3 g r).
+    // Once its centre is past the corner, the disc goes round it at 0.5 m: cos = 2/3 + v^2/(3 g r).
     let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * 0.5);
     within("slow disc leaves a corner: cosine", normal.y.abs() - cosine, 1e-8);
 }
@@ -67,7 +68,7 @@ fn a_slow_disc_turns_about_the_corner_of_a_table_before_it_leaves() {
 fn a_fast_disc_flies_off_the_end_of_a_table() {
     let mut shop = Workshop::new(TOLERANCE);
     shop.fixed("table", block(6.0, 1.0), DVec2::new(-3.0, -0.5));
-    // Faster than sqrt(g r): gravity cannot hold it to the corner.
+    // The disc is faster than sqrt(g r): gravity cannot hold it to the corner.
     let speed = 3.0;
     let ball = shop.dull("disc", disc(0.5), 1.0, thrown(-1.5, 0.5, DVec2::new(speed, 0.0)));
     let mut world = shop.build();
@@ -91,7 +92,7 @@ fn a_block_slides_over_an_edge_and_turns_only_then() {
     let start = world.energy().total();
     advance(&mut world, 1.3);
     assert!(world.state(body).angle < -0.05, "it tips: {}", world.state(body).angle);
-    // Without friction and bounce-free contacts that only slide nothing is lost.
+    // Without friction nothing is lost by contacts that only slide.
     within("block to an edge: energy while tipping [J]", world.energy().total() - start, 1e-8);
 }
 
@@ -111,7 +112,7 @@ fn a_disc_slides_from_line_to_concave_arc_to_line_and_comes_as_high_as_it_was() 
     let state = world.state(ball);
     within("disc in a valley: height on the other side [m]", state.position.y - height, 1e-9);
     within("disc in a valley: mirrored place [m]", state.position.x + start.x, 1e-9);
-    // After as long again it is back, at rest.
+    // After the same time again it is back, at rest.
     advance(&mut world, 2.0 * turns);
     within("disc in a valley: back at the start [m]", (world.state(ball).position - start).length(), 1e-8);
     within("disc in a valley: energy [J]", world.ledger().integration_error(), 1e-8);
@@ -133,7 +134,7 @@ fn valley() -> Shape {
     Shape::from_paths(&[PathSpec { start: DVec2::new(-6.0, -3.0), edges }]).expect("a valley")
 }
 
-/// When a body moves no longer to the right [s]: bisected between two times.
+/// Time [s] at which a body stops moving to the right, bisected between two times.
 fn turning_time(world: &World, body: BodyId, mut early: f64, mut late: f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (early + late);
@@ -144,17 +145,18 @@ fn turning_time(world: &World, body: BodyId, mut early: f64, mut late: f64) -> f
     early
 }
 
-/// Pins the end of a bar of 0.6 m by 0.2 m, 0.1 m beyond it, to a point of another body [m], with which it collides.
+/// Pins a bar of 0.6 m by 0.2 m to a point [m] of another body, with which it collides; the pin is 0.1 m beyond the
+/// bar's end.
 fn hinge(shop: &mut Workshop, (body, point): (BodyId, DVec2), bar: BodyId) {
     let kind = ConnectorKind::Pin { a: Anchor { body, point }, b: Anchor { body: bar, point: HINGE } };
     let pin = Connector::new(kind, 0.0).expect("a fine pin");
     shop.builder.add_connector(ConnectorSpec { collide: true, ..ConnectorSpec::new(pin) });
 }
 
-/// Where such a bar is pinned [m].
+/// Place [m] of the pin on a bar that [`hinge`] pins, in coordinates of the bar.
 const HINGE: DVec2 = DVec2::new(-0.4, 0.0);
 
-/// Two bars on a hinge at the origin: as they fold, their corners run into each other when they are at right angles.
+/// Two bars on a hinge at the origin: as they fold, their corners meet when the bars are at right angles.
 #[test]
 fn bars_that_fold_until_their_corners_meet_stop_before_they_do() {
     for tolerance in [1e-4, 1e-6, 1e-8] {
@@ -174,8 +176,8 @@ fn bars_that_fold_until_their_corners_meet_stop_before_they_do() {
     }
 }
 
-/// Where the last of three bars is that stand one on the other on hinges, at angles [rad], 2.5 s after they are let go:
-/// the first two fold until their corners meet, and part again.
+/// Three bars stand one on the other on hinges, at angles [rad], and are let go; the first two fold until their
+/// corners meet, and part again. Returns the place of the last bar after 2.5 s.
 fn hanging_bars(tolerance: f64) -> DVec2 {
     let mut shop = Workshop::weightless(tolerance);
     let (mut end, mut above) = (DVec2::ZERO, (BodyId::WORLD, DVec2::ZERO));

@@ -1,4 +1,5 @@
-//! Corners of rails: what passes them, what comes to rest in one, what leaves it again, and along which side.
+//! Corners of rails: bodies that pass them, come to rest in them, leave them again, and the sides along which they
+//! leave.
 
 use super::{impacts, within};
 use halfgap::geometry::{DVec2, EdgeSpec};
@@ -6,7 +7,7 @@ use halfgap::{Anchor, BodyId, BodyState, ConnectorKind, Event, RailPath, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, connector_error, disc, pendulum_period};
 use std::sync::Arc;
 
-/// Radius of the bodies [m], and the arm by which one hangs from its point.
+/// Radius of the bodies [m], and arm [m] by which a body hangs from its point.
 const RADIUS: f64 = 0.1;
 const ARM: f64 = 0.37;
 
@@ -18,7 +19,7 @@ fn valley([left, right]: [f64; 2]) -> Arc<RailPath> {
     Arc::new(RailPath::from_edges(start, &edges).expect("a fine path"))
 }
 
-/// A disc of 1 kg with a point, so far [m] above its centre, on a valley.
+/// A disc of 1 kg on a valley, by a point at a given height [m] above its centre.
 fn on_rail(shop: &mut Workshop, sides: [f64; 2], arm: f64, state: BodyState) -> BodyId {
     let body = shop.body("body", disc(RADIUS), 1.0, state);
     let a = Anchor { body, point: DVec2::new(0.0, arm) };
@@ -68,7 +69,7 @@ fn a_disc_that_swings_too_far_leaves_its_corner_where_it_presses_no_more() {
     let share = ARM * ARM / about_point;
     let spin = 3.5;
     for side in [0.3_f64, 0.5] {
-        // The force of the corner on the disc, by its weight: it lies between the normals of both sides.
+        // The force of the corner on the disc, as a fraction of its weight: it lies between the normals of both sides.
         let force = |angle: f64| {
             let (sin, cos) = angle.sin_cos();
             let speed2 = spin * spin - 2.0 * rate2 * (1.0 - cos);
@@ -102,7 +103,7 @@ fn a_disc_that_swings_too_far_leaves_its_corner_where_it_presses_no_more() {
         advance(&mut again, left[0]);
         let what = format!("a disc that leaves a corner of {side} rad");
         within(&format!("{what}: angle [rad]"), again.state(body).angle - held, 1e-8);
-        // Nothing is lost by that. It goes up the side on which the force would have had to pull.
+        // Leaving the corner costs no energy. The disc goes up the side on which the force would have had to pull.
         within(&format!("{what}: energy [J]"), world.energy().total() - energy, 1e-8);
         let state = world.state(body);
         let point = state.position + ARM * DVec2::new(-state.angle.sin(), state.angle.cos());
@@ -113,7 +114,7 @@ fn a_disc_that_swings_too_far_leaves_its_corner_where_it_presses_no_more() {
 }
 
 #[test]
-fn what_comes_into_a_sharp_corner_stays_there() {
+fn a_bead_that_comes_into_a_sharp_corner_stays_there() {
     for [left, right] in [[1.05, 1.05], [1.2, 0.9], [0.9, 1.4]] {
         let mut shop = Workshop::new(1e-8);
         let state = at_rest(-0.5 * f64::cos(left), 0.5 * f64::sin(left));
@@ -165,7 +166,7 @@ fn a_bead_in_a_corner_sets_out_along_the_side_of_its_velocity() {
             let bead = on_rail(&mut shop, sides, 0.0, state);
             let mut world = shop.build();
             advance(&mut world, 1.0);
-            // What leads through the corner keeps the part along the other side.
+            // A velocity that leads through the corner keeps its part along the other side.
             let expected = if sense > 0.0 { direction } else { kept * directions[1 - side] };
             let off = world.state(bead).position.distance(expected);
             within(&format!("bead from a corner, side {side}, {sense}: place [m]"), off, 1e-12);
@@ -195,16 +196,16 @@ fn a_valley_and_its_mirror_image_do_the_same() {
     within("a disc in a valley and in its mirror image [m]", slides(true).distance(slides(false)), 1e-8);
 }
 
-/// Vertices of a valley with a piece of its own at the bottom, which rises by 2 degrees: a bead that starts from
-/// rest on the left just passes the corner at the end of it.
+/// A valley with a gentle piece at the bottom, which rises by 2 degrees: a bead that starts from rest on the left just
+/// passes the corner at the end of that piece.
 #[test]
 fn a_bead_that_just_passes_a_corner_has_passed_it() {
     let degree = std::f64::consts::PI / 180.0;
     let (steep, gentle) = (29.0 * degree, 2.0 * degree);
-    // It keeps the cosine of each turn.
+    // The speed is multiplied by the cosine of each turn.
     let kept = (steep + gentle).cos();
     for beyond in [1e-5_f64, 1e-3, 0.1] {
-        // The height from which it comes to the end of the gentle piece, and a little farther in height.
+        // The height from which the bead just reaches the end of the gentle piece, raised by the fraction `beyond`.
         let height = gentle.sin() * (1.0 + beyond) / (kept * kept);
         let far = DVec2::new(gentle.cos(), gentle.sin());
         let start = 2.0 * DVec2::new(-steep.cos(), steep.sin());
@@ -232,7 +233,7 @@ fn a_bead_that_just_passes_a_corner_has_passed_it() {
 }
 
 #[test]
-fn what_is_struck_out_of_a_corner_goes_along_the_side_that_opens_the_other_whichever_way_the_path_runs() {
+fn a_body_struck_out_of_a_corner_goes_along_the_side_that_opens_the_other_whichever_way_the_path_runs() {
     // The body hangs by an arm, which makes one side much easier to move than the other.
     for is_reversed in [false, true] {
         let sides = [0.2_f64, 0.9];

@@ -8,8 +8,8 @@ use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc}
 const WORLD: BodyId = BodyId::WORLD;
 const TOLERANCES: [f64; 4] = [1e-5, 1e-8, 1e-10, 1e-12];
 
-/// A bar that hangs 1 m from the middle of its upper end and swings against a wall that is flush with its
-/// side, from an angle [rad] at 1 rad/s.
+/// A bar of 1 m that hangs by the middle of its upper end and swings, from an angle [rad] at 1 rad/s, against a wall
+/// that is flush with its side.
 fn door(tolerance: f64, angle: f64, elasticity: f64) -> (World, BodyId) {
     let mut shop = Workshop::weightless(tolerance);
     shop.fixed("wall", block(1.0, 6.0), DVec2::new(-0.55, -1.0));
@@ -26,7 +26,7 @@ fn a_door_that_falls_flush_against_a_wall_comes_back_as_its_elasticity_says() {
         for elasticity in [1.0, 0.5] {
             let (mut world, bar) = door(tolerance, 0.5, elasticity);
             advance(&mut world, 1.0);
-            // It is there after 0.5 s, but for the gap under its lower end.
+            // The bar reaches the wall after 0.5 s, but for the gap under its lower end.
             let what = format!("door at {tolerance:e}, e = {elasticity}");
             let state = world.state(bar);
             within(&format!("{what}: rate [rad/s]"), state.angular_velocity - elasticity, 1e-9);
@@ -69,13 +69,13 @@ fn a_lid_falls_shut() {
         advance(&mut world, 3.0);
         let open = world.state(lid).angle - world.state(base).angle;
         within(&format!("lid at {tolerance:e}: open by [rad]"), open, tolerance.max(1e-11));
-        // All that is left of the fall is lost, and the lid lies as high as the box is.
+        // All the energy left of the fall is lost, and the lid lies as high as the box.
         let left = world.energy().total() - GRAVITY * (5.0 * 0.25 + 0.55);
         within(&format!("lid at {tolerance:e}: energy left [J]"), left, 10.0 * tolerance.max(1e-10));
     }
 }
 
-/// A bob on a rod of 1 m, let go at an angle [rad], that clears the floor by so much [m].
+/// A bob on a rod of 1 m, let go at an angle [rad], that passes the floor with a clearance [m].
 fn bob_over_floor(clearance: f64, angle: f64, tolerance: f64) -> (World, f64) {
     let mut shop = Workshop::new(tolerance);
     shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -1.6 - clearance));
@@ -88,7 +88,7 @@ fn bob_over_floor(clearance: f64, angle: f64, tolerance: f64) -> (World, f64) {
 
 #[test]
 fn a_bob_that_just_clears_the_floor_swings_through() {
-    // Within a step it is off its rod by more than it clears the floor by.
+    // Within a step the bob is off its rod by more than its clearance.
     for clearance in [0.0, 1e-12] {
         for angle in (1..14).map(|tenths| 0.1 * f64::from(tenths)) {
             for tolerance in [1e-6, 1e-8, 1e-10] {

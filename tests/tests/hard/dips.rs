@@ -1,5 +1,5 @@
-//! What is passed for a moment only, within one long step: a stop that a bead just reaches, a joint or an end
-//! that is passed by little before the motion turns back.
+//! Events that last for a moment within one long step: a stop that a bead just reaches, a joint or an end that is
+//! passed by little before the motion turns back.
 
 use super::{impacts, within};
 use halfgap::World;
@@ -7,10 +7,11 @@ use halfgap_tests::mechanism::{advance, connector_error};
 use halfgap_tests::world_of;
 
 const GRAVITY: f64 = 10.0;
-/// How far [m] each goes beyond what it passes, if nothing keeps it from that.
+/// Distances [m] by which the motions would go beyond a stop, joint or end if nothing kept them from it.
 const DEPTHS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
-/// A bead that is thrown straight up a rail, at whose stop 0.5 m above it would turn back so far [m] beyond.
+/// A bead that is thrown straight up a rail, with a stop 0.5 m above: without the stop it would turn back `depth` [m]
+/// beyond.
 fn thrown_to_a_stop(depth: f64) -> World {
     let speed = (2.0 * GRAVITY * (0.5 + depth)).sqrt();
     let rail = "a = { body = \"bead\", point = [0.0, 0.0] }, path = { start = [0.0, -1.0], edges = [{ line = [0.0, 9.0] }] }";
@@ -27,7 +28,7 @@ fn thrown_to_a_stop(depth: f64) -> World {
 #[test]
 fn a_bead_that_just_reaches_its_stop_is_turned_back_by_it() {
     for depth in DEPTHS {
-        // It comes to the stop at the speed that it would have lost beyond.
+        // The bead reaches the stop at the speed that it would have lost beyond it.
         let [thrown, left] = [0.5 + depth, depth].map(|height| (2.0 * GRAVITY * height).sqrt());
         let back = 2.0 * (thrown - left) / GRAVITY;
         let mut world = thrown_to_a_stop(depth);
@@ -37,8 +38,8 @@ fn a_bead_that_just_reaches_its_stop_is_turned_back_by_it() {
     }
 }
 
-/// A bead on a level rail that goes on in the top of a hill of radius 0.1 m, from which it is pulled away: it
-/// would turn back so far [m] beyond the joint if the rail went on level.
+/// A bead on a level rail that continues as the top of a hill of radius 0.1 m, under a force away from the hill: it
+/// would turn back `depth` [m] beyond the joint if the rail stayed level.
 fn thrown_to_a_joint(depth: f64) -> World {
     let speed = -(2.0 * (0.5 + depth)).sqrt();
     world_of(&format!(
@@ -53,12 +54,12 @@ fn thrown_to_a_joint(depth: f64) -> World {
 
 #[test]
 fn a_bead_that_is_just_past_a_joint_goes_on_over_the_hill_or_turns_back() {
-    // The hill's highest point against the pull is 0.005 m of it beyond the joint.
+    // The highest point of the potential on the hill is equivalent to 0.005 m of level rail beyond the joint.
     let barrier = 0.1 * ((1.0 + GRAVITY * GRAVITY).sqrt() - GRAVITY);
     for (depth, goes_over) in [(1.2 * barrier, true), (0.8 * barrier, false), (1e-4, false), (1e-5, false)] {
         let mut world = thrown_to_a_joint(depth);
         let bead = world.find("bead").expect("the bead");
-        // When it would turn back, were the rail level.
+        // The time at which it would turn back if the rail were level.
         advance(&mut world, (2.0 * (0.5 + depth)).sqrt());
         within(&format!("bead {depth:e} m past a joint: place [m]"), connector_error(&world), 1e-12);
         advance(&mut world, 1.3);
@@ -74,7 +75,7 @@ fn a_bead_that_is_just_past_a_joint_goes_on_over_the_hill_or_turns_back() {
 fn a_disc_sinks_over_the_end_of_a_block_that_turns_back_at_once() {
     let radius: f64 = 0.15;
     for depth in [1e-2f64, 1e-4] {
-        // The block's end starts 0.5 m from below the disc, slides away from under it, and is pulled back.
+        // The block's end starts 0.5 m to the side of the disc, slides away from under it, and is pulled back.
         let speed = -(2.0 * 3.0 * (0.5 + depth)).sqrt();
         let slot = |height: f64| {
             format!(
@@ -97,7 +98,7 @@ fn a_disc_sinks_over_the_end_of_a_block_that_turns_back_at_once() {
         advance(&mut world, -speed / 3.0);
         let sunk = 0.4 + radius - world.state(disc).position.y;
         let expected = radius - (radius * radius - depth * depth).sqrt();
-        // The disc is a millionth of the block.
+        // The disc has a millionth of the block's mass.
         within(&format!("disc over an end by {depth:e} m: depth [m]"), sunk - expected, 1e-6 * depth);
     }
 }

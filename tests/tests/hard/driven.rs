@@ -1,4 +1,4 @@
-//! Bodies that force laws alone move, press or bring to rest: contacts that such forces let go, pairs that drift far away,
+//! Bodies that force laws alone move, press or bring to rest: contacts ended by force laws, pairs that drift far away,
 //! springs that have settled.
 
 use super::within;
@@ -17,8 +17,8 @@ fn releases(text: &str, duration: f64) -> Vec<f64> {
 
 #[test]
 fn a_disc_in_a_guide_leaves_its_floor_when_a_turning_force_lifts_it() {
-    // It stands wholly still until then, so that no error of its steps tells how the force turns: the floor presses
-    // with N = 9.81 - M sin(phase + rate t).
+    // The disc stands wholly still until then, so that no error of its steps shows how the force turns: the floor
+    // presses with N = 9.81 - M sin(phase + rate t).
     let (mut worst, mut count) = (0.0f64, 0);
     for (magnitude, rate, phase) in [(12.0, 10.0, -0.35), (11.0, 8.5, -2.85)] {
         for tolerance in ["1e-3", "1e-5", "1e-7", "1.1e-8", "1e-8", "9e-9", "4e-9", "1e-9", "1e-10"] {
@@ -47,7 +47,7 @@ fn a_disc_in_a_guide_leaves_its_floor_when_a_turning_force_lifts_it() {
                 "#
             );
             for time in releases(&text, 1.5) {
-                // The angle at which the force comes to lift the disc, in the turn that is nearest.
+                // The angle at which the force begins to lift the disc, in the nearest turn.
                 let lifts = (9.81f64 / magnitude).asin();
                 let turn = ((phase + rate * time - lifts) / std::f64::consts::TAU).round();
                 let expected = (lifts + turn * std::f64::consts::TAU - phase) / rate;
@@ -96,7 +96,7 @@ fn a_pair_that_drifts_away_rests_on_each_other_as_one_that_stays() {
     }
 }
 
-/// Steps that a scene takes.
+/// Number of steps of a scene.
 fn steps(text: &str, duration: f64) -> u64 {
     let mut world = world_of(text);
     world.advance_to(duration, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));
@@ -125,7 +125,8 @@ fn settling(duration: f64, tolerance: f64) -> String {
 
 #[test]
 fn a_mass_that_has_settled_on_a_damped_spring_takes_long_steps() {
-    // The swing dies away within 100 s. After that the work of the dashpot is rounding of velocities that are rounding.
+    // The swing dies away within 100 s. After that the work of the dashpot is the rounding of velocities that are
+    // themselves rounding.
     for tolerance in [1e-6, 1e-8, 1e-9, 1e-11] {
         let steps = steps(&settling(1e4, tolerance), 1e4);
         within("a mass settles on a damped spring, 1e4 s: steps", steps as f64, 20_000.0);
@@ -134,7 +135,7 @@ fn a_mass_that_has_settled_on_a_damped_spring_takes_long_steps() {
 
 #[test]
 fn looks_at_a_mass_that_settles_change_no_bit_of_it() {
-    // How steep forces are is probed in another direction each time, which no look may turn.
+    // The probe of the steepness of forces takes another direction each time, which no look may change.
     let end = |looks: u32| {
         let mut world = world_of(&settling(200.0, 1e-7));
         for look in 1..=looks {
@@ -152,8 +153,8 @@ fn looks_at_a_mass_that_settles_change_no_bit_of_it() {
 
 #[test]
 fn a_chain_of_stiff_springs_that_creeps_takes_long_steps() {
-    // A light body between strong springs, whose tension makes rounding across the chain count; no step is told from
-    // rounding there.
+    // A light body is held between strong springs, whose tension makes rounding across the chain count; rounding there
+    // does not show how long a step may be.
     for (tolerance, most) in [(1e-6, 3_000.0), (1e-8, 9_000.0), (1e-10, 27_000.0)] {
         let body = |name: &str, place: [f64; 2], velocity: [f64; 2], mass: f64| {
             format!(

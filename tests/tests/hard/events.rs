@@ -11,7 +11,7 @@ use std::sync::Arc;
 const LENGTH: f64 = 1.0;
 const AMPLITUDE: f64 = 2.0;
 const RADIUS: f64 = 0.25;
-/// Far less than what dense output errs by at the tolerance of the tests.
+/// Target gap [m], far less than the error of dense output at the tolerances of the tests.
 const GAP: f64 = 1e-12;
 
 /// A pendulum let go at its amplitude that just meets a wall where it hangs straight down.
@@ -28,7 +28,7 @@ fn pendulum_and_wall(tolerance: f64) -> World {
     shop.build()
 }
 
-/// The impacts up to a time.
+/// The impacts up to a time [s].
 fn impacts(world: &mut World, until: f64) -> Vec<Impact> {
     let mut impacts = Vec::new();
     world
@@ -61,7 +61,7 @@ fn a_pendulum_hits_a_wall_at_its_time_and_its_gap() {
     }
 }
 
-/// Does nothing, but for changing branch again and again.
+/// A force law without force that changes branch again and again.
 #[derive(Debug)]
 struct Clock {
     bodies: [BodyId; 1],
@@ -107,7 +107,7 @@ fn a_pendulum_that_is_cut_in_every_step_is_as_exact_as_one_that_is_not() {
             shop.builder.add_force(Arc::new(Clock { bodies: [bob], tick }));
         }
         let mut world = shop.build();
-        // Where it hangs straight down it is fastest.
+        // The pendulum is fastest where it hangs straight down.
         advance(&mut world, 4.25 * period);
         let ticks = tick.map_or(0, |tick| (world.time() / tick) as u64);
         assert!(world.statistics().backups >= ticks, "{:?}", world.statistics());
@@ -171,7 +171,7 @@ fn a_law_changes_branch_at_its_moment() {
     let ball = shop.body("ball", disc(0.1), mass, thrown(0.0, 0.0, DVec2::new(speed, 0.0)));
     shop.builder.add_force(Arc::new(Cord { bodies: [ball], length, stiffness }));
     let mut world = shop.build();
-    // Slack for 2 l/v, taut for half a period: to and fro through the origin.
+    // The cord is slack for 2 l/v and taut for half a period: to and fro through the origin.
     let round = 4.0 * length / speed + 2.0 * PI * (mass / stiffness).sqrt();
     for rounds in 1..=10 {
         advance(&mut world, f64::from(rounds) * round);
@@ -185,11 +185,11 @@ fn a_law_changes_branch_at_its_moment() {
     within("ball on a cord: energy [J]", ledger.integration_error(), 1e-9);
 }
 
-/// A force of 1 N along x from a time on, that moment itself included or not.
+/// A force of 1 N along x from a given time on; `is_there_at_once` includes that moment itself.
 #[derive(Debug)]
 struct Push {
     bodies: [BodyId; 1],
-    /// When it begins [s].
+    /// Time [s] at which the force begins.
     from: f64,
     is_there_at_once: bool,
 }
@@ -218,7 +218,7 @@ impl ForceLaw for Push {
     }
 }
 
-/// What rests begins to move within digits of the clock: nothing that it does before tells how long a step may be.
+/// A ball at rest begins to move within digits of the clock: nothing that it does before shows how long a step may be.
 #[test]
 fn a_push_begins_at_its_moment_whichever_branch_has_it_and_whatever_the_clock_says() {
     for start_time in [0.0, 1e3, 1e6] {
@@ -249,7 +249,7 @@ fn a_push_begins_at_its_moment_whichever_branch_has_it_and_whatever_the_clock_sa
     }
 }
 
-/// How far [m] a disc that slides in a bowl comes nearer to it than its target gap, inside of steps.
+/// Distance [m] by which a disc that slides in a bowl comes nearer to it than its target gap, inside of steps.
 fn nearer_inside_of_steps(tolerance: f64, gap: f64) -> (f64, f64) {
     let overrides = ToleranceOverrides { target_gap: Some(gap), ..ToleranceOverrides::default() };
     let mut shop = Workshop::new(tolerance);

@@ -49,8 +49,8 @@ fn cap(radius: f64) -> Shape {
     Shape::from_paths(&[PathSpec { start: DVec2::new(-5.0, -1.0), edges }]).expect("a cap")
 }
 
-/// Height [m] of a block above where it rests, and the energy [J] that is not accounted for, 3 s after it
-/// fell on a cap at an angle [rad].
+/// Height [m] of a block above its place of rest, and energy [J] that is not accounted for, 3 s after it fell on a cap
+/// at an angle [rad].
 fn on_a_cap(radius: f64, tolerance: f64, angle: f64) -> (f64, f64) {
     let mut shop = Workshop::new(tolerance);
     let middle = cap(radius).mass_properties().centroid;
@@ -64,7 +64,7 @@ fn on_a_cap(radius: f64, tolerance: f64, angle: f64) -> (f64, f64) {
 
 #[test]
 fn a_block_comes_down_on_the_top_of_a_planet_whatever_its_radius() {
-    // However short its arc, how far a planet's surface is can be told no better than to the rounding of its radius.
+    // However short its arc, the distance of a planet's surface is known no better than to the rounding of its radius.
     for (tolerance, asked) in [(1e-5, 2e-3), (1e-8, 2e-4), (1e-10, 2e-4)] {
         let mut worst = 0.0f64;
         for radius in [1e3, 1e5, 1e6, 6.371e6] {
@@ -126,7 +126,7 @@ fn a_block_with_a_spin_of_10000_rad_s_keeps_its_energy_in_a_room() {
 
 #[test]
 fn a_bar_that_spins_on_a_pin_is_where_it_should_be_between_steps() {
-    // In angles it turns evenly, so nothing but the way from angles to places limits its steps.
+    // The bar turns evenly in its angle, so that only the relation of angles and places limits its steps.
     let mut shop = Workshop::weightless(1e-9);
     let state = BodyState { angular_velocity: 10.0, ..thrown(0.5, 0.0, DVec2::new(0.0, 5.0)) };
     let bar = shop.body("bar", block(1.0, 0.1), 1.0, state);
@@ -222,8 +222,8 @@ fn a_weight_a_million_times_as_heavy_rests_on_a_light_block() {
     );
 }
 
-/// A ball that bounces by 0.8 on a floor of a width [m], 1 m below it, with a spin [rad/s]; far above flies a
-/// bullet at a speed [m/s], if it does.
+/// Error [m] of the height of a ball that bounces by 0.8 with a spin [rad/s] on a floor of a width [m], 1 m below it;
+/// a bullet may fly far above at a speed [m/s].
 fn bounce_beside(tolerance: f64, spin: f64, width: f64, bullet: f64) -> f64 {
     let mut shop = Workshop::new(tolerance);
     shop.fixed("floor", block(width, 2.0), DVec2::new(0.0, -1.0));
@@ -234,13 +234,13 @@ fn bounce_beside(tolerance: f64, spin: f64, width: f64, bullet: f64) -> f64 {
     }
     let mut world = shop.build();
     let fall = (2.0 / GRAVITY).sqrt();
-    // At the top of the first bounce.
+    // Measured at the top of the first bounce.
     advance(&mut world, 1.8 * fall);
     world.state(ball).position.y - 0.5 - 0.64
 }
 
 #[test]
-fn what_is_fast_elsewhere_does_not_make_a_bounce_slow() {
+fn a_large_speed_or_size_elsewhere_does_not_make_a_bounce_slow() {
     for tolerance in [1e-1, 1e-2, 1e-3, 1e-5] {
         let cases =
             [("a bullet", 0.0, 10.0, 1e4), ("its spin", 1e4, 10.0, 0.0), ("a long floor", 0.0, 1e5, 0.0)];
@@ -251,8 +251,8 @@ fn what_is_fast_elsewhere_does_not_make_a_bounce_slow() {
     }
 }
 
-/// A slider of 1 kg goes through the anchor of its spring, 1 m long when it is slack, at 5 m/s: its force turns about in
-/// no time. Where it is half a second later, by a clock that begins at the given time [s].
+/// Place [m] of a slider of 1 kg, 0.5 s after the start at a given clock time [s]. At 5 m/s it goes through the anchor
+/// of its spring, 1 m long when slack, whose force turns about there within no time.
 fn through_anchor(start: f64) -> f64 {
     let mut world = world_of(&format!(
         r#"
@@ -282,7 +282,7 @@ stiffness = 10.0
 #[test]
 fn a_late_clock_takes_steps_as_short_as_an_early_one() {
     let expected = {
-        // Harmonic on either side: x = 1 + a cos wt + b sin wt up to the anchor, then the mirror image of it.
+        // Harmonic on either side: x = 1 + a cos wt + b sin wt up to the anchor, then its mirror image.
         let rate = 10.0_f64.sqrt();
         let (mut low, mut high) = (0.0, 0.5);
         let before = |t: f64| 1.0 - 0.5 * (rate * t).cos() - 5.0 / rate * (rate * t).sin();
@@ -298,7 +298,7 @@ fn a_late_clock_takes_steps_as_short_as_an_early_one() {
         within(
             &format!("through the anchor of a spring at {start:e} s: place [m]"),
             through_anchor(start) - expected,
-            // A clock of two numbers is read as one.
+            // A time held as two numbers is read as one.
             1e-8 + 5.0 * f64::EPSILON * start,
         );
     }

@@ -1,4 +1,4 @@
-//! Linkages of which two parts fold at the same moment, and each could go on in two ways.
+//! Linkages with two parts that fold at the same moment, each of which could go on in two ways.
 
 use super::within;
 use halfgap::geometry::DVec2;
@@ -15,14 +15,15 @@ const SIDE: f64 = 1.2;
 const START: f64 = 0.5;
 
 /// Peaucellier's linkage, by which the last corner of the rhombus goes along a straight line, with bars of different
-/// masses under gravity; without the outer sides of the rhombus, if so many dyads are all. Both arms come into line
-/// with their inner sides at the same moment, where the crank turns back. The arms' and the last bar's numbers.
+/// masses under gravity; without the outer sides of the rhombus it is two dyads (`is_whole` false). Both arms come
+/// into line with their inner sides at the same moment, where the crank turns back. Returns the numbers of the arms
+/// and of the last bar.
 fn linkage(tolerance: f64, is_whole: bool) -> (World, [BodyId; 3]) {
     let mut shop = Workshop::passing(tolerance);
     let hub = DVec2::new(CRANK, 0.0);
     let inner = hub + CRANK * DVec2::from_angle(START);
     let along = inner.normalize();
-    // Where the arms end: as far from the inner corner as a side is long.
+    // The ends of the arms are as far from the inner corner as a side is long.
     let way = (ARM * ARM - SIDE * SIDE + inner.length_squared()) / (2.0 * inner.length());
     let off = (ARM * ARM - way * way).sqrt();
     let ends = [1.0, -1.0].map(|side| way * along + side * off * along.perp());
@@ -57,7 +58,7 @@ fn linkage(tolerance: f64, is_whole: bool) -> (World, [BodyId; 3]) {
     (shop.build(), [arms[0], arms[1], last])
 }
 
-/// Runs a linkage for 10 s; by how much its energy [J] changed at most.
+/// Runs a linkage for 10 s; returns the largest change of its energy [J].
 fn lost(tolerance: f64, is_whole: bool) -> f64 {
     let (mut world, bodies) = linkage(tolerance, is_whole);
     let energy = world.energy().total();

@@ -1,15 +1,15 @@
-//! Contacts that nearly happen, and nearly do not.
+//! Contacts that nearly happen, and contacts that nearly fail to happen.
 
 use super::{impacts, within};
 use halfgap::BodyState;
 use halfgap::geometry::DVec2;
 use halfgap_tests::mechanism::{Workshop, at_rest, block, disc, thrown};
 
-/// By how much a path misses or meets [m].
+/// Distance [m] by which a path misses or meets.
 const MARGIN: f64 = 1e-12;
 
-/// A disc flies past a fixed one at the distance at which they fire, plus a margin: the impacts, and the
-/// velocity after.
+/// A disc flies past a fixed one at the distance at which they fire, plus a margin [m]. Returns the number of impacts
+/// and the velocity after.
 fn past_a_disc(margin: f64) -> (usize, DVec2) {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("post", disc(1.0), DVec2::ZERO);
@@ -36,7 +36,7 @@ fn a_disc_that_meets_by_1e_12_is_reflected() {
     within("grazing disc, meets by 1e-12 m: speed [m/s]", velocity.length() - 1.0, 1e-14);
 }
 
-/// The same with the corner of a square, which points down at the disc.
+/// The corner of a square, which points down, flies past a disc at the distance at which they fire, plus a margin [m].
 fn corner_past_a_disc(margin: f64) -> (usize, f64) {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("post", disc(1.0), DVec2::ZERO);
@@ -60,8 +60,8 @@ fn a_corner_that_meets_a_disc_by_1e_12_is_lifted() {
     let gap = 1e-10 * 0.5 * 2f64.sqrt();
     let (count, velocity) = corner_past_a_disc(gap - MARGIN);
     assert_eq!(count, 1);
-    // The corner meets a circle of 1 m; the impulse acts below the centre of mass, whose arm across is none to first
-    // order: it leaves with the closing speed, as the disc does.
+    // The corner meets a circle of 1 m; the impulse acts below the centre of mass, without an arm to first order: the
+    // block leaves with the closing speed, as the disc does.
     let expected = 2.0 * (2.0 * MARGIN).sqrt();
     within("grazing corner, meets by 1e-12 m: speed upwards [m/s]", velocity - expected, 2e-3 * expected);
 }
@@ -81,11 +81,12 @@ fn a_disc_that_flies_along_a_wall_is_not_touched_on_either_side_of_touching() {
 
 #[test]
 fn a_ball_that_turns_back_1e_12_before_the_floor_never_touches_it() {
-    // Thrown up from below: gravity points up, the floor is fallen towards from above and left at the turning point.
+    // A throw upwards, turned over: gravity points up, and the ball approaches the floor from above until it turns
+    // back.
     for (margin, expected) in [(MARGIN, 0), (-MARGIN, 1)] {
         let mut shop = Workshop::weightless(1e-8);
         shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
-        // Closing at 1 m/s and slowed by 1 m/s^2 it stops after half a metre.
+        // Closing at 1 m/s and slowed by 1 m/s^2 the ball stops after half a metre.
         let height = 0.5 + 0.5 + 0.5e-10 + margin;
         let ball = shop.builder.add(halfgap::BodySpec::movable(
             "ball",
@@ -97,8 +98,8 @@ fn a_ball_that_turns_back_1e_12_before_the_floor_never_touches_it() {
         let mut world = shop.build();
         let count = impacts(&mut world, 2.0);
         assert_eq!(count, expected, "margin {margin}");
-        // Past the wall it would be back where it was at the speed it had. Reflected, it is spared the 1e-12
-        // m there and back: 2 sqrt(2 margin) s.
+        // If it went on past the floor, it would be back at its start at the speed it had. Reflected, it is spared the
+        // 1e-12 m there and back: 2 sqrt(2 margin) s.
         let spared = if margin < 0.0 { 2.0 * (2.0 * MARGIN).sqrt() } else { 0.0 };
         let state = world.state(ball);
         let what =

@@ -1,4 +1,4 @@
-//! Bodies that connectors hold still: what hits them, and what hangs on them.
+//! Bodies that connectors hold still, under impacts and loads.
 
 use super::within;
 use halfgap::force::{ConstantForce, ForceFrame, Push};
@@ -11,9 +11,8 @@ const WORLD: BodyId = BodyId::WORLD;
 
 #[test]
 fn a_disc_held_at_rest_is_seen_by_what_flies_at_it() {
-    // Nothing accelerates it and nothing moves: its speed is exactly zero, and it stays where rounding has
-    // put it. The ball comes at its centre, and the pin there takes the impact: the ball goes back as fast as
-    // it came.
+    // Nothing accelerates the disc and nothing moves: its speed is exactly zero, and it stays where rounding has put
+    // it. The ball comes at its centre, and the pin there takes the impact: the ball goes back as fast as it came.
     for place in [DVec2::ZERO, DVec2::new(0.6224402073456548, 1.1595762182850256)] {
         let mut shop = Workshop::weightless(1e-9);
         let held = shop.body("held", disc(0.3335888210548019), 1.8, at_rest(place.x, place.y));
@@ -34,8 +33,8 @@ fn a_disc_held_at_rest_is_seen_by_what_flies_at_it() {
 
 #[test]
 fn a_heavy_slide_on_a_light_frame_that_is_pinned_twice_keeps_to_its_slope() {
-    // The frame is held by four rows, of which three do: they share what they hold. The slide presses on it
-    // with its weight across the slope, and goes down it as on a plane.
+    // Four rows hold the frame, three of which would do: they share the load. The slide presses on the frame with its
+    // weight across the slope, and goes down it as on a plane.
     let (mass, slope) = (1e5, 0.6);
     let mut shop = Workshop::new(1e-9);
     let frame = shop.body("frame", block(1.0, 0.2), 1e-3, at_rest(0.0, 0.0));
@@ -58,8 +57,8 @@ fn a_heavy_slide_on_a_light_frame_that_is_pinned_twice_keeps_to_its_slope() {
 
 #[test]
 fn a_light_slide_goes_along_with_the_heavy_disc_that_it_carries() {
-    // A slide of a milligram lies on the floor and carries a disc of 100 kg on a pin, which a weak force
-    // pushes: what is rounding of the forces on the slide is what they move by.
+    // A slide of a milligram lies on the floor and carries a disc of 100 kg on a pin, which a weak force pushes: the
+    // force that moves both is within the rounding of the forces on the slide.
     let (mass, force) = (100.0, 1e-2);
     let mut shop = Workshop::new(1e-10);
     shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
@@ -87,8 +86,8 @@ fn a_light_slide_goes_along_with_the_heavy_disc_that_it_carries() {
 
 #[test]
 fn joints_at_the_ends_of_long_arms_hold_also_between_the_ends_of_steps() {
-    // Two bodies of half a metre are pinned 7 m away from one of them, and slotted along that arm: what the
-    // slot makes of their angles is of second order.
+    // Two bodies of half a metre are pinned 7 m away from one of them, and slotted along that arm: the gap of the slot
+    // is of second order in their angles.
     let mut world = world_of(LONG_ARMS);
     let mut error: f64 = 0.0;
     for look in 1..=1000 {
@@ -98,7 +97,7 @@ fn joints_at_the_ends_of_long_arms_hold_also_between_the_ends_of_steps() {
     within("a slot at the ends of arms of 7 m: between the ends of steps [m]", error, 5e-9);
 }
 
-/// Two discs, joined 7 m away, and something far away that they might meet.
+/// Two discs, joined 7 m away, and a third body far away that they might meet.
 const LONG_ARMS: &str = r#"
 format = "halfgap-scene-1"
 title = "long arms"

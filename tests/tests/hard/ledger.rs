@@ -1,4 +1,4 @@
-//! The books: energy closes, and what nothing fixed acts on keeps momentum and angular momentum.
+//! The books: energy closes, and bodies free of the background keep momentum and angular momentum.
 
 use super::within;
 use halfgap::geometry::{DVec2, Shape};
@@ -8,7 +8,7 @@ use halfgap_tests::mechanism::{Workshop, advance, block, disc, thrown};
 use halfgap_tests::{reference_scene, world_of};
 use std::f64::consts::PI;
 
-/// The energy that the books leave open, as a part of the largest kinetic energy met.
+/// The energy that the books leave open, as a fraction of the largest kinetic energy met.
 fn open_part(scene: &mut Scene, tolerance: f64) -> f64 {
     scene.set_tolerance(tolerance, "tolerance").expect("a fine tolerance");
     let mut world = World::from_scene(scene).expect("a world that can be built");
@@ -37,8 +37,8 @@ fn the_energy_books_close_to_the_tolerance() {
 
 #[test]
 fn an_event_where_forces_grow_beyond_all_bounds_costs_no_energy() {
-    // Where the corners that hold a shuttle from both sides come to lie opposite each other, the whole step
-    // passes astride; a part of it that ended there would not.
+    // Where the corners that hold a shuttle from both sides come to lie opposite each other, the whole step passes
+    // astride of that point; a part of the step that ended there would not.
     let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
     for tolerance in [1e-7, 1e-8, 1e-11, 1e-12] {
         let what = format!(
@@ -50,7 +50,7 @@ fn an_event_where_forces_grow_beyond_all_bounds_costs_no_energy() {
 
 #[test]
 fn the_work_of_a_constant_force_is_booked_between_impacts_that_follow_soon() {
-    // The motion is simple and the method exact for it, however long the step; the power is not.
+    // The motion is simple and the method exact for it, however long the step; for the power it is not exact.
     for tolerance in [1e-6, 1e-9, 1e-12] {
         let mut world = world_of(&format!(
             r#"
@@ -104,7 +104,7 @@ fn momenta(world: &World) -> (DVec2, f64) {
 
 #[test]
 fn bodies_that_nothing_holds_keep_momentum_and_angular_momentum() {
-    // A rod ties two of them, a spring three, and all collide: the ring holds the discs together for a while.
+    // A rod ties two of the bodies, a spring three, and all collide: the ring holds the discs together for a while.
     let mut shop = Workshop::weightless(1e-10);
     let ring = shop.body("ring", Shape::ring(3.0, 2.8).expect("a ring"), 5.0, BodyState::default());
     let spinning = BodyState { angular_velocity: 3.0, ..thrown(0.2, 1.0, DVec2::new(1.0, -0.5)) };
@@ -134,7 +134,7 @@ fn a_gear_in_a_ring_of_teeth_keeps_its_energy() {
     within("gear in a ring of teeth, 5 s: energy books, part of the energy turned over", open, 1e-7);
 }
 
-/// Two bodies of 1 kg, 2 m apart, that pull at each other and pass through each other, from a place in the background.
+/// Two bodies of 1 kg, 2 m apart about a given place, that attract each other and pass through each other.
 fn attracted(place: DVec2, speed: f64) -> World {
     let body = |name: &str, side: f64| {
         let (x, y) = (place.x + side, place.y);
@@ -153,8 +153,8 @@ fn attracted(place: DVec2, speed: f64) -> World {
 }
 
 #[test]
-fn what_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
-    // Nearest are they at speed^2 4 s^2/m = 1e-4 m, a five-thousandth of their size.
+fn a_body_that_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
+    // The bodies are nearest at speed^2 4 s^2/m = 1e-4 m, a five-thousandth of their size.
     let mut world = attracted(DVec2::ZERO, 0.005);
     advance(&mut world, 10.0);
     within(
@@ -165,11 +165,11 @@ fn what_flies_close_by_a_centre_of_attraction_keeps_its_energy() {
 }
 
 #[test]
-fn what_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
+fn a_body_that_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
     let mut world = attracted(DVec2::new(10.0, 3.0), 0.0);
     let error = world.advance_to(10.0, &mut |_| {}).expect_err("the force has no bound");
     assert!(matches!(error, RunError::Unresolved { length, .. } if length < 1e-4), "{error}");
-    // They meet as a Kepler ellipse without width does after half of its period.
+    // They meet after half the period of a Kepler ellipse without width.
     let met = PI / 2f64.sqrt();
     within("time at which two points meet [s]", world.time() - met, 1e-7);
     within("energy of a head-on fall when it is given up [J]", world.ledger().integration_error(), 1e-3);
@@ -177,8 +177,8 @@ fn what_falls_into_a_centre_of_attraction_stops_before_it_makes_energy() {
 
 #[test]
 fn centres_that_meet_at_the_gap_of_a_contact_stop_the_run() {
-    // Half discs lie flat on each other, with their centres of mass on the flats: as they slide, the centres
-    // pull each other to where only the target gap is between them.
+    // Half discs lie flat on each other, with their centres of mass on the flats: as they slide, the centres pull each
+    // other to where only the target gap separates them.
     let half = "shape = { outline = { paths = [{ start = [0.5, 0.0], edges = [\n\
                 { arc = { to = [-0.5, 0.0], center = [0.0, 0.0] } }, { line = [0.5, 0.0] }] }] } }\n\
                 mass = 1.0\nelasticity = 0.0\ncenter_of_mass = [0.0, 0.0]\n";
@@ -204,9 +204,9 @@ fn centres_that_meet_at_the_gap_of_a_contact_stop_the_run() {
 
 #[test]
 fn the_books_of_an_impact_close_at_the_end_of_a_lever() {
-    // A body of a millimetre turns about a pin and carries a disc at the end of an arm of 7 m: it hits the
-    // floor with an impulse ten thousand times that of the disc, and what is rounding of its turning moves
-    // the disc by more.
+    // A body of a millimetre turns about a pin and carries a disc at the end of an arm of 7 m. It hits the floor with
+    // an impulse ten thousand times that of the disc, and the rounding of its turning, enlarged by the arm, moves the
+    // disc.
     let mut world = world_of(LEVER);
     advance(&mut world, 0.02);
     let ledger = world.ledger();
@@ -272,8 +272,7 @@ fn run_to_the_end(scene: &str) -> halfgap::RunReport {
 
 #[test]
 fn books_are_weighed_by_what_goes_on_between_looks() {
-    // Whoever looks once a period sees a disc on a spring at rest each time, and of two on long orbits how
-    // slow they are far apart.
+    // Looks once a period find a disc on a spring at rest each time, and two bodies on long orbits slow and far apart.
     let spring = "format = \"halfgap-scene-1\"\ntitle = \"spring\"\nrun = { duration = 400.0 }\n\
         [[body]]\nname = \"disc\"\nmass = 1.0\nposition = [1.0, 0.0]\nshape = { disc = { radius = 0.1 } }\n\
         [[force]]\nspring = { a = { body = \"world\", point = [0, 0] }, b = { body = \"disc\", point = [0, 0] }, rest_length = 0.0, \
@@ -294,9 +293,9 @@ fn books_are_weighed_by_what_goes_on_between_looks() {
 }
 
 #[test]
-fn what_stands_still_once_its_start_was_corrected_is_at_rest() {
-    // A disc that a pin and a rod hold altogether is given a velocity: what is left of it is rounding, of which
-    // projections may take as much as there is.
+fn a_disc_that_stands_still_once_its_start_was_corrected_is_at_rest() {
+    // A disc that a pin and a rod hold altogether is given a velocity: the correction leaves rounding of it, of which
+    // projections may take all.
     for tolerance in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
         let report = run_to_the_end(&format!(
             "format = \"halfgap-scene-1\"\ntitle = \"held\"\nrun = {{ duration = 1.0, tolerance = {tolerance:e} }}\n\

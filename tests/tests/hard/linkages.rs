@@ -15,7 +15,7 @@ fn parallelogram(cranks: usize, angle: f64) -> (World, BodyId) {
     parallelogram_at(1e-10, cranks, angle)
 }
 
-/// The same at a tolerance.
+/// A parallelogram at a tolerance.
 fn parallelogram_at(tolerance: f64, cranks: usize, angle: f64) -> (World, BodyId) {
     let mut shop = Workshop::new(tolerance);
     let arm = DVec2::from_angle(angle - std::f64::consts::FRAC_PI_2);
@@ -49,7 +49,7 @@ fn period_of(cranks: usize, amplitude: f64) -> f64 {
 
 #[test]
 fn a_parallelogram_with_redundant_cranks_goes_through_its_dead_points() {
-    // It lies flat four times in a swing. The redundant cranks leave it but one way to go on.
+    // The linkage lies flat four times in a swing. The redundant cranks leave it only one way to go on.
     for (cranks, tolerances) in [(3, [1e-4, 1e-6, 1e-8, 1e-10]), (4, [1e-4, 1e-6, 1e-8, 1e-9])] {
         for tolerance in tolerances {
             for amplitude in [1.9, 2.2, 2.6] {
@@ -65,8 +65,8 @@ fn a_parallelogram_with_redundant_cranks_goes_through_its_dead_points() {
     }
 }
 
-/// A crank and a rod of half a metre each, whose slider goes along a line, turning at a rate [rad/s]; beside it another slider
-/// that a spring ties to it. Two slots hold either.
+/// A crank and a rod of half a metre each drive a slider along a line, turning at a rate [rad/s]; a spring ties
+/// another slider beside it to that one. Two slots hold each slider.
 fn folding_bars(tolerance: f64, rate: f64) -> World {
     let mut shop = Workshop::weightless(tolerance);
     let arm = 0.5 * DVec2::from_angle(1.0);
@@ -168,8 +168,8 @@ fn a_parallelogram_with_a_redundant_crank_swings_as_one_pendulum() {
 
 #[test]
 fn a_parallelogram_through_its_dead_point_ends_with_an_error_or_keeps_its_energy() {
-    // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each
-    // other. Let go near the top, it goes through that point on its way down.
+    // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each other. Let
+    // go near the top, it passes that point on its way down.
     let (mut world, crank) = parallelogram(2, 3.0);
     let energy = world.energy().total();
     let mut worst: f64 = 0.0;
@@ -186,7 +186,8 @@ fn a_parallelogram_through_its_dead_point_ends_with_an_error_or_keeps_its_energy
 
 #[test]
 fn a_parallelogram_goes_through_its_dead_points_without_losing_energy() {
-    // Three coordinates with two rows that depend on each other for a moment: what holds the loop stays finite.
+    // Three coordinates with two rows that depend on each other for a moment: the forces that hold the loop stay
+    // finite.
     let mut worst: f64 = 0.0;
     for angle in [2.3, 2.5, 2.7, 2.9] {
         let (mut world, _) = parallelogram(2, angle);
@@ -197,8 +198,8 @@ fn a_parallelogram_goes_through_its_dead_points_without_losing_energy() {
     within("parallelogram, 20 s through its dead points: energy, relative", worst, 1e-9);
 }
 
-/// A weightless parallelogram of cranks of 1 m, the second of them fifty times as heavy, that turns at 2
-/// rad/s from where its cranks stand across by an angle [rad]; all is turned by another.
+/// A weightless parallelogram of cranks of 1 m, the second of them fifty times as heavy, that turns at 2 rad/s from a
+/// crank angle `across` [rad]; the whole is rotated by `turned` [rad].
 fn turning_parallelogram(tolerance: f64, across: f64, turned: f64) -> (World, BodyId) {
     const SPIN: f64 = 2.0;
     let mut shop = Workshop::weightless(tolerance);
@@ -226,7 +227,8 @@ fn turning_parallelogram(tolerance: f64, across: f64, turned: f64) -> (World, Bo
 
 #[test]
 fn a_parallelogram_turns_on_through_its_dead_points_whatever_the_tolerance() {
-    // It turns as if its cranks were one, through 63 points where it could go over into its other way of turning.
+    // The linkage turns as if its cranks were one, through 63 points where it could change to its other way of
+    // turning.
     for tolerance in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
         let mut worst: f64 = 0.0;
         for (across, turned) in [(1.6, 0.7), (0.4, 0.0), (2.0, -1.9), (1.0, 0.2)] {
@@ -239,8 +241,8 @@ fn a_parallelogram_turns_on_through_its_dead_points_whatever_the_tolerance() {
     }
 }
 
-/// Three wheels on one coupling rod under gravity, which turn from a crank angle [rad] on; all is turned by
-/// another, and shifted.
+/// Three wheels on one coupling rod under gravity, which turn from a crank angle [rad] on; the whole is rotated by
+/// another angle [rad], and shifted.
 fn coupled_wheels(tolerance: f64, [crank, turned]: [f64; 2], shift: DVec2) -> (Workshop, BodyId) {
     const SPIN: f64 = 3.0;
     let turn = |v: DVec2| DVec2::from_angle(turned).rotate(v);
@@ -271,7 +273,7 @@ fn coupled_wheels(tolerance: f64, [crank, turned]: [f64; 2], shift: DVec2) -> (W
 
 #[test]
 fn three_wheels_on_one_rod_start_whichever_way_they_stand() {
-    // Velocities that fit but for rounding need no change, and rows that contradict each other by as much allow none.
+    // Velocities that fit up to rounding need no change, and rows that contradict each other by that much allow none.
     let starts = |place: u32| {
         let angles = [0.0157, 0.0618].map(|step| step * f64::from(place));
         let (shop, _) = coupled_wheels(1e-8, angles, DVec2::new(1.3, 4.1));
@@ -283,7 +285,7 @@ fn three_wheels_on_one_rod_start_whichever_way_they_stand() {
 
 #[test]
 fn three_wheels_on_one_rod_turn_on_whichever_way_they_stand() {
-    // The middle wheel is one too many, and near each dead point nothing but the motion says how they turn on.
+    // The middle wheel is redundant, and near each dead point only the motion decides how they turn on.
     let turned_by = |tolerance: f64, turned: f64| {
         let (shop, wheel) = coupled_wheels(tolerance, [1.0, turned], DVec2::ZERO);
         let mut world = shop.build();

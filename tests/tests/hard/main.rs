@@ -1,6 +1,6 @@
-//! Hard cases, one module a theme: each is named for its claim and derives what it expects.
+//! Hard cases, one module for each theme: every test is named for its claim and derives its expected values.
 //!
-//! `docs/stability.md` lists what is reached: run with `-- --nocapture --test-threads 1` to see the numbers.
+//! `docs/stability.md` lists the errors reached: run with `-- --nocapture --test-threads 1` to see the numbers.
 
 mod branches;
 mod cams;
@@ -29,14 +29,15 @@ mod stiff;
 mod unsolvable;
 mod zones;
 
-/// Tells how far off something is, and fails if that is more than allowed.
+/// Prints the error of a quantity, and fails if it exceeds the allowed one.
 #[track_caller]
 fn within(what: &str, error: f64, allowed: f64) {
     println!("REACHED | {what} | {allowed:.0e} | {error:.1e}");
     assert!(error.abs() <= allowed, "{what}: {error:e}, {allowed:e} allowed");
 }
 
-/// How far below its start [m] a ball is that falls from rest and bounces without loss at a depth [m], at a time [s].
+/// Distance [m] below its start, at a time [s], of a ball that falls from rest and bounces without loss at a depth
+/// [m].
 fn bounced(depth: f64, time: f64) -> f64 {
     let period = 2.0 * (2.0 * depth / halfgap_tests::mechanism::GRAVITY).sqrt();
     let since_top = time - (time / period).round() * period;

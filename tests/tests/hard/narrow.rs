@@ -1,4 +1,4 @@
-//! Shapes that nearly fit, and shapes that are nearly nothing.
+//! Shapes that nearly fit, and shapes of nearly no width.
 
 use super::{impacts, within};
 use halfgap::BodyState;
@@ -34,8 +34,8 @@ fn a_disc_in_a_ring_wider_by_1e_9_stays_in_and_keeps_its_energy() {
 
 #[test]
 fn a_disc_hangs_in_a_ring_wider_by_1e_9_and_swings() {
-    // A pendulum of 1e-9 m: at rest at the lowest point, moved aside by a tenth of its length it swings. Too fast to
-    // follow (its frequency is sqrt(g/1e-9) = 1e5 rad/s) but not to hold.
+    // A pendulum of 1e-9 m: at rest at the lowest point, it swings if it is moved aside by a tenth of its length. Its
+    // frequency, sqrt(g/1e-9) = 1e5 rad/s, is too high to follow, but the contact can be held.
     let clearance = 1e-9;
     let mut shop = Workshop::new(1e-8);
     shop.fixed("ring", Shape::ring(2.0, 1.0 + clearance).expect("a fine ring"), DVec2::ZERO);
@@ -118,8 +118,8 @@ fn two_needles_that_meet_point_to_point_keep_energy_and_momentum() {
     within("needles point to point: energy [J]", world.energy().kinetic - 1.0, 1e-13);
 }
 
-/// Where a block of 1 m comes to that falls for a time [s] in a channel between walls, wider than itself by a
-/// clearance [m], and how far that is off [m]. All is turned by an angle [rad] about the origin and shifted.
+/// Error [m] of the place of a block of 1 m that falls for 1.3 s in a channel between walls, which is wider than the
+/// block by a clearance [m]. The whole is rotated by an angle [rad] about the origin and shifted.
 fn off_through_channel(
     (tolerance, elasticity): (f64, f64),
     (clearance, height): (f64, f64),
@@ -153,7 +153,7 @@ fn off_through_channel(
 
 #[test]
 fn a_block_falls_through_a_channel_as_wide_as_itself() {
-    // Its corners come out past those of the walls, at a distance that is nothing but rounding.
+    // The block's corners come out past those of the walls, at distances of mere rounding.
     let placements =
         [(0.0, DVec2::ZERO), (0.7, DVec2::ZERO), (-2.3, DVec2::new(3.0, 4.0)), (1.9, DVec2::new(-4.4, 0.3))];
     let mut furthest = 0.0f64;
@@ -172,9 +172,9 @@ fn a_block_falls_through_a_channel_as_wide_as_itself() {
 
 #[test]
 fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else() {
-    // A disc falls into a groove with a round bottom, 5e-10 m wider than itself, and bounces there. What
-    // opens fires again at its own target, which in such a fit is a part of its clearance: at that of others
-    // it would fire all the time.
+    // A disc falls into a groove with a round bottom, 5e-10 m wider than itself, and bounces there. A contact that
+    // opens fires again at its own target, which is a fraction of the clearance in a fit as tight as this: at the
+    // target of others it would fire all the time.
     let (disc, bottom) = (0.06742892346340036, 0.06742892396340036);
     let mut world = world_of(&format!(
         "format = \"halfgap-scene-1\"\ntitle = \"test\"\nrun = {{ duration = 0.6, tolerance = 1e-5 }}\n\
@@ -196,14 +196,14 @@ fn a_disc_in_a_hollow_that_just_holds_it_fires_where_it_closes_and_nowhere_else(
 
 #[test]
 fn discs_that_part_slowly_within_their_target_zone_take_no_steps_of_their_own() {
-    // Three discs run round in a ring one behind the other, each a little faster than the last. Bounds on how
-    // they turn do not tell that they part: each pair fires again and again, and what it is told about that
-    // must outlast what the other pair does.
+    // Three discs run round in a ring one behind the other, each a little faster than the last. Bounds on their
+    // turning do not show that they part: each pair fires again and again, and the rules that it gets for this must
+    // outlast the events of the other pair.
     const TARGET: f64 = 1e-9;
     const RADIUS: f64 = 0.1;
     const PARTING: f64 = 1e-9;
     let way = 1.0 - RADIUS - TARGET;
-    // Nearer than the target by a quarter of the accuracy.
+    // The discs are nearer than the target by a quarter of the accuracy.
     let apart = 2.0 * RADIUS + TARGET - 1.5e-10;
     let angle = 2.0 * (0.5 * apart / way).asin();
     let mut text = String::from(
@@ -231,7 +231,7 @@ fn discs_that_part_slowly_within_their_target_zone_take_no_steps_of_their_own() 
 }
 
 #[test]
-fn what_fits_without_play_is_held_as_by_a_pin() {
+fn a_disc_that_fits_without_play_is_held_as_by_a_pin() {
     for tolerance in [1e-3, 1e-6, 1e-8, 1e-10] {
         // A disc hangs in a ring of its own radius.
         let mut shop = Workshop::new(tolerance);

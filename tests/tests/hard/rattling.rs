@@ -1,5 +1,5 @@
-//! A light body between a wall and a heavy one that closes on it: it rattles ever faster until it has turned
-//! the heavy one back, in hundreds of impacts within what is no time for anything else.
+//! A light body between a wall and a heavy one that closes on it: it rattles ever faster until it has turned the heavy
+//! one back, in hundreds of impacts within a time too short for anything else.
 
 use super::{impacts, within};
 use halfgap::World;
@@ -8,12 +8,12 @@ use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc,
 use halfgap_tests::world_of;
 use std::f64::consts::PI;
 
-/// Where the light disc rests, and where the heavy one starts [m] from the wall.
+/// Distance [m] from the wall at which the light disc rests, and at which the heavy one starts.
 const LIGHT: f64 = 1.0;
 const HEAVY: f64 = 2.5;
 
-/// A light disc of 1 kg at rest between a wall and a heavy one that closes on it with 1 m/s. Far away a body
-/// falls, so that the scene has an acceleration.
+/// A light disc of 1 kg at rest between a wall and a heavy one that closes on it with 1 m/s. A body falls far away, so
+/// that the scene has an acceleration.
 fn rattle(heavy: f64) -> World {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("wall", block(1.0, 4.0), DVec2::new(-0.5, 0.0));
@@ -24,10 +24,9 @@ fn rattle(heavy: f64) -> World {
     shop.build()
 }
 
-/// Impacts until the heavy disc leaves are the digits of pi where it is 100^k times as heavy (G. Galperin,
-/// "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003): in velocities weighed by the roots of the
-/// masses, the two impacts of a round turn the motion by twice the angle whose tangent is the root of the
-/// ratio.
+/// The digits of pi are the number of impacts until a heavy disc leaves that is 100^k times as heavy (G. Galperin,
+/// "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003): in velocities weighed by the roots of the masses,
+/// the two impacts of a round turn the motion by twice the angle whose tangent is the root of the ratio of the masses.
 #[test]
 fn a_light_disc_between_a_wall_and_a_heavy_one_counts_the_digits_of_pi() {
     for (heavy, digits) in [(1e4, 314), (1e6, 3141), (1e8, 31415)] {
@@ -49,7 +48,7 @@ fn a_light_disc_between_a_wall_and_a_heavy_one_counts_the_digits_of_pi() {
 
 #[test]
 fn a_light_disc_under_a_heavy_block_throws_it_up_again_at_a_loose_tolerance() {
-    // At 150 m/s it crosses so many target gaps between two blows that each of them counts.
+    // At 150 m/s the light disc crosses a distance of many target gaps between two blows, so each of them counts.
     let mut shop = Workshop::new(1e-2);
     shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -0.5));
     shop.body("light", disc(0.1), 1.0, at_rest(0.0, 0.15));
@@ -61,8 +60,8 @@ fn a_light_disc_under_a_heavy_block_throws_it_up_again_at_a_loose_tolerance() {
     within("light disc under a heavy block at 1e-2: energy, relative", kept, 1e-9);
 }
 
-/// A hub with a slot from its centre outwards, and in that a die with a play of 1 mm; both are pinned, the die so far
-/// [m] beside the hub that it jams where the slot has turned away.
+/// A hub with a slot through its centre, and in that a die with a play of 1 mm; both are pinned, the die `beside` [m]
+/// from the hub's centre, so that it jams where the slot has turned away.
 fn die_in_a_slot(tolerance: f64, beside: f64, rate: f64) -> World {
     let slower = 0.9 * rate;
     let text = format!(

@@ -11,7 +11,7 @@ fn rope(shop: &mut Workshop, from: DVec2, body: BodyId, length: f64, elasticity:
     shop.connect(ConnectorKind::Rope { a, b: Anchor { body, point: DVec2::ZERO }, length }, elasticity);
 }
 
-/// A ball flies past the rope's end until it pulls tight at an angle, without weight: its velocity after.
+/// Velocity of a weightless ball after it has flown past the rope's end until the rope pulls tight at an angle.
 fn taut_at_an_angle(elasticity: f64) -> (World, BodyId) {
     let mut shop = Workshop::weightless(1e-10);
     let ball = shop.body("ball", disc(0.1), 1.0, thrown(0.0, -0.6, DVec2::new(1.0, 0.0)));
@@ -25,7 +25,7 @@ fn taut_at_an_angle(elasticity: f64) -> (World, BodyId) {
 #[test]
 fn a_rope_that_pulls_tight_at_an_angle_takes_the_speed_along_itself() {
     let (world, ball) = taut_at_an_angle(0.0);
-    // Across the rope, (0.6, 0.8), the speed is 0.6 m/s and stays.
+    // Across the rope, along (0.6, 0.8), the speed is 0.6 m/s and stays.
     within("rope taut at an angle, dull: speed [m/s]", world.state(ball).velocity.length() - 0.6, 1e-9);
     within("rope taut at an angle, dull: length [m]", world.state(ball).position.length() - 1.0, 1e-9);
 }
@@ -76,20 +76,20 @@ fn two_ropes_that_pull_tight_at_once_hold_a_ball() {
     within("two ropes at once, dull: forces [N]", off, 1e-8);
 }
 
-/// How two discs on ropes set out.
+/// Start of two discs on ropes.
 struct Swing {
     /// Velocity [m/s] and spin [rad/s] of the upper one.
     velocity: [f64; 2],
     spin: f64,
-    /// How far beside its middle [m] the ropes are tied to it that lead up and down.
+    /// Offsets [m] from the middle of the upper disc at which the ropes up and down are tied to it.
     ends: [f64; 2],
-    /// Place aside [m] and velocity [m/s] of the lower one.
+    /// Horizontal place [m] and velocity [m/s] of the lower disc.
     x: f64,
     below: [f64; 2],
 }
 
-/// Two discs on ropes, one below the other, the lower one elastic, perhaps with a spring beside them; where the
-/// lower one is after a second.
+/// Two discs on ropes, one below the other, the lower one elastic, optionally with a spring beside them. Returns the
+/// place of the lower one after a second.
 fn discs_on_ropes(tolerance: f64, swing: &Swing, spring: bool) -> DVec2 {
     let &Swing { velocity, spin, ends: [first, second], x, below } = swing;
     let spring = match spring {
@@ -134,7 +134,7 @@ fn discs_on_ropes(tolerance: f64, swing: &Swing, spring: bool) -> DVec2 {
 #[test]
 fn a_rope_that_is_held_hands_on_what_one_below_it_gives() {
     // When the lower rope goes taut, rounding decides whether the upper one opens or closes, and the steps decide
-    // where it was when it went taut itself: it is held all the same.
+    // where the upper one was when it went taut itself: it is held all the same.
     let swings = [
         Swing { velocity: [0.02, 0.9], spin: -1.42, ends: [0.13, -0.04], x: 0.27, below: [-0.38, -0.15] },
         Swing { velocity: [-0.48, -0.81], spin: 1.26, ends: [0.04, 0.18], x: 0.27, below: [0.19, 0.72] },

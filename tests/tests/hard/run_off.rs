@@ -1,4 +1,4 @@
-//! The moment in which a contact runs off its features: what else happens then, and what takes over.
+//! The moment in which a contact runs off its features: other events at that moment, and the contacts that take over.
 
 use super::{impacts, within};
 use halfgap::geometry::{DVec2, Shape};
@@ -10,7 +10,7 @@ use std::path::Path;
 
 #[test]
 fn a_block_that_slides_off_a_wedge_bounces_off_the_floor() {
-    // Its lower corner comes to the floor where the wedge ends: the contact of the two runs off at the moment
+    // The block's lower corner comes to the floor where the wedge ends: the contact of the two runs off at the moment
     // of the blow. Nothing takes energy.
     for angle in [1.0_f64, 1.1, 1.3] {
         let mut shop = Workshop::new(1e-8);
@@ -28,9 +28,9 @@ fn a_block_that_slides_off_a_wedge_bounces_off_the_floor() {
     }
 }
 
-/// A block lies on the rounds of two of its corners when a disc falls on it: it turns over the flat between
-/// them, and where a body may be a millimetre off it stands on one by the time that the other comes down.
-/// Both hold it then.
+/// A block lies on the rounds of two of its corners when a disc falls on it: it turns over the flat between them.
+/// Where a body may be a millimetre off, the block stands on one corner by the time that the other comes down. Both
+/// hold it then.
 #[test]
 fn a_block_with_round_corners_comes_to_rest_in_few_blows_as_one_with_sharp_ones() {
     for radius in [0.0, 0.1, 0.25, 0.4] {
@@ -130,7 +130,7 @@ fn a_tip_slides_off_the_end_of_an_arc_without_a_blow() {
     for power in 6..13 {
         let mut world = tip_on_sector(10.0_f64.powi(-power));
         assert_eq!(impacts(&mut world, 0.4), 0, "at a tolerance of 1e-{power}");
-        // It has fallen behind the end.
+        // The tip has fallen behind the end of the arc.
         let tip = world.find("tip").expect("it is there");
         assert!(world.state(tip).angle < -0.03, "{:?}", world.state(tip));
     }
@@ -154,12 +154,12 @@ fn an_escapement_ticks_alike_at_all_tolerances() {
     }
 }
 
-/// A disc of 0.2 m slides up a side without losing its corner: it goes about it at nearly the speed at which it would fly
-/// off, and comes over the next side deeper than where it first touches it.
+/// A disc of 0.2 m slides up a side without losing its corner: it goes about the corner at nearly the speed at which
+/// it would fly off, and comes over the next side deeper than its first touch.
 struct OverCorner {
     tolerance: f64,
-    /// Sides that meet at the origin, as ends of edges [m]; with an arc between them from there, which ends and has its
-    /// centre at these places.
+    /// Sides that meet at the origin, by their other ends [m]; an arc between them may start there, given by its end
+    /// and its centre [m].
     before: [f64; 2],
     arc: Option<[[f64; 2]; 2]>,
     after: [f64; 2],
@@ -242,13 +242,13 @@ fn a_disc_that_all_but_flies_off_a_corner_comes_down_on_the_next_side() {
         let shapes = [ground, disc].map(|body| world.shape(body).clone());
         let poses = [ground, disc].map(|body| world.state(body).pose());
         let gap = shapes[0].distance(&poses[0], &shapes[1], &poses[1]).distance;
-        // No deeper than rounding, no farther off than it flies by then.
+        // No deeper than rounding: only the depth is checked.
         within("disc over a corner: gap, by the tolerance [m]", gap.min(0.0) / case.tolerance, 1e-3);
     }
 }
 
-/// A pin on an arm slides off a pallet and swings round behind it, in few steps at coarse tolerances: seen from the edge
-/// that it has left, it comes back far below.
+/// A pin on an arm slides off a pallet and swings round behind it, in few steps at coarse tolerances: seen from the
+/// edge that it has left, it comes back far below.
 #[test]
 fn a_pin_that_goes_round_behind_the_edge_it_has_left_does_not_strike_it() {
     for power in 3..11 {
@@ -297,7 +297,7 @@ stiffness = 0.2
         ));
         assert_eq!(impacts(&mut world, 1.6), 1, "at a tolerance of {tolerance:e}");
         let arm = world.find("arm").expect("it is there");
-        // At 1e-12 it goes about its pivot at this rate.
+        // The rate at which it goes about its pivot at a tolerance of 1e-12.
         let rate = world.state(arm).angular_velocity + 2.476_975_133_7;
         within("a pin off a pallet: rate, by the tolerance [rad/s]", rate / tolerance, 0.5);
     }

@@ -1,7 +1,7 @@
-//! Units do not matter: the same scene in other units of length, time and mass does the same.
+//! Units do not matter: a scene in other units of length, time and mass runs alike.
 //!
-//! By powers of two every operation scales exactly (short of overflow), so that the bits of the result do; any absolute
-//! threshold hidden somewhere shows. By powers of ten they do so to rounding.
+//! By powers of two every operation scales exactly (short of overflow), and so do the bits of the result; any absolute
+//! threshold in the code shows. By powers of ten results agree to rounding.
 
 use super::within;
 use halfgap::force::Spring;
@@ -13,7 +13,7 @@ use halfgap::{
 use halfgap_tests::mechanism::{block, disc};
 use std::sync::Arc;
 
-/// What 1 m, 1 s and 1 kg are.
+/// Units that stand for 1 m, 1 s and 1 kg.
 #[derive(Clone, Copy)]
 struct Units {
     length: f64,
@@ -113,7 +113,7 @@ fn resting(units: &Units) -> World {
     builder.build().expect("a fine world")
 }
 
-/// States after a time, in units of one.
+/// States after a time, in the units of the scene of unit scale.
 fn after(build: Build, units: &Units, time: f64) -> Vec<BodyState> {
     let mut world = build(units);
     world.advance_to(time * units.time, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));

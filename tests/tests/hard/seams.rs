@@ -1,5 +1,5 @@
-//! Seams between surfaces that are nearly level with each other: what slides over them goes on, for two
-//! contacts whose normals hardly differ hold a body altogether if both are stopped.
+//! Seams between surfaces that are nearly level with each other: bodies that slide over them go on. Two contacts whose
+//! normals hardly differ would hold a body altogether if both were stopped.
 
 use super::within;
 use halfgap::geometry::{DVec2, EdgeSpec, Shape};
@@ -10,7 +10,7 @@ use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc}
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// How far along and how high the corners of a floor of tiles are [m].
+/// Place along [m] and height [m] of a corner of a floor of tiles.
 type Corner = (f64, f64);
 
 /// Adds tiles 0.2 m thick whose upper sides join the corners.
@@ -32,7 +32,7 @@ fn sliding(position: DVec2, speed: f64) -> BodyState {
 
 #[test]
 fn a_disc_slides_over_the_seam_of_two_tiles_that_hardly_differ_in_slope() {
-    // A hollow of this angle closes at the speed times it, and takes the square of that from the energy.
+    // A hollow of this angle closes at the speed times the angle, and takes the square of that from the energy.
     for tolerance in [1e-6, 1e-8, 1e-10] {
         for angle in [1e-9, 1.8e-7, 1e-6, 1e-5, -1e-6, 1e-4] {
             for speed in [0.1, 1.0, 5.0] {
@@ -73,7 +73,7 @@ fn a_ramp_of_tiles_with_rounded_places_is_as_fast_as_a_smooth_one() {
         // The corners are off by half a unit of their last digit, slopes by up to that over a fifth of a metre.
         let bound = 0.5 * GRAVITY * 16.0 * (0.5 / unit) / 0.2;
         within(&format!("ramp of tiles of {digits} digits: place [m]"), reached - expected, bound);
-        // At a seam no more goes than the square of the closing speed, which is the angle times about a metre a second.
+        // A seam costs no more than the square of the closing speed, which is the angle times about a metre a second.
         within(&format!("ramp of tiles of {digits} digits: captures [J]"), world.ledger().captures, 1e-9);
     }
 }
@@ -110,8 +110,8 @@ fn a_block_slides_over_crates_that_stand_side_by_side() {
     }
 }
 
-/// A block slides from a fixed table onto carts beside it, all as high as the table: each stands its gap
-/// above the floor, as the block does above the table, so that its corner comes at the height of theirs.
+/// A block slides from a fixed table onto carts beside it, all as high as the table: each cart stands its gap above
+/// the floor, as the block does above the table, so that the block's corner arrives at the height of theirs.
 #[test]
 fn a_block_slides_from_a_table_onto_carts_of_the_same_height() {
     for (tolerance, way, room) in [(1e-6, 1.0, 0.0), (1e-8, -1.0, 0.0), (1e-8, 1.0, 0.1), (1e-10, -1.0, 0.1)]
@@ -132,8 +132,8 @@ fn a_block_slides_from_a_table_onto_carts_of_the_same_height() {
     }
 }
 
-/// Two blocks lie side by side, a third across both. It hops by what counts as contact, and touches both by
-/// corners whose normals hardly differ: to stop them all would stop it.
+/// Two blocks lie side by side, a third across both. It hops within the height that counts as contact, and touches
+/// both by corners whose normals hardly differ: stopping all of these contacts would stop the block.
 #[test]
 fn a_block_that_hops_a_little_goes_on_to_slide_over_two_that_hardly_differ_in_slope() {
     for angle in [8e-5, -8e-5, 1e-5, -1e-3] {
@@ -161,7 +161,8 @@ fn a_block_that_hops_a_little_goes_on_to_slide_over_two_that_hardly_differ_in_sl
         for (name, speed) in [("left", 0.03), ("right", 0.03), ("top", -0.05)] {
             let body = world.find(name).expect("it is there");
             let changed = world.state(body).velocity.x - speed;
-            // In a second, half of the weight of the upper block makes so much, where it lies on the slope.
+            // In a second, half of the weight of the upper block changes the speed by 1.5 m/s times the slope on which
+            // it lies.
             within(
                 &format!("{name} block, {angle} rad: change of speed [m/s]"),
                 changed,
@@ -171,8 +172,8 @@ fn a_block_that_hops_a_little_goes_on_to_slide_over_two_that_hardly_differ_in_sl
     }
 }
 
-/// A block of 0.5 m slides over the seam of two tiles, of which the second is higher by a step [m], its lower corners at
-/// different heights [m] of a wide target zone: after 2 s.
+/// State after 2 s of a block of 0.5 m that slides over the seam of two tiles, the second of which is higher by a step
+/// [m]; its lower corners start at different heights [m] of a wide target zone.
 fn slid_askew(gap: f64, slow: f64, [rear, front]: [f64; 2], speed: f64, step: f64) -> BodyState {
     let overrides =
         ToleranceOverrides { target_gap: Some(gap), accuracy: Some(0.6 * gap), velocity_tol: Some(slow) };
@@ -191,10 +192,10 @@ fn slid_askew(gap: f64, slow: f64, [rear, front]: [f64; 2], speed: f64, step: f6
     world.state(slider)
 }
 
-/// What rests may be at an angle of up to a hundredth there. Neither the side nor the corner of the next tile is in
-/// its way, and contacts whose normals differ by that angle do not hold it together.
+/// In this zone a block at rest may lie at an angle of up to a hundredth. Neither the side nor the corner of the next
+/// tile is in its way, and contacts whose normals differ by that angle do not hold it together.
 #[test]
-fn what_lies_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
+fn a_block_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
     let heights = [0.45, 0.6, 0.8, 1.0, 1.2, 1.5];
     let (mut runs, mut worst) = (0, 0.0f64);
     for (gap, slow) in [(5e-3, 0.5), (5e-3, 0.1), (2e-3, 0.1)] {
@@ -207,13 +208,14 @@ fn what_lies_askew_in_a_wide_zone_slides_over_the_seam_of_level_tiles() {
         }
     }
     assert_eq!(runs, 216);
-    // What falls by the height of the zone with a corner turns, and its corner is hit at that angle.
+    // A block that falls with one corner by the height of the zone turns, and its corner is hit at that angle.
     within("block askew over a seam, 216 runs: part of its speed", worst, 0.25);
 }
 
-/// A step is one where it leaves the block less room than contacts have, and none where the block is above it.
+/// A step counts as one where it leaves the block less room than contacts have; where the block is above it, it does
+/// not.
 #[test]
-fn what_lies_askew_in_a_wide_zone_is_stopped_by_a_step() {
+fn a_block_askew_in_a_wide_zone_is_stopped_by_a_step() {
     let speed = |heights: [f64; 2], step: f64| slid_askew(5e-3, 0.1, heights, 1.0, step).velocity.x;
     for step in [1.5e-3, 2e-3, 4e-3] {
         let stopped = speed([3.8e-3, 2.8e-3], step);
@@ -223,8 +225,8 @@ fn what_lies_askew_in_a_wide_zone_is_stopped_by_a_step() {
     assert!(passed > 0.98, "{passed} m/s");
 }
 
-/// Beside a wide zone the edges of these outlines are short: all of them are about as high as the next, at whatever
-/// angle, and still they meet.
+/// Beside a wide zone the edges of these outlines are short: each is about as high as the next, at whatever angle, and
+/// still they meet.
 #[test]
 fn outlines_of_short_edges_meet_at_their_corners() {
     let overrides =
@@ -246,7 +248,7 @@ fn outlines_of_short_edges_meet_at_their_corners() {
     }
 }
 
-/// A track of two straights of 3 m and two half circles of 1 m, each in so many edges.
+/// A track of two straights of 3 m and two half circles of 1 m, each cut into `cuts` edges.
 fn cut_stadium(cuts: u32) -> RailPath {
     let start = DVec2::new(-1.5, -1.0);
     let (mut at, mut direction) = (start, DVec2::X);

@@ -1,4 +1,4 @@
-//! Things that happen at one moment.
+//! Several events at one moment.
 
 use super::{impacts, within};
 use halfgap::geometry::DVec2;
@@ -6,8 +6,8 @@ use halfgap::{BodyId, BodyState, ImpactLaw, ToleranceOverrides, World, WorldBuil
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 use halfgap_tests::world_of;
 
-/// A block that falls with a tilt such that one corner is by a length [m] higher than the other; rows of its
-/// first impact, and its spin [rad/s] after it.
+/// A block falls with a tilt, so that one corner is higher than the other by a length [m]. Returns the number of rows
+/// of its first impact, and its spin [rad/s] after it.
 fn land_tilted(higher: f64) -> (usize, f64) {
     let mut shop = Workshop::new(1e-8);
     let overrides = ToleranceOverrides { target_gap: Some(1e-6), ..ToleranceOverrides::default() };
@@ -45,7 +45,7 @@ fn a_block_that_lands_flat_on_two_corners_does_not_turn() {
     shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
     let body = shop.settler("block", block(2.0, 1.0), 1.0, at_rest(0.3, 1.75), 0.5);
     let mut world = shop.build();
-    // It falls 1.25 m in 0.5 s, and is up again at a quarter of that after as long a half of it.
+    // The block falls 1.25 m in 0.5 s, and after half of that time it has risen again to a quarter of that height.
     assert_eq!(impacts(&mut world, 0.75), 1);
     let state = world.state(body);
     within("block flat on two corners: turned [rad]", state.angle, 1e-15);
@@ -68,8 +68,8 @@ fn add(builder: &mut WorldBuilder, name: &str, x: f64, y: f64, speed: f64) -> Bo
 
 #[test]
 fn three_discs_at_once_share_as_the_books_say() {
-    // The middle disc meets two that touch, at 30 degrees to its way. At once: it turns back with a fifth of its speed,
-    // and each of the two leaves along its normal with 2 sqrt(3)/5 of it (momentum and energy).
+    // The middle disc meets two that touch, at 30 degrees to its way. Struck at once: it turns back with a fifth of
+    // its speed, and each of the two leaves along its normal with 2 sqrt(3)/5 of it (momentum and energy).
     let mut builder = world_with(ImpactLaw::Simultaneous);
     let gap = 1e-10;
     let striker = add(&mut builder, "striker", -3.0, 0.0, 1.0);
@@ -148,7 +148,7 @@ fn a_symmetric_fall_into_a_wedge_stays_symmetric() {
 
 #[test]
 fn elastic_discs_that_follow_each_other_within_the_zone_of_a_wall_lose_nothing() {
-    // The first comes back from the wall, is sent there again by the second before it has left the zone, and
+    // The first disc comes back from the wall, is sent there again by the second before it has left the zone, and
     // comes back once more.
     for tolerance in [1e-2, 1e-3, 1e-6, 1e-8, 1e-10] {
         for law in [ImpactLaw::Hybrid, ImpactLaw::Simultaneous] {
@@ -172,8 +172,8 @@ fn elastic_discs_that_follow_each_other_within_the_zone_of_a_wall_lose_nothing()
     }
 }
 
-/// A ring about a disc that goes round a circular rail meets a ceiling at a height [m], once the disc rests in
-/// it: the velocity of the ring [m/s] after 3 s. Its centre of mass is not its middle.
+/// A ring about a disc that goes round a circular rail meets a ceiling at a height [m], once the disc rests in the
+/// ring. Returns the velocity of the ring [m/s] after 3 s. The ring's centre of mass is off its middle.
 fn ring_at_ceiling(height: f64, tolerance: f64) -> DVec2 {
     let at = "position = [0.74, 1.1]\nvelocity = [0.19, 0.93]\nelasticity = 0.5";
     let mut world = world_of(&format!(
@@ -195,8 +195,8 @@ fn ring_at_ceiling(height: f64, tolerance: f64) -> DVec2 {
 }
 
 #[test]
-fn what_is_pressed_together_is_struck_together_whatever_its_steps_err_by() {
-    // Dense output has what is held close and open faster than what rests.
+fn bodies_pressed_together_are_struck_together_whatever_their_steps_err_by() {
+    // Dense output makes held contacts close and open faster than the speed that counts as rest.
     let mut worst = 0.0f64;
     for height in [1.75, 1.8, 1.85, 1.9, 1.95] {
         let exact = ring_at_ceiling(height, 1e-11);
@@ -207,8 +207,8 @@ fn what_is_pressed_together_is_struck_together_whatever_its_steps_err_by() {
     within("ring with a disc in it at a ceiling: velocity, by the tolerance [m/s]", worst, 1.0);
 }
 
-/// A bob on a dull rope from the end of a bar on a pin, taut as both swing, and an elastic ball that falls on it at a
-/// speed [m/s].
+/// A bob hangs on a dull rope from the end of a bar on a pin; the rope is taut as both swing, and an elastic ball
+/// falls on the bob at a speed [m/s].
 fn bob_on_dull_rope(speed: f64, tolerance: f64) -> World {
     world_of(&format!(
         "format = \"halfgap-scene-1\"\ntitle = \"test\"\n\
@@ -230,7 +230,8 @@ fn bob_on_dull_rope(speed: f64, tolerance: f64) -> World {
 
 #[test]
 fn a_rope_that_holds_is_struck_with_what_it_holds_whatever_its_steps_err_by() {
-    // Dense output has the rope lengthen by more than what rests: it is held all the same, and passes the blow on.
+    // Dense output lengthens the rope faster than the speed that counts as rest: the rope is held all the same, and
+    // passes the blow on.
     let mut worst = 0.0f64;
     for speed in [2.0, 2.3, 2.69, 3.0, 3.4] {
         for tolerance in [1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-8] {

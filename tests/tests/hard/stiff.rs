@@ -1,5 +1,5 @@
-//! Bodies so light that what slows them acts at once: their motion is slow, but an explicit method would have
-//! to follow what decays within a microsecond. Each case counts the steps.
+//! Bodies so light that the forces that slow them act at once: their motion is slow, but an explicit method would have
+//! to follow transients that decay within a microsecond. Each case counts the steps.
 
 use super::within;
 use halfgap::force::{Dashpot, Spring};
@@ -8,7 +8,8 @@ use halfgap::{Anchor, BodyId, BodyState, ConnectorKind, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, disc, thrown};
 use std::sync::Arc;
 
-/// Steps beyond which a step follows what decays: explicit ones would be nearly a million or more in each case.
+/// Number of steps beyond which the steps follow the decay: an explicit method would take nearly a million or more in
+/// each case.
 const FEW_STEPS: u64 = 20_000;
 
 fn few_steps(what: &str, world: &World) {
@@ -77,9 +78,8 @@ fn a_pendulum_in_syrup_creeps_down() {
 
 #[test]
 fn a_light_body_on_a_stiff_spring_follows_a_heavy_one_where_rounding_is_told() {
-    // m x'' + c x' + k (x - place) = 0 with m = 1.6 mg: beside the decay at 1e6 a second, forces are so steep
-    // that what rounding of the places makes of the velocity is more than the tolerance allows, however short
-    // a step of an explicit method.
+    // m x'' + c x' + k (x - place) = 0 with m = 1.6 mg: beside the decay at 1e6 a second, forces are so steep that the
+    // velocity error from the rounding of places exceeds the tolerance, however short a step of an explicit method.
     let (damping, stiffness, length) = (1.9, 9000.0, 1.9);
     let mut shop = Workshop::weightless(3e-12);
     let moving = BodyState { angular_velocity: -2.0, ..thrown(1.6, -0.5, DVec2::new(-1.8, -0.4)) };
@@ -99,8 +99,8 @@ fn a_light_body_on_a_stiff_spring_follows_a_heavy_one_where_rounding_is_told() {
 
 #[test]
 fn a_spring_far_from_the_origin_is_not_followed_through_rounding() {
-    // Places are known to 6e-11 m, of which the spring makes 2e-5 m/s^2: more than the tolerance allows in
-    // 3e-7 s, but not more than that place is worth in the 2e-3 s in which the spring acts.
+    // Places are known to 6e-11 m, of which the spring makes 2e-5 m/s^2: more than the tolerance allows in 3e-7 s, but
+    // not more than that error of place is worth in the 2e-3 s in which the spring acts.
     let (mass, rate, far, stretch, time) = (0.25, 600.0, 3e5, 0.01, 1.0);
     let length = 5.0;
     let mut shop = Workshop::weightless(1e-12);
@@ -120,8 +120,8 @@ fn a_spring_far_from_the_origin_is_not_followed_through_rounding() {
 
 #[test]
 fn a_dot_whose_spin_has_decayed_does_not_spin_between_steps() {
-    // The spin decays at 2e6 a second; then nothing shows that an explicit step that is fine for the spring
-    // is too long.
+    // The spin decays at 2e6 a second; after that nothing shows that an explicit step of the right length for the
+    // spring is too long for the spin.
     let (mass, radius, damping, spin) = (1.5, 1e-3, 1.5, 0.4);
     let mut shop = Workshop::weightless(1e-11);
     let turning = BodyState { angular_velocity: spin, ..thrown(-3.9, 2.9, DVec2::new(2.2, 1.2)) };
@@ -144,8 +144,8 @@ fn a_dot_whose_spin_has_decayed_does_not_spin_between_steps() {
 
 #[test]
 fn a_chain_of_dots_in_syrup_creeps_however_many_they_are() {
-    // On dashpots and stiff springs, damped by c: all fall at m g/c but for what is left of their start, while the chain
-    // hangs on nothing and is as long as it was.
+    // On dashpots and stiff springs, damped by c: all dots fall at m g/c up to the rest of their start, while the
+    // chain hangs on nothing and keeps its length.
     let (mass, damping, spacing) = (1.0, 1e3, 1.0);
     for count in [10, 60] {
         let mut shop = Workshop::new(1e-6);

@@ -1,4 +1,4 @@
-//! Scenes that cannot be solved end with an error that says why, at once.
+//! Scenes that cannot be solved end at once with an error that gives the reason.
 
 use halfgap::World;
 use halfgap::scene::{Scene, SceneFormat};
@@ -46,7 +46,7 @@ fn a_pin_pulled_two_ways_is_refused_by_name() {
     };
     let error = error_of(&format!("{bar}{}{}", pin(-1.0, -1.0), pin(1.0, 1.5)));
     assert!(error.contains("pin"), "{error}");
-    // Off by so little that it may be put right, but each way undoes the other.
+    // The pins are off by so little that either may be put right, but each correction undoes the other.
     let error = error_of(&format!("{bar}{}{}", pin(-1.0, -1.0), pin(1.0, 1.000_000_5)));
     assert!(error.contains("pin"), "{error}");
 }

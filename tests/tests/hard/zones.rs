@@ -1,4 +1,4 @@
-//! Target zones that are wide, as scenes may ask for.
+//! Wide target zones, as scenes may ask for them.
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::Scene;
@@ -7,7 +7,7 @@ use halfgap_tests::data;
 use halfgap_tests::mechanism::{Workshop, advance, at_rest, block, disc};
 
 #[test]
-fn what_is_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_the_steps() {
+fn a_disc_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_the_steps() {
     for accuracy in [4.5e-3, 3e-3] {
         for time_step in [2.5e-2, 5e-3, 1e-3, 5e-4] {
             for elasticity in [0.0, 0.3, 0.8] {
@@ -40,7 +40,7 @@ fn what_is_given_low_in_a_wide_zone_stays_there_by_impulses_alone_however_short_
 
 #[test]
 fn a_corner_beside_the_end_of_a_tooth_is_no_gap() {
-    // Where a pin lets go of a tooth, its corner is beside the tooth's end and far below the line on which that lies.
+    // Where a pin lets go of a tooth, the pin's corner is beside the tooth's end and far below the line of that end.
     let scene = Scene::read(data("music_box.json")).expect("a scene that can be read");
     let mut world = World::from_scene(&scene).expect("a world that can be built");
     advance(&mut world, 1.75);

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 const WORLD: BodyId = BodyId::WORLD;
 
-/// Runs in pieces, and returns the largest connector error [m] and the largest change of energy [J] met.
+/// Runs a world in pieces, and returns the largest connector error [m] and the largest change of energy [J] met.
 fn drift(world: &mut World, until: f64) -> (f64, f64) {
     let start = world.energy().total();
     let (mut error, mut change) = (0.0f64, 0.0f64);
@@ -33,7 +33,7 @@ fn a_pendulum_holds_together_and_keeps_its_energy_for_a_thousand_seconds() {
     assert!(change <= 1e-8 * energy, "{change} J of {energy} J");
 }
 
-/// Where two circles about points meet, to the left of the way from one to the other.
+/// Intersection of two circles about two points, to the left of the way from one to the other.
 fn meeting(a: DVec2, radius_a: f64, b: DVec2, radius_b: f64) -> DVec2 {
     let along = (b - a).normalize();
     let distance = (b - a).length();
@@ -67,7 +67,7 @@ fn a_four_bar_linkage_holds_together_and_keeps_its_energy_for_a_thousand_seconds
 
 #[test]
 fn parallel_bars_swing_as_one_pendulum_although_one_of_them_is_too_many() {
-    // Three bars of 1 m carry a plate: one would do to keep it level with another, the third is redundant.
+    // Three bars of 1 m carry a plate: two would keep it level, the third is redundant.
     let tilt = DVec2::from_angle(-0.9);
     let mut shop = Workshop::new(1e-10);
     let tops = [0.0, 1.0, 2.0].map(|x| DVec2::new(x, 0.0));

@@ -1,9 +1,9 @@
-//! Who picks one layer compiles only the layers below it, and of other packages no more than that layer needs.
+//! A dependency on one layer compiles only the layers below it, and no more other packages than that layer needs.
 
 use std::collections::BTreeSet;
 use std::process::Command;
 
-/// What procedural macros are made with: built for the host, not linked.
+/// Packages of procedural macros: built for the host, not linked.
 const OF_MACROS: [&str; 5] = ["proc-macro2", "quote", "syn", "thiserror-impl", "unicode-ident"];
 
 /// Names of the packages that a package of this workspace is linked with, itself included.
@@ -25,7 +25,7 @@ fn set(names: &[&str]) -> BTreeSet<String> {
     names.iter().map(|&name| name.to_owned()).collect()
 }
 
-/// The layers among some packages.
+/// The packages among the given ones that are layers of the workspace.
 fn layers(packages: &BTreeSet<String>) -> BTreeSet<String> {
     packages.iter().filter(|name| name.starts_with("halfgap")).cloned().collect()
 }

@@ -1,5 +1,5 @@
-//! The same scene gives the same bits: again, in another process, recorded or not; and nearly the same with
-//! its bodies in another order.
+//! A scene gives the same bits again, in another process, recorded or not; and nearly the same numbers with its bodies
+//! in another order.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{BodyState, Event, Record, RunPlan, RunReport, World, run, unwatched};
@@ -23,7 +23,7 @@ const SCENES: [&str; 10] = [
     "straight_straight__hexagon_1",
     "straight_straight__six_blocks_1",
 ];
-/// Asks this program, run by itself, for the hashes alone.
+/// Environment variable that makes this program, run by itself, print the hashes alone.
 const ONLY_HASHES: &str = "HALFGAP_PRINT_HASHES";
 /// Longest run [s].
 const LONGEST: f64 = 3.0;
@@ -46,7 +46,7 @@ fn run_of(scene: &Scene, record: Record) -> (World, RunReport) {
     (world, report)
 }
 
-/// A hash of all that a recording holds: numbers are written so that they read back as the same bits.
+/// A hash of everything in a recording: numbers are written so that they read back as the same bits.
 ///
 /// FNV-1a: G. Fowler, L. C. Noll, K.-P. Vo, as in RFC 9923.
 fn hash_of(scene: &Scene) -> u64 {
@@ -110,8 +110,8 @@ fn generated_scenes_give_the_same_bits_again() {
     }
 }
 
-/// All that happens in a scene, as text, and where its bodies are at the end: by one world, or by a new copy of it after each
-/// event.
+/// All events of a scene, as text, and the states of its bodies at the end: by one world, or by a new copy of it after
+/// each event.
 fn told(scene: &Scene, is_copied: bool) -> (Vec<String>, Vec<BodyState>) {
     let mut world = World::from_scene(scene).expect("a world that can be built");
     let mut events = Vec::new();
@@ -140,7 +140,7 @@ fn a_copy_goes_on_as_its_original() {
     }
 }
 
-/// Bodies of a scene in the opposite order.
+/// The scene with its bodies in the opposite order.
 fn turned(json: &str) -> Scene {
     let mut value: Value = serde_json::from_str(json).expect("JSON");
     let bodies = value["body"].as_array_mut().expect("bodies are a list");
@@ -149,7 +149,8 @@ fn turned(json: &str) -> Scene {
     parse(&value.to_string())
 }
 
-/// Compares a scene with itself turned: every body is where it was, to so many tolerances of a metre or radian.
+/// Compares a scene with its bodies in both orders: every body is where it was, within a multiple of the tolerance [m
+/// or rad].
 fn compare_turned(name: &str, tolerances: f64) {
     let text = std::fs::read_to_string(data(&format!("scenes/{name}.json"))).expect("a reference scene");
     let (one, other) = (parse(&text), turned(&text));

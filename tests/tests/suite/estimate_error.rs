@@ -4,9 +4,9 @@ use halfgap::scene::Scene;
 use halfgap::{ErrorEstimate, Record, RunPlan, TimedDifference, World, estimate_error, run, unwatched};
 use halfgap_tests::{check_at, reference_scene};
 
-/// Errors below this part of the scene's size are rounding.
+/// Errors below this fraction of the scene's size are rounding.
 const ROUNDING: f64 = 1e-12;
-/// The bounds on the estimate, as parts of the true error.
+/// Bounds on the estimate, as multiples of the true error.
 const LEAST: f64 = 1.0 / 3.0;
 const MOST: f64 = 10.0;
 
@@ -107,7 +107,7 @@ fn chaos_is_named_with_the_time_until_which_the_answer_is_worth_something() {
     );
 }
 
-/// The ends of both runs are no answer about a moment at which a body has two velocities.
+/// At the moment of an impact a body has two velocities, which the ends of the two runs may take one each.
 #[test]
 fn an_impact_at_an_output_time_is_not_an_error_of_velocity() {
     let text = "format = \"halfgap-scene-1\"\ntitle = \"wall\"\nrun = { duration = 2.0, output_step = 0.5 }\n\

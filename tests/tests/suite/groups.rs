@@ -1,4 +1,4 @@
-//! What does not touch does not share a step; what is read in between changes nothing.
+//! Bodies that do not touch do not share a step; reads in between change nothing.
 
 use halfgap::force::Spring;
 use halfgap::geometry::DVec2;
@@ -17,10 +17,10 @@ fn bits(state: &BodyState) -> [u64; 6] {
     [x.x, x.y, state.angle, v.x, v.y, state.angular_velocity].map(f64::to_bits)
 }
 
-/// A pendulum about the origin and, on request, what moves ten times as fast far away.
+/// A pendulum about the origin and, on request, bodies that move ten times as fast far away.
 fn pendulum(with_neighbour: bool) -> (World, BodyId) {
     let mut shop = Workshop::new(1e-9);
-    // A post as far away as all that follows: the scene has the same size with and without it.
+    // A post as far away as all the other bodies: the scene has the same size with and without them.
     shop.fixed("post", block(1.0, 1.0), DVec2::new(20.0, 0.0));
     let bob = shop.body("bob", disc(0.25), 1.0, at_rest(1.0, 0.0));
     shop.connect(ConnectorKind::Rod { a: at(WORLD, 0.0, 0.0), b: at(bob, 0.0, 0.0), length: 1.0 }, 0.0);
@@ -46,7 +46,7 @@ fn a_pendulum_moves_by_the_same_bits_whatever_happens_elsewhere() {
         assert_eq!(bits(&alone.state(bob)), bits(&beside.state(bob)), "at {time} s");
     }
     assert!(beside.statistics().impacts > 10, "{:?}", beside.statistics());
-    // The fast one alone takes most of the steps.
+    // The fast body alone takes most of the steps.
     let (one, all) = (alone.statistics().evaluations, beside.statistics().evaluations);
     assert!(all > 5 * one, "{one} evaluations alone, {all} in all");
 }
@@ -64,7 +64,7 @@ fn two_pendulums(collisions: bool) -> World {
 }
 
 #[test]
-fn what_nothing_can_meet_moves_by_the_same_bits_and_costs_less_where_nobody_looks() {
+fn bodies_that_nothing_can_meet_move_by_the_same_bits_and_cost_less_where_nobody_looks() {
     let (mut watched, mut unwatched) = (two_pendulums(true), two_pendulums(false));
     let same = |one: &World, other: &World| {
         one.bodies().all(|body| bits(&one.state(body)) == bits(&other.state(body)))
@@ -117,12 +117,12 @@ fn bodies_far_from_an_impact_are_not_cut() {
     };
     let (alone, beside) = (segments(false), segments(true));
     assert!(beside.impacts >= 15, "{beside:?}");
-    // The bouncer has one segment for each of its impacts, and its first.
+    // The bouncer has a segment after each of its impacts, and its first one.
     assert_eq!(beside.steps, alone.steps + beside.impacts + 1, "{alone:?} {beside:?}");
     assert_eq!(beside.evaluations, alone.evaluations);
 }
 
-/// Something of everything: a block that slides and falls, a pendulum that hits it, a slack rope, a spring.
+/// A scene with a block that slides and falls, a pendulum that hits it, a slack rope, and a spring.
 fn busy() -> World {
     let mut shop = Workshop::new(1e-8);
     shop.fixed("floor", block(8.0, 1.0), DVec2::new(0.0, -0.5));

@@ -1,4 +1,4 @@
-//! Heaps: many bodies come to rest on each other, in many impacts that each concern most of them.
+//! Heaps: many bodies come to rest on each other, in impacts that each concern most of them.
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::Scene;
@@ -54,7 +54,7 @@ fn a_hundred_discs_pile_up_without_harm() {
     let (ledger, statistics) = (world.ledger(), world.statistics());
     println!("{statistics:?} {ledger:?} of {start} J");
     assert!(statistics.impacts > 500, "{statistics:?}");
-    // What projections and steps change of the energy is nothing beside what the impacts take.
+    // The energy changes by projections and steps are small beside the energy that the impacts take.
     let lost = -(ledger.impacts + ledger.captures);
     assert!(lost > 0.1 * start, "{ledger:?}");
     assert!(ledger.projections.abs() + ledger.integration_error().abs() < 1e-6 * start, "{ledger:?}");
@@ -62,12 +62,12 @@ fn a_hundred_discs_pile_up_without_harm() {
 
 #[test]
 fn a_disc_between_two_that_is_nearly_in_line_with_them_rests() {
-    /// How much higher its centre lies [m], and where in their target zones the two lie that touch the walls.
+    /// Height [m] of the middle disc's centre above those of the others, and offset of the left wall, in target gaps.
     const RISE: f64 = 1e-3;
     const OFF: f64 = 0.4;
     let mut shop = Workshop::new(1e-6);
     let radius = 0.5f64;
-    // By the gaps that such discs touch at the contacts of the left wall are the farthest from closed.
+    // At the gap of two discs that touch, the contacts of the left wall are the farthest from closed.
     let gap = 1e-2 * 1e-6 * radius;
     let across = ((2.0 * radius + gap).powi(2) - RISE * RISE).sqrt();
     let wall = across + radius + 0.5;
@@ -102,8 +102,8 @@ fn nudged_heap(seed: u32) -> World {
 
 #[test]
 fn no_contact_pulls_where_six_discs_fit_from_wall_to_wall() {
-    // Their arch is flat: it presses the walls with hundreds of times the weight of a disc, by how much being
-    // left open by the contacts, of which one more is there than can be told apart.
+    // Their arch is flat: it presses the walls with hundreds of times the weight of a disc. How hard it presses is
+    // left open by the contacts, which are one more than can be told apart.
     for seed in [1, 4, 13, 16, 42] {
         let mut world = nudged_heap(seed);
         let mut least = 0.0f64;
@@ -149,8 +149,8 @@ fn no_contact_of_a_pyramid_pulls_at_the_start() {
 
 #[test]
 fn a_heap_of_discs_that_rests_keeps_the_contacts_it_began_with() {
-    // Close-packed from wall to wall, of discs of many masses, that lean a little to the right: half of what touches may
-    // go, and what is left pulls before long if the wrong half went.
+    // Discs of many masses, close-packed from wall to wall, that lean a little to the right: half of the contacts may
+    // go, and the rest pulls before long if the wrong half went.
     for (across, [square, once, modulus]) in [(11, [11, 29, 101]), (12, [5, 41, 67]), (13, [31, 17, 83])] {
         let mut shop = Workshop::weightless(1e-6);
         let width = f64::from(across);
@@ -171,7 +171,7 @@ fn a_heap_of_discs_that_rests_keeps_the_contacts_it_began_with() {
         }
         let mut world = shop.build();
         world.advance_to(1.0, &mut |event| panic!("{across} across: {event:?}")).expect("it rests");
-        // With others that were let go and caught again it took hundreds or thousands.
+        // It took hundreds or thousands of evaluations with other contacts, which were let go and caught again.
         assert!(world.statistics().evaluations < 100, "{across} across: {:?}", world.statistics());
     }
 }

@@ -67,7 +67,7 @@ connector = [{{ pin = {{ a = {{ body = "box", point = [-0.5, 0.5] }}, b = {{ bod
             }
         };
         world.advance_to(1.0, &mut note).expect("it falls shut");
-        // By energy and quadrature.
+        // The expected time comes from energy and quadrature.
         let first = first.expect("it falls shut");
         assert!((first - 0.490205).abs() < 1e-4, "{tolerance}: {first} s");
     }

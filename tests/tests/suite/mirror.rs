@@ -1,4 +1,4 @@
-//! What happens in a mirror is what happens, seen in a mirror: no sign of a normal, a turn or a side is wrong.
+//! A scene runs in a mirror as the mirror image of its run: no sign of a normal, a turn or a side is wrong.
 
 use halfgap::World;
 use halfgap::scene::{Scene, SceneFormat};
@@ -6,19 +6,20 @@ use halfgap_tests::generate::scene_of_seed;
 use halfgap_tests::mirror::mirrored;
 use serde_json::{Value, json};
 
-/// Part of the time of a generated scene, over which few of them are chaotic.
+/// Fraction of the duration of a generated scene over which few of them are chaotic.
 const EARLY: f64 = 0.1;
-/// One that is: rounding of its coordinates grows from 2e-13 m to 9e-6 m in eight impacts, at any tolerance.
+/// Seed of a scene that is chaotic: rounding of its coordinates grows from 2e-13 m to 9e-6 m in eight impacts, at any
+/// tolerance.
 const CHAOTIC: u64 = 1014;
 
-/// The world of a scene after the first part of its time; `None` if that cannot be.
+/// The world of a scene at its end; `None` if it cannot be built or stops early.
 fn ran(scene: &Value) -> Option<World> {
     let scene = Scene::parse(&scene.to_string(), SceneFormat::Json).expect("a fine scene");
     let mut world = World::from_scene(&scene).ok()?;
     world.advance_to(scene.run.start_time + scene.run.duration, &mut |_| ()).ok().map(|()| world)
 }
 
-/// By how much [m, rad] a scene and its mirror image differ.
+/// Largest difference [m, rad] between a scene and its mirror image.
 fn difference(scene: &Value) -> Option<f64> {
     let (world, image) = (ran(scene)?, ran(&mirrored(scene))?);
     let off = world.bodies().map(|body| {
@@ -37,7 +38,7 @@ fn generated_scenes_do_the_same_in_a_mirror() {
         let run = scene["run"].as_object_mut().expect("the table of the run");
         run.remove("seed");
         let duration = EARLY * run["duration"].as_f64().expect("a number");
-        // Laws that handle one row after the other begin with the last: which that is, a mirror changes.
+        // Laws that handle one row after the other begin with the last, and a mirror changes which row that is.
         for (key, value) in [
             ("duration", json!(duration)),
             ("tolerance", json!(1e-10)),

@@ -1,4 +1,4 @@
-//! Mangled scene files are read or refused with a message; nothing panics.
+//! Mangled scene files are read, or refused with a message; nothing panics.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap_tests::random::Random;
@@ -7,11 +7,11 @@ use std::fs::read_to_string;
 use std::panic::catch_unwind;
 use std::path::Path;
 
-/// Mangled texts of each format.
+/// Number of mangled texts of each format.
 const COUNT: u64 = 6000;
-/// Longer files say nothing that shorter ones do not.
+/// Largest length of a file [bytes]: longer files test nothing that shorter ones do not.
 const LONGEST: usize = 12_000;
-/// What takes the place of a number or a word.
+/// Replacements of a number or a word.
 const EXTREMES: [&str; 22] = [
     "0",
     "-0.0",
@@ -55,7 +55,7 @@ fn texts(format: SceneFormat) -> Vec<String> {
     texts
 }
 
-/// Where words and numbers begin and end.
+/// Beginnings and ends of words and numbers.
 fn tokens(text: &str) -> Vec<(usize, usize)> {
     let belongs = |c: char| c.is_alphanumeric() || "_.-+\"".contains(c);
     let mut tokens = Vec::new();
@@ -97,7 +97,7 @@ fn with_other_bytes(random: &mut Random, text: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A line left out, or twice there.
+/// The text with a line left out, or repeated.
 fn with_other_line(random: &mut Random, text: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     if !lines.is_empty() {
@@ -111,7 +111,7 @@ fn with_other_line(random: &mut Random, text: &str) -> String {
     lines.join("\n")
 }
 
-/// A word or a number replaced by an extreme one, or by another of the same text.
+/// The text with a word or a number replaced by an extreme one, or by another one of the text.
 fn with_other_token(random: &mut Random, text: &str) -> String {
     let tokens = tokens(text);
     if tokens.is_empty() {
@@ -139,7 +139,7 @@ fn run(format: SceneFormat) {
         }
     }
     println!("{COUNT} texts: {parsed} parsed");
-    // Some changes are harmless, most are not: else nothing was tried.
+    // Some changes are harmless, most are not; otherwise nothing was tried.
     assert!(parsed > COUNT / 20 && parsed < COUNT * 9 / 10, "{parsed} parsed");
 }
 

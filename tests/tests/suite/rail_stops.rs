@@ -1,4 +1,4 @@
-//! Stops of rails, whatever lies between them and their point.
+//! Stops of rails, with straight pieces, arcs and corners between them and their point.
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::{Scene, SceneError, SceneFormat};
@@ -6,7 +6,8 @@ use halfgap::{Event, World};
 use halfgap_tests::world_of;
 use std::ops::ControlFlow;
 
-/// A slope, a hollow of radius 1 m and a slope back up, and a bead that starts on the first; the stop is on the last.
+/// A rail of a slope, a hollow of radius 1 m and a slope back up, and a bead that starts on the first slope; the stop
+/// is on the last one.
 const RAIL: &str = r#"
 format = "halfgap-scene-1"
 title = "test"
@@ -23,7 +24,7 @@ const PATH: &str = "path = { start = [-2.7071067811865475, 2.7071067811865475], 
     { line = [-0.7071067811865476, 0.7071067811865475] }, \
     { arc = { to = [0.7071067811865476, 0.7071067811865475], center = [0.0, 1.4142135623730951] } }, \
     { line = [2.7071067811865475, 2.7071067811865475] }] }";
-/// Arc length of the stop [m], and where that is.
+/// Arc length [m] and place [m] of the stop.
 const STOP_AT: f64 = 5.5;
 const SLOPE: f64 = 2.0 * std::f64::consts::SQRT_2;
 
@@ -59,13 +60,13 @@ fn a_stop_beyond_the_joints_of_its_rail_turns_its_point_back() {
     assert!(highest < place + 1e-7, "{highest} m, stop at {place} m");
 }
 
-/// A bead on an arc of radius 1 m about the origin that starts at (1, 0) and ends at an angle [rad], a whole
-/// circle if that is all of it; it starts at 1 rad with 1 m/s, and nothing pulls.
+/// A bead on an arc of radius 1 m about the origin that starts at (1, 0) and ends at an angle [rad], or on a whole
+/// circle if the angle is a full turn; it starts at 1 rad with 1 m/s, and nothing pulls.
 fn bead_on_arc(end: f64, stops: &str) -> World {
     world_of(&scene_of_arc(end, stops))
 }
 
-/// The same on a whole circle, if it can be built.
+/// The bead on a whole circle, if the scene can be built.
 fn bead_on_ring(stops: &str) -> Result<World, SceneError> {
     let scene = Scene::parse(&scene_of_arc(std::f64::consts::TAU, stops), SceneFormat::Toml)?;
     World::from_scene(&scene)
@@ -91,7 +92,7 @@ fn scene_of_arc(end: f64, stops: &str) -> String {
     )
 }
 
-/// Requires that the bead is where it would be between stops at two angles [rad], at every tenth of a second.
+/// Requires that the bead goes to and fro between stops at two angles [rad], at every tenth of a second.
 fn require_between(world: &mut World, [low, high]: [f64; 2]) {
     let bead = world.find("bead").expect("the bead");
     let width = high - low;
@@ -172,7 +173,8 @@ fn a_bead_comes_to_rest_in_a_corner_of_its_rail() {
             }
         };
         world.advance_to(1000.0, &mut note).expect("the corner holds it");
-        // It slides down 1 m, and each time it passes it keeps the cosine of the turn of its speed, up and down again.
+        // The bead slides down 1 m, and at each pass its speed is multiplied by the cosine of the turn, up and down
+        // again.
         let (rate, kept) = (10.0 * sin, (2.0 * half).cos());
         let first = (2.0 / rate).sqrt();
         let expected = first * (1.0 + 2.0 * kept / (1.0 - kept));
@@ -198,7 +200,8 @@ fn stops_back_to_back_on_a_ring_are_refused() {
 
 #[test]
 fn a_stop_lets_go_what_has_left_its_spline_by_the_other_end() {
-    // Most of a circle, from which the bead sets out backwards. It comes nearer to the other end than to its own.
+    // The rail is most of a circle, on which the bead sets out backwards. It comes nearer to the other end than to its
+    // own.
     let angles = (0..9).map(|place| 0.3 + 0.7 * f64::from(place));
     let points: Vec<String> = angles.map(|angle| format!("[{}, {}]", angle.cos(), angle.sin())).collect();
     let rail = format!(
@@ -225,7 +228,8 @@ fn a_stop_lets_go_what_has_left_its_spline_by_the_other_end() {
 
 #[test]
 fn a_carriage_that_a_rope_jerks_at_its_stop_goes_on_with_steps_of_a_given_length() {
-    // Low order leaves it a little beyond the stop, from which it sets out by less than that.
+    // A method of low order leaves the carriage a little beyond the stop, from which it sets out by less than that
+    // distance.
     let scene = |integrator: &str, stabilization: &str| {
         let path = "path = { start = [-2.5744623043915458, 1.375120050582826], edges = [\
                     { line = [2.5744623043915458, -1.375120050582826] }] }";
@@ -306,7 +310,7 @@ fn bead_before_corner(end: [f64; 2], comes_forward: bool, stop: &str, pull: f64)
 const ENDS: [[f64; 2]; 5] = [[2.0, 0.17], [2.0, 1.0], [2.0, -1.0], [1.0, 1.0], [0.2, 0.8]];
 
 #[test]
-fn what_bounces_off_a_stop_in_a_corner_does_not_turn() {
+fn a_bead_that_bounces_off_a_stop_in_a_corner_does_not_turn() {
     for end in ENDS {
         for (upper, off) in [(true, 0.0), (false, 0.0), (true, 1e-12), (false, -1e-12)] {
             let stop = format!("at = {:?}, upper = {upper}, elasticity = 0.5", 1.0 + off);
@@ -322,7 +326,7 @@ fn what_bounces_off_a_stop_in_a_corner_does_not_turn() {
 }
 
 #[test]
-fn what_bounces_ever_lower_comes_to_rest_at_a_stop_near_a_corner() {
+fn a_bead_that_bounces_ever_lower_comes_to_rest_at_a_stop_near_a_corner() {
     for end in ENDS {
         for (upper, at) in [(true, 0.99_f64), (true, 1.0), (false, 1.01), (false, 1.000001), (false, 1.0)] {
             let stop = format!("at = {at:?}, upper = {upper}, elasticity = 0.5");
@@ -355,7 +359,7 @@ rail_stop = {{ a = {{ body = "bead", point = [0.0, 0.0] }}, at = {at:?}, upper =
 "#
         ))
     };
-    // By an adaptive integration (order 5, 1e-11) with the arc length of the nearest place as event.
+    // Expected times: an adaptive integration (order 5, 1e-11) with the arc length of the nearest place as event.
     for (at, expected) in [(1.3, 0.77576524), (1.8, 1.04249456), (2.2, 1.31344453), (3.0, 2.28725136)] {
         let mut world = world(at);
         let [warning] = world.warnings() else { panic!("{:?}", world.warnings()) };
@@ -372,8 +376,8 @@ rail_stop = {{ a = {{ body = "bead", point = [0.0, 0.0] }}, at = {at:?}, upper =
 }
 
 #[test]
-fn what_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
-    // At every tenth of a second it is looked at, also where it lies just behind the stop.
+fn a_bead_that_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
+    // The world is looked at every tenth of a second, also where the bead lies just behind the stop.
     for at in [2.0, 2.7995, 2.9, 2.9999, 3.0001, 6.0] {
         let mut world = bead_on_arc(std::f64::consts::TAU, &format!("at = {at}, upper = false"));
         let bead = world.find("bead").expect("the bead");
@@ -388,8 +392,9 @@ fn what_comes_to_a_stop_of_a_ring_from_behind_passes_it() {
 }
 
 #[test]
-fn what_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
-    // At the bottom of the ring, and never on the stopped side, whatever the tolerance: it goes on as without the stop.
+fn a_bead_that_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
+    // The bead swings at the bottom of the ring, never on the stopped side: at every tolerance it goes on as without
+    // the stop.
     let scene = |tolerance: f64, stop: &str| {
         let path =
             "path = { start = [1.0, 0.0], edges = [{ arc = { to = [1.0, 0.0], center = [0.0, 0.0] } }] }";
@@ -423,7 +428,7 @@ fn what_swings_behind_a_stop_of_a_ring_is_not_held_by_it() {
 
 #[test]
 fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
-    // Along its straight pieces a step goes on far beyond the corners, where other places are nearer.
+    // Along its straight pieces a step goes on far beyond the corners, to where other places are nearer.
     let corner = |k: usize| {
         let (sin, cos) = (std::f64::consts::FRAC_PI_3 * k as f64 + std::f64::consts::FRAC_PI_2).sin_cos();
         [cos, sin]
@@ -447,7 +452,7 @@ fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
             ));
             let bead = world.find("bead").expect("the bead");
             world.advance_to(4.0, &mut |_| ()).expect("it goes on");
-            // It slides down three sides, to the lowest corner and over it, and comes to rest there.
+            // The bead slides down three sides, to the lowest corner and over it, and comes to rest there.
             let state = world.state(bead);
             let off = state.position.distance(DVec2::NEG_Y);
             assert!(off < 1e-6, "{start} m, {at} m, {tolerance}: {state:?}");
@@ -456,11 +461,11 @@ fn a_stop_on_the_far_side_of_a_hexagon_holds_nothing() {
 }
 
 #[test]
-fn what_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
+fn a_bead_that_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
     // Thrown up through the stop, a bead comes down on it, within one step or several.
     for (speed, behind) in [(1.0, 1e-3), (1.0, 0.02), (0.2, 1e-4), (2.0, 1e-6)] {
         for tolerance in [1e-3, 1e-6, 1e-9] {
-            // At the right of the ring, where gravity points along it; the stop holds what comes down.
+            // The stop is at the right of the ring, where gravity points along it; it holds a bead that comes down.
             let stop = 2.0 * std::f64::consts::PI - 0.5;
             let start = stop - behind;
             let (sin, cos) = start.sin_cos();
@@ -488,18 +493,19 @@ fn what_passes_a_stop_of_a_ring_from_behind_and_comes_back_is_held_by_it() {
 }
 
 #[test]
-fn what_is_stopped_in_a_corner_without_bounce_slides_back_where_its_piece_leads_down() {
+fn a_bead_stopped_in_a_corner_without_bounce_slides_back_where_its_piece_leads_down() {
     for end in [[2.0, 0.17], [1.0, 1.0], [0.2, 0.8], [0.0, 0.01]] {
         for upper in [true, false] {
             let mut world =
                 bead_before_corner(end, upper, &format!("at = 1.0, upper = {upper}, elasticity = 0.0"), -1.0);
             let bead = world.find("bead").expect("the bead");
             let away = (world.state(bead).position - DVec2::X).normalize();
-            // It comes with 1 m/s against 1 m/s^2, so that it is stopped just before or at rest there, and goes back.
+            // The bead comes with 1 m/s against 1 m/s^2, so that it is stopped just before the corner or comes to rest
+            // there, and goes back.
             let comes = world.state(bead).velocity.length();
             assert!((comes - 1.0).abs() < 1e-12);
             world.advance_to(2.0, &mut |_| ()).expect("it goes on");
-            // Half a metre at 1 m/s, slower by 1 m/s^2, takes a second: it arrives with nothing.
+            // Half a metre at 1 m/s, slowed by 1 m/s^2, takes a second: the bead arrives with no speed.
             let (state, expected) = (world.state(bead), DVec2::X + 0.5 * away);
             assert!(state.position.distance(expected) < 1e-6, "{end:?} {upper}: {state:?}");
         }
@@ -508,7 +514,7 @@ fn what_is_stopped_in_a_corner_without_bounce_slides_back_where_its_piece_leads_
 
 #[test]
 fn stops_between_hairpins_hold() {
-    // Three pieces that lie nearly on each other; the bead bounces to and fro on the middle one.
+    // Three pieces lie nearly on each other; the bead bounces to and fro on the middle one.
     for turn in [179.0_f64, 178.0, 150.0] {
         let (sin, cos) = turn.to_radians().sin_cos();
         let corner = DVec2::X + DVec2::new(cos, sin);

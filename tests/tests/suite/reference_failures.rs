@@ -11,9 +11,9 @@ fn world(scene: &Scene) -> World {
     World::from_scene(scene).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The reference's grinder works only while its start is exactly aligned. Its shuttles fit into their slots
-/// so closely that they are held on both sides, and were held for good where corners of both sides came to
-/// lie opposite each other.
+/// The reference's grinder works only while its start is exactly aligned. Its shuttles fit into their slots so closely
+/// that they are held on both sides; once they were held for good where corners of both sides came to lie opposite
+/// each other.
 #[test]
 fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
     for (body, nudge) in [(0, 1e-9), (1, 1e-9), (2, -1e-9), (1, 1e-8)] {
@@ -40,7 +40,7 @@ fn the_gears_turn_for_a_minute() {
     let turned = |world: &World, name: &str| world.state(world.find(name).expect("it is there")).angle;
     for second in 1..=60 {
         advance(&mut world, f64::from(second));
-        // Teeth mesh: what one turns the other turns back, but for the play between teeth.
+        // Teeth mesh: the gears turn by opposite angles, up to the play between teeth.
         let (left, right) = (turned(&world, "left_gear"), turned(&world, "right_gear"));
         assert!((left + right).abs() < 0.1, "{left} and {right} at {second} s");
     }
@@ -104,8 +104,8 @@ fn a_ball_comes_to_rest_by_impulses_alone() {
     assert!(state.velocity.length() < 1e-6, "{} m/s", state.velocity);
 }
 
-/// A driven bar that presses on another, both pinned, by impulses alone: one a step, not one each time that
-/// it has sunk by a little.
+/// A driven bar presses on another, both pinned, by impulses alone: there is one impact in each step, not one each
+/// time that the bar has sunk by a little.
 #[test]
 fn a_bar_presses_on_another_by_impulses_alone() {
     let bar = |name: &str, place: &str, pivot: &str, end: &str| {

@@ -1,9 +1,9 @@
-//! The reference scenes, each at the tolerance and with the settings that it gives.
+//! The reference scenes, each at its own tolerance and with its own settings.
 
 use halfgap_tests::{check_at, reference_scene, reference_scene_names};
 
-/// Scenes whose expected state is not reached, each with its reason in docs/reference-cases.md; that it is
-/// not is checked too.
+/// Scenes whose expected state is not reached, each with its reason in docs/reference-cases.md; the test also checks
+/// that it is not reached.
 const NOT_YET: [&str; 6] = [
     "apps__chain",
     "extra__two_blocks_2_joints",
@@ -13,7 +13,7 @@ const NOT_YET: [&str; 6] = [
     "straight_straight__six_blocks_1",
 ];
 
-/// Everything but friction is simulated.
+/// True if the scene has friction; everything else is simulated.
 fn has_friction(name: &str) -> bool {
     reference_scene(name).bodies.iter().any(|body| body.friction > 0.0)
 }

@@ -29,7 +29,8 @@ fn a_disc_leaves_a_circle_where_the_cosine_is_two_thirds_of_its_height() {
         let ball = shop.dull("ball", disc(0.5), 1.0, thrown(0.0, 1.5, DVec2::new(speed, 0.0)));
         let mut world = shop.build();
         let radius = world.state(ball).position.y;
-        // Gravity along the radius is just what turns it: v^2 = g r cos a, and v^2 = v0^2 + 2 g r (1 - cos a).
+        // Gravity along the radius is just the force that turns the disc: v^2 = g r cos a, and v^2 = v0^2 + 2 g r (1 -
+        // cos a).
         let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * radius);
         let ends = ends(&mut world, 2.0);
         let [(time, normal)] = ends[..] else { panic!("it leaves once: {ends:?}") };
@@ -49,8 +50,8 @@ fn a_disc_leaves_a_circle_where_the_cosine_is_two_thirds_of_its_height() {
 
 #[test]
 fn a_ball_thrown_up_slowly_is_not_held_back() {
-    // It bounces once. Its speed is then below the velocity tolerance: slow enough to be caught when it comes down, not
-    // when it goes up.
+    // The ball bounces once. Its speed is then below the velocity tolerance: slow enough to be caught when it comes
+    // down, not when it goes up.
     let settings = WorldSettings {
         overrides: ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() },
         ..WorldSettings::default()
@@ -83,7 +84,7 @@ fn a_ball_thrown_up_slowly_is_not_held_back() {
 }
 
 #[test]
-fn what_opens_at_the_target_gap_never_fires() {
+fn a_ball_that_departs_at_the_target_gap_never_fires() {
     let mut shop = Workshop::weightless(1e-8);
     shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
     let ball = shop.body("ball", disc(0.5), 1.0, thrown(0.0, 0.5, DVec2::new(0.0, 1e-9)));
@@ -139,7 +140,7 @@ fn a_contact_goes_from_line_to_arc_and_back_when_the_disc_does() {
     let (speed, tolerance) = (3.0, 1e-10);
     let (mut world, disc) = sliding(tolerance, speed);
     let gap = world.tolerances().target_gap;
-    // On a half circle it is a pendulum that starts at the bottom: half a swing to and fro on each side.
+    // On a half circle the disc is a pendulum that starts at the bottom: half a swing to and fro on each side.
     let radius = 0.75 - gap;
     let amplitude = (1.0 - speed * speed / (2.0 * GRAVITY * radius)).acos();
     let round = 2.0 * 3.0 / speed + pendulum_period((GRAVITY / radius).sqrt(), amplitude);
@@ -154,14 +155,14 @@ fn a_contact_goes_from_line_to_arc_and_back_when_the_disc_does() {
     let state = world.state(disc);
     assert!(state.position.x.abs() < 1e-8, "{} m from its start after ten rounds", state.position.x);
     assert!((state.velocity - DVec2::new(speed, 0.0)).length() < 1e-8, "{}", state.velocity);
-    // Four times a round, first after half of the straight.
+    // The contact changes four times a round, first after half of the straight.
     assert_eq!(changes.len(), 40, "{changes:?}");
     assert!((changes[0] - 0.5).abs() < 1e-8, "{changes:?}");
 }
 
 #[test]
 fn three_feet_on_a_floor_carry_a_pendulum_by_turns() {
-    // The middle foot is one too many: forces of redundant contacts come and go without anything moving.
+    // The middle foot is redundant: forces of redundant contacts come and go without anything moving.
     let foot = |x: f64| [DVec2::new(x, -0.5), DVec2::new(x + 0.2, -0.5), DVec2::new(x + 0.2, -0.3)];
     let mut vertices = Vec::new();
     for x in [-1.1, -0.1, 0.9] {
@@ -213,10 +214,10 @@ impl ForceLaw for Push {
     }
 }
 
-/// The target gap of the worlds below [m].
+/// Target gap [m] of the worlds below.
 const GAP: f64 = 1e-6;
 
-/// A shop whose target gap is that.
+/// A workshop whose target gap is [`GAP`].
 fn wide_gap_shop() -> Workshop {
     let overrides = ToleranceOverrides { target_gap: Some(GAP), ..ToleranceOverrides::default() };
     let mut shop = Workshop::weightless(1e-10);
@@ -225,7 +226,7 @@ fn wide_gap_shop() -> Workshop {
     shop
 }
 
-/// A disc of 1 kg at the origin that just touches a wall to its right, and what pushes it.
+/// A disc of 1 kg at the origin that just touches a wall to its right, and a push on it.
 fn pushed_at_a_wall(push: fn(f64) -> f64) -> (World, BodyId) {
     let mut shop = wide_gap_shop();
     shop.fixed("wall", block(1.0, 4.0), DVec2::new(1.0 + GAP, 0.0));
@@ -236,7 +237,7 @@ fn pushed_at_a_wall(push: fn(f64) -> f64) -> (World, BodyId) {
 
 #[test]
 fn a_force_that_comes_and_goes_while_nothing_moves_is_missed_by_no_step() {
-    // It is there for three rounds, each time by less, before it is gone in the fourth.
+    // The force is there for three rounds, each time by less, before it is gone in the fourth.
     let push = |time: f64| 1.2 + time.sin() - 0.01 * time;
     let (mut world, _) = pushed_at_a_wall(push);
     let (mut held, mut gone) = (22.0f64, 23.56f64);
@@ -263,7 +264,7 @@ fn a_contact_without_force_is_held_when_it_is_pressed() {
     }
     let ends = ends(&mut world, PI + 1.0);
     assert!(ends.len() == 1 && (ends[0].0 - PI).abs() < 1e-8, "{ends:?}");
-    // From rest there: v = cos(t) - 1 and x = sin(t) - t, t from then on.
+    // From rest at that moment: v = cos(t) - 1 and x = sin(t) - t, with t from then on.
     let state = world.state(ball);
     assert!((state.position.x - (1f64.sin() - 1.0)).abs() < accuracy, "{state:?}");
     assert!((state.velocity.x - (1f64.cos() - 1.0)).abs() < 1e-8, "{state:?}");
@@ -280,7 +281,7 @@ fn a_contact_without_force_that_has_opened_bounces_when_it_comes_back() {
         })
         .unwrap_or_else(|error| panic!("{error}"));
     let [(time, row)] = impacts[..] else { panic!("it comes back once: {impacts:?}") };
-    // It fires within the target zone, a little below its target.
+    // The contact fires within the target zone, a little below its target.
     let late = 0.1 * world.tolerances().accuracy;
     assert!((row.gap - GAP).abs() < late && (time - 2.0).abs() < 2.0 * late, "{row:?} at {time} s");
     assert!((row.velocity_before + 2.0 / 3.0).abs() < 4.0 * late, "{row:?}");
@@ -308,8 +309,8 @@ fn a_disc_that_lies_lower_than_its_target_gap_slides_over_a_seam_without_a_bump(
 
 #[test]
 fn contacts_with_firm_forces_are_not_looked_at_again() {
-    // A step of the default method has 12 stages, its end, and three more for dense output; releases are
-    // watched at five places more, unless the stages tell that no force comes near to zero.
+    // A step of the default method has 12 stages, its end, and three more for dense output. Releases are watched at
+    // five more places, unless the stages show that no force comes near to zero.
     let mut shop = Workshop::new(1e-9);
     shop.fixed("floor", block(40.0, 1.0), DVec2::new(0.0, -0.5));
     let sled = shop.dull("sled", disc(0.5), 1.0, thrown(0.0, 0.5, DVec2::new(1.0, 0.0)));

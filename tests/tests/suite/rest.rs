@@ -52,8 +52,8 @@ fn a_bouncing_ball_rests_when_the_geometric_series_ends() {
     }
 }
 
-/// Impacts of an elastic ball within 0.2 s, which starts at so many target gaps above the place where it
-/// bounces, and the energy [J] that it loses meanwhile, in units of its weight times the target gap.
+/// Number of impacts within 0.2 s of an elastic ball that starts a given number of target gaps above the place where
+/// it bounces, and the energy [J] that it loses meanwhile, in units of its weight times the target gap.
 fn bounces_from(gaps: f64) -> (u64, f64) {
     let mut shop = Workshop::new(1e-8);
     shop.fixed("floor", block(4.0, 1.0), DVec2::new(0.0, -0.5));
@@ -83,9 +83,9 @@ fn an_elastic_ball_that_bounces_as_high_as_the_gap_comes_to_rest_in_the_end() {
 }
 
 #[test]
-fn what_is_carried_along_takes_few_steps_and_meets_what_is_in_its_way() {
+fn sliding_blocks_take_few_steps_and_meet_the_wall_or_the_edge_in_their_way() {
     // At 30 m/s a block slides along a floor of 200 m, against a wall at its end, and another over its edge.
-    /// At half a block a step it would be hundreds.
+    /// Bound far below the hundreds of steps that half a block a step would take.
     const MOST_STEPS: u64 = 60;
     for with_wall in [true, false] {
         let mut shop = Workshop::new(1e-8);
@@ -119,8 +119,8 @@ fn what_is_carried_along_takes_few_steps_and_meets_what_is_in_its_way() {
     }
 }
 
-/// Steps that a body on a floor takes in 10 s, drawn to and fro by a spring that lets it swing by 2 m; and by how much
-/// it is off in the end [m].
+/// Number of steps in 10 s of a body on a floor, drawn to and fro by a spring that lets it swing by 2 m, and its error
+/// [m] in the end.
 fn swing_on_floor(shape: &str, tolerance: f64) -> (u64, f64) {
     let mut world = world_of(&format!(
         "format = \"halfgap-scene-1\"\ntitle = \"test\"\n[run]\nduration = 10.0\ntolerance = {tolerance:e}\n\

@@ -1,4 +1,4 @@
-//! Slots whose normals turn, rods, ropes that go taut, rails: against closed forms and what must be kept.
+//! Slots whose normals turn, rods, ropes that go taut, rails: against closed forms and conserved quantities.
 
 use halfgap::force::Spring;
 use halfgap::geometry::{DVec2, EdgeSpec};
@@ -90,7 +90,7 @@ fn a_rope_goes_taut_in_flight_takes_the_speed_along_it_and_hangs() {
     let bob = shop.body("bob", disc(0.1), 2.0, at_rest(0.6, 0.0));
     shop.connect(ConnectorKind::Rope { a: center(WORLD), b: center(bob), length: 1.0 }, 0.0);
     let mut world = shop.build();
-    // It falls 0.8 m until the rope is taut, and keeps the part of its speed across the rope.
+    // The bob falls 0.8 m until the rope is taut, and keeps the part of its speed across the rope.
     let taut = (2.0 * 0.8 / GRAVITY).sqrt();
     let mut times = Vec::new();
     world.advance_to(2.0 * taut, &mut |event| times.push(event.time())).expect("it goes taut");
@@ -120,7 +120,7 @@ fn an_elastic_rope_gives_the_speed_back() {
     shop.connect(ConnectorKind::Rope { a: center(WORLD), b: center(bob), length: 1.0 }, 1.0);
     let mut world = shop.build();
     let fall = (2.0 * 0.8 / GRAVITY).sqrt();
-    // Up again to where it fell from, and over and over.
+    // The bob rises again to its first height, over and over.
     for bounce in 1..=20 {
         advance(&mut world, 2.0 * fall * f64::from(bounce));
         let off = (world.state(bob).position - DVec2::new(0.0, -0.2)).length();

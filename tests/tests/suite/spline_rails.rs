@@ -1,14 +1,15 @@
-//! Rails through points: the error follows the tolerance over all the points that a run goes over.
+//! Rails through points: the error follows the tolerance over all the points that a run passes.
 
 use halfgap_tests::world_of;
 use std::fmt::Write as _;
 
 const GRAVITY: f64 = 9.81;
-/// Radius of the wheel that rolls the cycloid out [m].
+/// Radius [m] of the rolling wheel that draws the cycloid.
 const WHEEL: f64 = 0.5;
-/// The rail spans wheel angles up to this on both sides [rad]; the bead stays where the ends are no longer felt.
+/// The rail spans wheel angles up to this on both sides [rad]; the bead stays far enough from the ends not to feel
+/// them.
 const SPAN: f64 = 2.5;
-/// The bead starts at this wheel angle [rad].
+/// Wheel angle [rad] at which the bead starts.
 const START: f64 = 1.8;
 const DURATION: f64 = 5.0;
 
@@ -16,13 +17,14 @@ fn point(angle: f64) -> [f64; 2] {
     [WHEEL * (angle + angle.sin()), -WHEEL * angle.cos()]
 }
 
-/// Where a bead on the cycloid is: its arc length from the lowest point swings like a spring.
+/// Place of a bead on the cycloid: its arc length from the lowest point swings like a spring.
 fn expected(time: f64) -> [f64; 2] {
     let frequency = (GRAVITY / (4.0 * WHEEL)).sqrt();
     point(2.0 * ((0.5 * START).sin() * (frequency * time).cos()).asin())
 }
 
-/// A bead on the spline through points of a cycloid, every second of which lies by `shift` of a space further on.
+/// A bead on the spline through points of a cycloid, every second of which is shifted on by the fraction `shift` of a
+/// space.
 fn scene(points: u32, shift: f64, tolerance: f64) -> String {
     let place = |index: u32| {
         let is_inner = index % 2 == 1 && index + 1 < points;
@@ -43,7 +45,7 @@ fn scene(points: u32, shift: f64, tolerance: f64) -> String {
     )
 }
 
-/// Position at the end [m], and the steps that took.
+/// Position at the end [m], and number of steps.
 fn run(points: u32, shift: f64, tolerance: f64) -> ([f64; 2], u64) {
     let mut world = world_of(&scene(points, shift, tolerance));
     let bead = world.find("bead").expect("the bead");

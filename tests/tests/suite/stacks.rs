@@ -1,4 +1,4 @@
-//! Rest is cheap: what stands still takes few steps, and does not move.
+//! Rest is cheap: a body that stands still takes few steps, and does not move.
 
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{BodyId, BodyState, World};
@@ -14,7 +14,7 @@ fn moved(world: &World, start: &[BodyState]) -> f64 {
     world.bodies().zip(start).map(of).fold(0.0, f64::max)
 }
 
-/// Rests for a hundred seconds, and returns the largest motion met.
+/// Lets a world rest for a hundred seconds, and returns the largest motion met.
 fn rest(world: &mut World) -> f64 {
     let start: Vec<BodyState> = world.bodies().map(|body| world.state(body)).collect();
     let mut most = 0.0f64;
@@ -49,7 +49,7 @@ fn a_stack_of_ten_rests_for_a_hundred_seconds_in_less_than_two_hundred_steps() {
         assert!(most < 1e-9, "elasticity {elasticity}: moved by {most}");
         assert!(world.statistics().steps < 200, "{:?}", world.statistics());
         assert_eq!(world.statistics().impacts, 0, "elasticity {elasticity}");
-        // The lowest carries all ten, by its two ends.
+        // The lowest block carries all ten, by its two ends.
         let floor = world.find("floor").expect("it is there");
         let on_floor =
             world.contact_forces().iter().filter(|row| row.bodies[1] == floor).map(|row| row.force).sum();
@@ -58,8 +58,8 @@ fn a_stack_of_ten_rests_for_a_hundred_seconds_in_less_than_two_hundred_steps() {
     }
 }
 
-/// A wall of bricks of 1 m, so far [m] beside each other; each stands on two, every row has one less than the
-/// one below.
+/// A wall of bricks of 1 m with joints of a width [m]; each brick stands on two, and every row has one brick less than
+/// the one below.
 fn wall(joint: f64, tolerance: f64) -> World {
     let mut shop = Workshop::new(tolerance);
     shop.fixed("floor", block(20.0, 1.0), DVec2::new(0.0, -0.5));
@@ -76,7 +76,7 @@ fn wall(joint: f64, tolerance: f64) -> World {
 
 #[test]
 fn a_wall_of_bricks_rests() {
-    // Without joints bricks stand on two corners that are nothing but the target gap apart.
+    // Without joints bricks stand on two corners that are only a target gap apart.
     for (joint, tolerance) in [(0.01, 1e-8), (0.0, 1e-4), (0.0, 1e-6), (0.0, 1e-8), (0.0, 1e-10)] {
         let mut world = wall(joint, tolerance);
         let most = rest(&mut world);
@@ -154,9 +154,8 @@ fn a_block_that_bounces_and_rocks_comes_to_rest_flat() {
     }
 }
 
-/// Eight blocks that attract each other gather in a heap. An impact anywhere makes contacts everywhere open a
-/// little; what presses them back at once, through the others, counts as held. Nothing holds a block that
-/// slides along another.
+/// Eight blocks that attract each other gather in a heap. An impact anywhere makes contacts everywhere open a little;
+/// contacts that the others press back at once count as held. Nothing holds a block that slides along another.
 #[test]
 fn a_heap_settles_in_few_impacts_and_goes_on_to_slide() {
     const STARTS: u32 = 16;
@@ -167,7 +166,7 @@ fn a_heap_settles_in_few_impacts_and_goes_on_to_slide() {
         movable.next().expect("there are eight").velocity.x += 1e-3 * f64::from(start);
         let mut world = World::from_scene(&scene).expect("a reference scene");
         world.advance_to(6.0, &mut |_| {}).expect("it goes on");
-        // Fourteen hundred to nineteen hundred if each of them had to be caught again.
+        // There were fourteen hundred to nineteen hundred when each contact had to be caught again.
         let impacts = world.statistics().impacts;
         assert!((50..500).contains(&impacts), "{impacts} impacts");
         // Of 26 J; how much of it still slides is a matter of chance: 2e-4 J to 0.4 J from places a nanometre apart.

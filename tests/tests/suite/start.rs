@@ -1,4 +1,4 @@
-//! What overlaps at the start is refused with bodies and depth.
+//! Overlaps at the start are refused with bodies and depth; slow contacts at the start are caught.
 
 use halfgap::geometry::DVec2;
 use halfgap::scene::{Scene, SceneFormat};
@@ -8,7 +8,7 @@ use halfgap::{
 use halfgap_tests::mechanism::{GRAVITY, Workshop, advance, at_rest, block, connector_error, disc, thrown};
 use halfgap_tests::{on_floor, world_of};
 
-/// A builder of worlds in which what closes at less than 0.5 m/s is caught.
+/// A builder of worlds in which contacts that close at less than 0.5 m/s are caught.
 fn catching() -> WorldBuilder {
     let overrides = ToleranceOverrides { velocity_tol: Some(0.5), ..ToleranceOverrides::default() };
     WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() })
@@ -72,7 +72,7 @@ fn slow_ball(velocity: f64) -> World {
 }
 
 #[test]
-fn what_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
+fn a_ball_that_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
     for speed in [1e-3, 0.4] {
         let mut world = slow_ball(-speed);
         let ball = world.find("ball").expect("it is there");
@@ -89,7 +89,7 @@ fn what_closes_slowly_at_the_start_is_caught_and_its_energy_booked() {
 }
 
 #[test]
-fn what_opens_slowly_at_the_start_flies() {
+fn a_ball_that_departs_slowly_at_the_start_flies() {
     for speed in [1e-3, 0.4] {
         let mut world = slow_ball(speed);
         let ball = world.find("ball").expect("it is there");
@@ -130,7 +130,7 @@ fn discs_that_meet_slowly_at_the_start_go_on_together() {
 }
 
 #[test]
-fn what_closes_fast_at_the_start_bounces_beside_what_is_caught() {
+fn a_disc_that_closes_fast_at_the_start_bounces_beside_one_that_is_caught() {
     let mut shop = Workshop::new(1e-8);
     shop.builder = catching();
     shop.fixed("floor", block(9.0, 1.0), DVec2::new(0.0, -0.5));
@@ -140,7 +140,7 @@ fn what_closes_fast_at_the_start_bounces_beside_what_is_caught() {
     let start = world.state(fast).position.y;
     advance(&mut world, 0.2);
     assert_eq!(world.state(slow).velocity, DVec2::ZERO);
-    // Up at 2 m/s for 0.2 s.
+    // The disc goes up at 2 m/s for 0.2 s, with gravity against it.
     let rise = world.state(fast).position.y - start;
     assert!((rise - 0.2).abs() < 1e-9, "{rise} m");
 }
@@ -159,7 +159,7 @@ fn a_wheel_on_a_fixed_axle_that_just_touches_its_floor_turns() {
     let state = world.state(wheel);
     assert!((state.position - DVec2::new(0.0, 0.5)).length() < 1e-12, "{state:?}");
     assert!((state.angle - 6.0).abs() < 1e-12 && (state.angular_velocity - 3.0).abs() < 1e-15, "{state:?}");
-    // What can be lifted is.
+    // Bodies that can be lifted are.
     assert!((world.state(loose).position.y - 0.5 - target).abs() < 0.7 * target);
 }
 
@@ -195,7 +195,7 @@ fn a_ball_bounces_before_time_zero_as_it_does_after() {
 
 #[test]
 fn pins_that_contradict_each_other_by_less_than_the_tolerance_start_as_they_are() {
-    // Two discs on two pins, of which the second lies a little farther off on one of them.
+    // Two discs on two pins, the second of which lies a little farther off on one of them.
     for off in [1e-13, 1e-12, 1e-11, 1e-10] {
         let mut shop = Workshop::new(1e-6);
         let first = shop.body("first", disc(0.5), 3.0, thrown(0.0, 0.0, DVec2::new(1.0, 0.3)));

@@ -1,4 +1,4 @@
-//! Exact scenes: the error obtained is below what is asked for, and follows the tolerance.
+//! Exact scenes: the error obtained is below the error asked for, and follows the tolerance.
 
 use halfgap_tests::{check_at, reference_scene};
 
@@ -58,6 +58,7 @@ macro_rules! exact_scene {
 exact_scene!(a_pendulum, "exact__pendulum", 1e-10);
 exact_scene!(a_double_pendulum, "exact__double_pendulum", 1e-10);
 exact_scene!(a_disc_in_a_bowl, "exact__disc_in_bowl", 1e-10);
-// Six discs, each a target gap from the next: a hundredth of the tolerance, or what the coordinates allow.
+// Six discs, each a target gap from the next: the gap is a hundredth of the tolerance, or the least that coordinates
+// allow.
 exact_scene!(newtons_cradle, "exact__newtons_cradle", 1e-11);
 exact_scene!(a_ball_that_bounces, "exact__ball_bounce", 1e-10);

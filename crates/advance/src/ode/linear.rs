@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_needs_pivots_is_solved() {
+    fn a_matrix_that_needs_pivots_is_solved() {
         let entries = [0.0, 2.0, 1.0, 1.0, 1e-20, 3.0, -4.0, 5.0, 0.5];
         let expected = [1.5, -2.0, 0.25];
         let mut factors = Factors::default();

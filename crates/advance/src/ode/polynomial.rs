@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_by_more_is_put_in() {
+    fn an_end_off_by_more_than_rounding_is_met() {
         let (start, speed, step) = (933_919.0, -5.0, 0.25);
         let velocity = SegmentPolynomial::from_start(speed, [0.0; DEGREE + 1], step);
         let path = SegmentPolynomial::integrated(start, start - 1.0, &velocity);

@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// A defect this large is not rounding.
+    /// Least defect that is not rounding.
     const SMALLEST_DEFECT: f64 = 1e-6;
 
     #[test]

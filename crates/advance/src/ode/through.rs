@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_a_polynomial_of_degree_8_is_met_everywhere() {
+    fn a_polynomial_of_degree_8_is_met_everywhere() {
         let value = |t: f64| 3.0 + t - 2.0 * t.powi(2) + t.powi(5) - 0.3 * t.powi(8);
         let rate = |t: f64| 1.0 - 4.0 * t + 5.0 * t.powi(4) - 2.4 * t.powi(7);
         let step = 1.3;

@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_cannot_be_named() {
+    fn missing_bodies_cannot_be_named() {
         let none = BodyId(1);
         let of_pair = refused(|parts, _| parts.excluded.push((BodyId(0), none)));
         assert_eq!(of_pair, "excluded pair 0 names body 1, but there are 1 bodies");

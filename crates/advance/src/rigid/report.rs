@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ends_only_to_begin_at_once_is_no_change_in_whatever_order() {
+    fn a_contact_that_ends_only_to_begin_at_once_is_no_change_in_whatever_order() {
         let mut changes = ContactChanges {
             begin: [1, 2, 3, 4].map(of).to_vec(),
             end: [3, 5, 1, 4].map(of).to_vec(),

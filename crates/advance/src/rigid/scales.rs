@@ -186,14 +186,14 @@ mod tests {
             let scales = Scales { speed, slow: Some(3.0), coordinate: 1.0, ..Scales::default() };
             scales.tolerances(tolerance).velocity_tol
         };
-        // Where all bodies are about as fast, or the tolerance is fine, the slow body does not matter.
+        // Where all bodies are about as fast, or the tolerance is fine, the slowest body does not matter.
         assert_eq!([slow(1e-2, 10.0), slow(1e-8, 1e4)], [1e-1, 1e-4]);
         assert_eq!([slow(1e-2, 1e4), slow(1e-4, 1e4)], [0.1 * 3.0, 1e-2 * 3.0]);
         assert_eq!(slow(1e-2, 1e9), SLOWEST * 1e7);
     }
 
     #[test]
-    fn what_happens_far_away_is_no_faster() {
+    fn a_scene_far_from_the_origin_is_no_faster() {
         let speed_at = |place: DVec2| {
             let mut scales = Scales { acceleration: 10.0, ..Scales::default() };
             scales.set_bounds(Aabb { min: place - 4.0, max: place + 4.0 });

@@ -27,7 +27,7 @@ fn errors_fall_with_the_tolerance_as_the_orders_say() {
             })
             .collect();
         let slope = slope(&points);
-        // In proportion, unless the estimate is more than one order below the method.
+        // The error falls in proportion to the tolerance, unless the estimate is more than one order below the method.
         let expected =
             method.error_order().map_or(1.0, |order| f64::from(method.order()) / f64::from(order + 1));
         assert!((slope - expected).abs() < 0.2, "{method:?}: {slope}, {expected} expected");
@@ -116,11 +116,11 @@ fn steps_shrink_after_large_errors_and_grow_after_small_ones_within_limits() {
 fn an_error_that_grows_from_step_to_step_is_foreseen() {
     let method = Method::Dop853;
     let before = Accepted { length: 0.2, error: 0.5 };
-    // As large an error in a step shorter by a fifth: the next is to be shorter by as much.
+    // Step 0.16 has the error of step 0.2, a fifth longer: the next step is to be shorter by the same ratio, 0.8.
     let step = Accepted { length: 0.16, error: 0.5 };
     let ratio = method.factor_after(step, Some(before)) / method.factor_after(step, None);
     assert!((ratio - 0.8).abs() < 1e-12, "{ratio}");
-    // One that falls, or is too small to tell, lets the step grow as it would.
+    // An error that falls, or is too small to tell, lets the step grow as usual.
     let calm = Accepted { length: 0.2, error: 1e-9 };
     for step in [Accepted { length: 0.2, error: 0.3 }, calm] {
         assert_eq!(method.factor_after(step, Some(before)), method.step_factor(step.error));
@@ -171,7 +171,7 @@ fn the_first_step_follows_the_tolerance_as_the_estimate_does() {
     assert!((proposed(1e-5) / proposed(1e-13) - 10.0).abs() < 1e-9);
 }
 
-/// A fall along a line, or nothing at all.
+/// A fall along a line, or a system in which nothing moves.
 struct Fall {
     gravity: f64,
 }

@@ -16,7 +16,7 @@ fn orders(method: Method, steps: u32) -> Errors {
     }
 }
 
-/// Steps at which the leading term of the error rules and rounding does not.
+/// Numbers of steps at which the leading term of the error rules and rounding does not.
 const STEPS: [(Method, u32); 6] = [
     (Method::Dop853, 80),
     (Method::DormandPrince5, 160),
@@ -36,13 +36,14 @@ fn ends_converge_with_the_order_of_the_method() {
 
 #[test]
 fn polynomials_converge_with_the_least_of_their_own_order_and_that_of_the_ends() {
-    // Local errors of degree 7 and 4 fall as the steps to the 8 and 5, as do the ends; cubics do not hinder
-    // order 4, but the order of Radau's method, which is 5 at the ends.
+    // Local errors of dense polynomials of degree 7 and 4 fall with the 8th and 5th power of the step, as do the ends
+    // of those methods. Cubics do not limit methods of order 4, but they limit Radau's method, which is of order 5 at
+    // the ends.
     for (method, steps) in STEPS {
         let cubic = if method == Method::RadauIia5 { 4.0 } else { f64::INFINITY };
         let (measured, order) = (orders(method, steps), f64::from(method.order()).min(cubic));
         assert!((measured.velocity - order).abs() < 0.08 * order, "{method:?}: {}", measured.velocity);
-        // The integral of a velocity whose error falls with an order has an order more, where the ends do.
+        // The position is the integral of the velocity: its error is of one order more, up to the order of the ends.
         let order = f64::from(method.order());
         assert!((measured.position - order).abs() < 0.08 * order, "{method:?}: {}", measured.position);
     }
@@ -75,7 +76,7 @@ fn a_step_costs_the_derivatives_it_says() {
     }
 }
 
-/// A system that notes when its rates are asked for.
+/// A system that notes the times at which its rates are asked for.
 #[derive(Default)]
 struct Asked(Vec<f64>);
 
@@ -101,7 +102,7 @@ fn no_rates_are_asked_for_near_the_middle_of_the_widest_interval() {
         let nearest =
             |place: f64| asked.0.iter().fold(place, |near, offset| near.min((offset - place).abs()));
         assert!(nearest(middle) > 0.13, "{method:?}: {middle}");
-        // Nowhere are they farther.
+        // No other place of the step is farther from them.
         let places = (1..1000).map(|place| f64::from(place) / 1000.0);
         let farthest = places.map(|place| nearest(place).min(1.0 - place)).fold(0.0, f64::max);
         assert!(farthest <= nearest(middle) + 1e-12, "{method:?}: {farthest}");
@@ -111,7 +112,7 @@ fn no_rates_are_asked_for_near_the_middle_of_the_widest_interval() {
     }
 }
 
-/// Rates that are powers of the offset, and nothing else.
+/// Rates that are powers of the offset alone.
 struct Powers;
 
 impl Ode for Powers {
@@ -127,7 +128,8 @@ impl Ode for Powers {
 
 #[test]
 fn powers_are_integrated_exactly_also_in_between() {
-    // Exact: t^(k+1) / (k + 1) for k below the order, and for k below the degree of the polynomials.
+    // Exact: t^(k+1) / (k + 1), at the ends for k below the order, and in between for k below the degree of the
+    // polynomials.
     let degrees = [
         (Method::Dop853, 7),
         (Method::DormandPrince5, 4),
@@ -161,7 +163,7 @@ fn powers_are_integrated_exactly_also_in_between() {
 
 #[test]
 fn going_back_returns_to_the_start() {
-    // DOP853 in 160 steps is good to 1e-12 one way (see the closed form in the other tests).
+    // DOP853 in 160 steps is good to 1e-12 one way (see the closed form in the other tests of this module).
     let (steps, step) = (160, TIME / 160.0);
     let (mut stepper, mut planet) = (Stepper::new(Method::Dop853), Planet::default());
     let mut state = exact(0.0);

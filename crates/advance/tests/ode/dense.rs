@@ -31,7 +31,7 @@ fn changed_step(method: Method, change: f64) -> Changed {
     Changed { start, end, end_rates, velocities }
 }
 
-/// Rounding of numbers of the size of this motion.
+/// Rounding of numbers of the size of the motion.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 #[test]
@@ -68,7 +68,7 @@ fn positions_follow_velocities_and_meet_both_ends() {
                 }
                 let Some(mismatch) = mismatch else { continue };
                 if method == Method::Dop853 {
-                    // The bump is steepest in the middle: 3/2 of what is missing over the step.
+                    // The correction is steepest in the middle: 3/2 of the missing difference over the step.
                     let difference = position.derivative_at(0.5 * STEP) - velocity.value_at(0.5 * STEP);
                     assert!(difference.abs() < 3.0 * 1.5 * mismatch / STEP, "{difference:e}");
                     assert!(difference.abs() > 0.1 * mismatch / STEP, "{difference:e}");

@@ -20,7 +20,7 @@ fn position() -> SegmentPolynomial {
     SegmentPolynomial::integrated(start[0], end[0], &velocities[0])
 }
 
-/// The derivative of some order by its definition.
+/// The derivative of a given order by its definition.
 fn derivative_by_powers(polynomial: &SegmentPolynomial, order: usize, offset: f64) -> f64 {
     let s = 2.0 * offset / polynomial.step() - 1.0;
     let unit = (2.0 / polynomial.step()).powi(order as i32);

@@ -4,7 +4,7 @@ use halfgap_advance::ode::{Method, Ode, Point, SegmentPolynomial, Stepper};
 use std::convert::Infallible;
 use std::ops::Range;
 
-/// Components: position (2), velocity (2), and a number that grows by its part `cos t`.
+/// Number of components: position (2), velocity (2), and a number that grows at the relative rate `cos t`.
 pub(crate) const SIZE: usize = 5;
 pub(crate) type State = [f64; SIZE];
 pub(crate) const POSITION: Range<usize> = 0..2;
@@ -104,7 +104,7 @@ pub(crate) fn dense(stepper: &mut Stepper, end: Point<'_>) -> [SegmentPolynomial
 
 const MOST_STEPS: u32 = 10_000;
 
-/// What a solution with step control came to.
+/// Outcome of a solution with step control.
 pub(crate) struct Controlled {
     pub(crate) error: f64,
     pub(crate) steps: u32,

@@ -1,4 +1,4 @@
-//! Systems parts of which decay much faster than anything moves.
+//! Systems with parts that decay much faster than anything moves.
 
 use halfgap_advance::ode::{Method, Ode, Point, SegmentPolynomial, Stepper, is_kept};
 use std::convert::Infallible;
@@ -36,8 +36,8 @@ impl Dragged {
 
 const TIME: f64 = 10.0;
 
-/// Goes on for some time with steps that follow a tolerance, from a velocity; the state, the steps, the
-/// largest error of the velocity between the ends of steps once what is fast is gone.
+/// Integrates for [`TIME`] from a velocity, with steps that follow a tolerance. Returns the state, the number of
+/// steps, and the largest error of the velocity between the ends of steps once the fast part has decayed.
 fn solve(method: Method, velocity: f64, tolerance: f64, most: usize) -> ([f64; 3], usize, f64) {
     let (mut stepper, mut dragged) = (Stepper::new(method), Dragged::default());
     let scales = [tolerance; 2];
@@ -75,21 +75,21 @@ fn steps_follow_the_slow_motion() {
         assert!((state[1] - TIME.cos()).abs() < tolerance, "{tolerance:e}: {state:?}");
         assert!(inner < 10.0 * tolerance, "{tolerance:e}: {inner:e}");
     }
-    // An explicit method needs FAST TIME / 6 of them.
+    // An explicit method needs FAST TIME / 6 steps.
     let (_, steps, _) = solve(Method::Dop853, 1.0, 1e-4, 10_000);
     assert_eq!(steps, 10_000);
 }
 
 #[test]
-fn what_decays_is_followed_as_far_as_the_tolerance_asks() {
-    // From rest the velocity goes to 1 within some 1e-6 s; the heat of that is 1/2.
+fn a_transient_is_followed_as_far_as_the_tolerance_asks() {
+    // From rest the velocity goes to 1 within some 1e-6 s; the heat of that transient is 1/2.
     let (state, _, _) = solve(Method::RadauIia5, 0.0, 1e-8, 100_000);
     assert!((state[2] - 0.5).abs() < 1e-7, "{state:?}");
     assert!((state[1] - TIME.cos()).abs() < 1e-8, "{state:?}");
 }
 
 #[test]
-fn what_has_yet_to_decay_is_not_stepped_over() {
+fn a_transient_that_has_yet_to_decay_is_not_stepped_over() {
     let (mut dragged, mut stepper) = (Dragged::default(), Stepper::new(Method::RadauIia5));
     let scales = [1e-4; 2];
     stepper.set_scales(&scales);
@@ -104,7 +104,7 @@ fn what_has_yet_to_decay_is_not_stepped_over() {
 }
 
 #[test]
-fn what_holds_steps_up_is_told() {
+fn the_decay_that_holds_steps_up_is_told() {
     let mut dragged = Dragged::default();
     for (method, step) in [(Method::Dop853, 3e-6), (Method::DormandPrince5, 2e-6), (Method::RadauIia5, 1e-3)]
     {
@@ -155,7 +155,7 @@ fn motion_that_swings_at_the_limit_of_stability_is_told() {
     }
 }
 
-/// A light lever that turns against a medium to where a force points: angle, spin, and the heat `w^2`.
+/// A light lever that turns against a medium towards the direction of a force: angle, spin, and the heat `w^2`.
 ///
 /// w' = FAST (PULL cos a - w), so that the heat is PULL (sin a - sin a0) - (w^2 - w0^2)/(2 FAST).
 struct Lever;
@@ -174,8 +174,8 @@ impl Ode for Lever {
 
 #[test]
 fn the_heat_of_what_follows_a_slow_motion_is_that_of_where_it_comes_to() {
-    // The spin follows the angle, a correction later; that the first correction, of the angle by all it
-    // turns, leaves little in comparison says nothing about that.
+    // The spin follows the angle one correction later. The first correction, of the angle by all that it turns, leaves
+    // little in comparison, but this says nothing about the spin.
     let (mut lever, mut stepper) = (Lever, Stepper::new(Method::RadauIia5));
     stepper.set_scales(&[1e-13, 5e-9]);
     let (angle, step) = (0.3f64, 3e-5);
@@ -190,7 +190,7 @@ fn the_heat_of_what_follows_a_slow_motion_is_that_of_where_it_comes_to() {
     assert!((end[2] - expected).abs() < 1e-10 * expected, "{end:?}: {expected}");
 }
 
-/// What rests but for the rounding of its rate, which is another each time.
+/// A system at rest whose rate has a rounding error that differs from call to call.
 #[derive(Default)]
 struct Trembling {
     times: f64,
@@ -207,7 +207,7 @@ impl Ode for Trembling {
 }
 
 #[test]
-fn what_rests_goes_long_steps_however_its_rates_are_rounded() {
+fn a_system_at_rest_takes_long_steps_however_its_rates_are_rounded() {
     let (mut trembling, mut stepper) = (Trembling::default(), Stepper::new(Method::RadauIia5));
     let scales = [1e-8];
     stepper.set_scales(&scales);
@@ -220,7 +220,7 @@ fn what_rests_goes_long_steps_however_its_rates_are_rounded() {
     }
 }
 
-/// Rates that are no numbers.
+/// A system whose rates are NaN.
 struct Nothing;
 
 impl Ode for Nothing {
@@ -240,7 +240,7 @@ fn a_state_that_is_not_found_is_told_and_is_the_start() {
     assert_eq!((end, stepper.error_norm(&[1.0])), ([2.0], f64::INFINITY));
 }
 
-/// What runs dry: the rates are no numbers below zero.
+/// A tank that runs dry: its rate is NaN below zero.
 struct Tank;
 
 impl Ode for Tank {
@@ -294,7 +294,7 @@ impl Ode for Pair {
 }
 
 #[test]
-fn what_becomes_fast_in_place_of_something_else_is_told() {
+fn a_component_that_becomes_fast_in_place_of_another_is_told() {
     let (mut stepper, step, scales) = (Stepper::new(Method::RadauIia5), 1e-2, [1e-6; 2]);
     stepper.set_scales(&scales);
     let mut told = |decay: [f64; 2], steps: usize| {

@@ -1,4 +1,4 @@
-//! Bounces that end: those lower than the target zone is wide are cut off, and their time is told.
+//! Bounces that end: bounces lower than the target zone is wide are cut off, and their time is told.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -11,7 +11,7 @@ const GRAVITY: f64 = 10.0;
 /// Drop to the target gap [m].
 const DROP: f64 = 1.25;
 
-/// A ball above a floor, in a world that takes any speed for fast but the least.
+/// A ball above a floor, in a world where every speed but the least counts as fast.
 fn ball(elasticity: f64) -> RigidSystem {
     let tolerances = Tolerances { velocity_tol: 1e-11, ..TOLERANCES };
     let height = DROP + 0.5 + TOLERANCES.target_gap;
@@ -24,9 +24,9 @@ fn ball(elasticity: f64) -> RigidSystem {
         .expect("nothing touches")
 }
 
-/// What the end of a ball's bounces was like.
+/// End of a ball's bounces.
 struct Rest {
-    /// Time [s] at which the contact began, and how long [s] it is said to have gone on bouncing.
+    /// Time [s] at which the contact began, and time [s] for which the bounces cut off would have gone on.
     begin: f64,
     bouncing: f64,
     /// Speed [m/s] before the last impact, and after it.
@@ -76,7 +76,7 @@ fn the_time_of_the_bounces_cut_off_is_told() {
             "e = {elasticity}: {} s, {left} s",
             rest.bouncing
         );
-        // A fall of T, then bounces of 2 e T, 2 e^2 T and so on.
+        // A fall of duration T, then bounces of 2 e T, 2 e^2 T and so on.
         let fall = (2.0 * DROP / GRAVITY).sqrt();
         let at_rest = fall * (1.0 + elasticity) / (1.0 - elasticity);
         let error = rest.begin + rest.bouncing - at_rest;
@@ -85,7 +85,7 @@ fn the_time_of_the_bounces_cut_off_is_told() {
 }
 
 #[test]
-fn what_does_not_bounce_has_no_bounces_to_cut_off() {
+fn a_ball_without_bounce_has_no_bounces_to_cut_off() {
     let rest = rest(0.0);
     assert_eq!((rest.bouncing, rest.impacts), (0.0, 1));
 }

@@ -1,5 +1,5 @@
-//! Events in the middle of steps: contacts are met at their target gap however loose the steps are, and what is held
-//! stays where it was.
+//! Events in the middle of steps: contacts are met at their target gap however loose the steps are, and held rows stay
+//! where they were.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -29,7 +29,7 @@ impl ForceLaw for Home {
     }
 }
 
-/// The least gap [m] with which a disc meets a wall, that swings to and fro by a little more than there is room.
+/// Least gap [m] at which a disc meets a wall, if it swings to and fro by a little more than there is room.
 fn gap_of_a_swing(room: f64, until: f64) -> f64 {
     let mut disc = body(&disc(0.5), moving(DVec2::new(-1.0, 0.0), DVec2::ZERO, 0.0));
     disc.body.inverse_mass = 1.0;
@@ -49,7 +49,7 @@ fn gap_of_a_swing(room: f64, until: f64) -> f64 {
 
 #[test]
 fn a_slow_contact_is_met_at_its_target_by_steps_that_err_by_more() {
-    // It turns back at 1 m: so near to that, it is slower than what elasticity acts on.
+    // The disc turns back at 1 m: that near to it, it is slower than the speed from which elasticity acts.
     let gap = gap_of_a_swing(1.0 - 1e-5, 4.0);
     assert!((gap - TOLERANCES.target_gap).abs() <= TOLERANCES.accuracy, "{gap:e} m");
 }

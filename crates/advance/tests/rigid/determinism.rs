@@ -1,4 +1,5 @@
-//! The same input gives the same bits, however it is asked for; what was done can be undone.
+//! Determinism: the same input gives the same bits, in whatever pieces the run is asked for, and a motion can be
+//! undone.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -38,7 +39,7 @@ fn a_thousand_pieces_end_in_the_same_bits_as_one() {
     for piece in 1..=1000 {
         let time = 20.0 * f64::from(piece) / 1000.0;
         advance(&mut pieces, time).expect("a lively box");
-        // Reading changes nothing.
+        // Reading a state changes nothing.
         assert!(energy(&pieces, time) > 0.0);
     }
     assert_eq!(bits(&whole, 20.0), bits(&pieces, 20.0));

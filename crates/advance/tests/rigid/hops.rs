@@ -1,4 +1,4 @@
-//! Hops of what is kicked open and comes back at once: those that stay within the target zone, and in which
+//! Hops of contacts that are kicked open and come back at once: hops that stay within the target zone, and in which
 //! nothing moves much, are held from the kick on.
 
 use crate::box_of_bodies::*;
@@ -14,13 +14,13 @@ const KICK: f64 = 1.0;
 /// Time [s] long after the kick.
 const END: f64 = 2.0;
 
-/// A disc that rests on a floor, and another, as heavy and without weight, that flies at it so as to give it an upward
-/// speed [m/s], small against its own.
+/// A disc that rests on a floor, and another disc, as heavy but without weight, that flies at it and gives it an
+/// upward speed [m/s] that is small against its own.
 fn kicked(gravity: f64, upward: f64) -> RigidSystem {
     kicked_where_fast_is(1e-3, gravity, upward)
 }
 
-/// The same where speeds [m/s] are fast from a given one on.
+/// The kicked disc in a system where speeds [m/s] count as fast from a given one on.
 fn kicked_where_fast_is(velocity_tol: f64, gravity: f64, upward: f64) -> RigidSystem {
     let height = RADII[0] + TOLERANCES.target_gap;
     let mut resting = body(&disc(RADII[0]), moving(DVec2::new(0.0, height), DVec2::ZERO, 0.0));
@@ -38,12 +38,12 @@ fn kicked_where_fast_is(velocity_tol: f64, gravity: f64, upward: f64) -> RigidSy
     system
 }
 
-/// Upward speed [m/s] of a hop to a part of the accuracy.
+/// Upward speed [m/s] of a hop whose height is a fraction of the accuracy.
 fn speed_to(part: f64, gravity: f64) -> f64 {
     (2.0 * gravity * part * TOLERANCES.accuracy).sqrt()
 }
 
-/// Checks that the disc slides along the floor at its target gap, and returns how many impacts that took.
+/// Checks that the disc slides along the floor at its target gap, and returns the number of impacts.
 fn impacts(system: &RigidSystem) -> u64 {
     let state = states(system, END)[1];
     assert!((state.position.y - RADII[0] - TOLERANCES.target_gap).abs() < 1e-13, "{state:?}");
@@ -56,7 +56,7 @@ fn a_short_hop_within_the_target_zone_is_held_from_the_kick_on() {
     let upward = speed_to(0.3, 10.0);
     let system = kicked(10.0, upward);
     assert_eq!(impacts(&system), 1);
-    // What the hop would have lost where it lands is lost at once.
+    // The energy that the hop would have lost at its landing is lost at once.
     let lost = 0.5 * upward * upward / system.flyer(halfgap_collision::BodyId(1)).body().inverse_mass;
     let captures = system.ledger_at(Time::from_seconds(END)).captures;
     assert!((captures / -lost - 1.0).abs() < 1e-6, "{captures} J of {lost} J");
@@ -76,6 +76,6 @@ fn a_hop_that_leaves_the_target_zone_is_flown() {
 
 #[test]
 fn a_hop_in_which_its_body_slides_on_is_flown() {
-    // It takes a millisecond: there is time for forces to change.
+    // The hop takes a millisecond: there is time for forces to change.
     assert_eq!(impacts(&kicked(1e-4, speed_to(0.3, 1e-4))), 2);
 }

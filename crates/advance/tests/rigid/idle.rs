@@ -1,4 +1,5 @@
-//! What touches without force, or is taut without one, is watched from step to step: the search does not look for it.
+//! Contacts that touch without force, and ropes that are taut without force, are watched from step to step: the search
+//! does not look for them.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -6,9 +7,9 @@ use halfgap_advance::Time;
 use halfgap_advance::rigid::{RigidParts, RigidSystem};
 use halfgap_collision::{Anchor, BodyId, BodyState, Connector, ConnectorKind};
 
-/// Times at which anything happens, in a few swings: far fewer than there are looks of a search.
+/// Number of times at which anything happens in a few swings: far fewer than a search would look.
 const FEW: u64 = 1000;
-/// How long [s] is looked at.
+/// Duration [s] of a run.
 const WHILE: f64 = 3.0;
 
 /// Discs of radius 0.5 m that touch side by side, each on rods or ropes of 1 m from above, let go at 0.5 rad.
@@ -41,7 +42,7 @@ fn rope(a: Anchor, b: Anchor) -> ConnectorKind {
     ConnectorKind::Rope { a, b, length: 1.0 }
 }
 
-/// Requires that the bodies swing as one without them would, and that little is looked at.
+/// Requires that the bodies swing as a single one does, and that few events are handled.
 fn require_idle(mut system: RigidSystem, alone: &mut RigidSystem, what: &str) {
     advance(&mut system, WHILE).expect("it swings");
     advance(alone, WHILE).expect("it swings");

@@ -1,4 +1,4 @@
-//! Nothing tunnels: brute force looks at every two bodies at many times.
+//! Nothing tunnels: brute force checks every two bodies at many times.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -39,7 +39,7 @@ fn mixed_shapes() -> Vec<Shape> {
     ]
 }
 
-/// Advances in small steps and looks at all pairs after each.
+/// Advances in small steps and checks all pairs after each.
 fn watch(system: &mut RigidSystem, until: f64, steps: u32) {
     let nearest = TOLERANCES.target_gap - 2.0 * TOLERANCES.accuracy;
     for step in 1..=steps {
@@ -69,7 +69,7 @@ fn mixed_shapes_tumble_in_a_box_without_touching_deeper_than_allowed() {
 fn nothing_tunnels_while_all_are_pulled_and_damped() {
     let mut parts = crowd(&mixed_shapes(), 2.0, &mut Random(9));
     for (index, part) in parts.iter_mut().enumerate() {
-        // Each its own way, so that pairs accelerate against each other.
+        // Each body is pulled in a direction of its own, so that pairs accelerate against each other.
         part.law.acceleration = DVec2::from_angle(index as f64) * 0.5;
         part.law.linear_rate = 0.02 * (index % 3) as f64;
         part.law.angular_rate = 0.03 * (index % 2) as f64;
@@ -109,8 +109,8 @@ fn excluded_pairs_pass_through_each_other() {
 
 #[test]
 fn a_body_set_spinning_in_place_is_seen_to_sweep_more_room_than_it_had() {
-    // Two discs hit a resting bar at the same time at its two ends from opposite sides: it spins, but does
-    // not move, and its tips reach a disc that was outside of its box.
+    // Two discs hit a resting bar at the same time at its two ends from opposite sides: it spins without moving, and
+    // its tips reach a disc that was outside of its box.
     let bar = body(&block(4.0, 0.1), BodyState::default());
     let hit = |x: f64, v: f64| body(&disc(0.25), moving(DVec2::new(x, -v), DVec2::new(0.0, v), 0.0));
     let target = body(&disc(0.25), moving(DVec2::new(0.0, 1.5), DVec2::ZERO, 0.0));

@@ -1,4 +1,4 @@
-//! Pace: steps that would never come to an end are told.
+//! Pace: a run whose steps would never reach its end is told.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 struct Hum;
 
-/// At which it swings [rad/s].
+/// Frequency [rad/s] of its swing.
 const FREQUENCY: f64 = 1e8;
 
 impl ForceLaw for Hum {
@@ -30,7 +30,7 @@ impl ForceLaw for Hum {
     }
 }
 
-/// Advances a body that hums by the time of some 150,000 steps, where the whole takes so many seconds.
+/// Advances a humming body through some 150,000 steps of a run with the given duration [s].
 fn hum(duration: f64) -> (Result<(), AdvanceError>, RigidSystem) {
     let disc = body(&disc(0.5), moving(DVec2::new(1e-3, 0.0), DVec2::ZERO, 0.0));
     let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(Hum)], ..RigidParts::default() };

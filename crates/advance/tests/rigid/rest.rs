@@ -1,4 +1,4 @@
-//! What stops on something stays there, and is told.
+//! Rest: a body that stops on another stays there, and its contact is told.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -60,8 +60,8 @@ fn a_ball_that_slides_off_the_edge_falls_freely() {
     .expect("it falls");
     assert_eq!(ends.len(), 2, "the contact changes from edge to vertex and ends: {ends:?}");
     assert!((ends[0] - 2.5).abs() < 1e-9, "{ends:?}");
-    // About the vertex it leaves where the force that turns it is all of gravity along the radius: v^2 = g r
-    // cos a, with v^2 = v0^2 + 2 g r (1 - cos a), so that cos a = v0^2/(3 g r) + 2/3.
+    // The ball leaves the vertex where the force that turns it is all of gravity along the radius: v^2 = g r cos a,
+    // with v^2 = v0^2 + 2 g r (1 - cos a), so that cos a = v0^2/(3 g r) + 2/3.
     let radius = 0.5 + TOLERANCES.target_gap;
     let cosine = 2.0 * 2.0 / (3.0 * GRAVITY * radius) + 2.0 / 3.0;
     assert!(cosine < 1.0);

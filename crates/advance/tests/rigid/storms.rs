@@ -5,13 +5,14 @@ use glam::DVec2;
 use halfgap_advance::rigid::{RigidParts, RigidSettings, RigidSystem};
 use halfgap_advance::{Time, advance_until};
 
-/// Time [s] at which all is over.
+/// Time [s] at which the run ends.
 const END: f64 = 2.0;
-/// Speeds [m/s] of the light disc: slower than what closes in on it, or much faster.
+/// Speeds [m/s] of the light disc: slower than the heavy discs that close in on it, or much faster.
 const SLOW: f64 = 0.3;
 const FAST: f64 = 30.0;
 
-/// Two discs that close in on a third, so many times lighter, so far [m] from each, and so fast [m/s].
+/// Two discs of 1 kg that close in on a third with a larger inverse mass [1/kg], a distance [m] from each of them,
+/// which moves at a speed [m/s].
 fn vise(resolution_time: f64, lighter: f64, room: f64, speed: f64) -> RigidSystem {
     let mut light = body(&disc(0.1), moving(DVec2::ZERO, DVec2::new(speed, 0.0), 0.0));
     (light.body.inverse_mass, light.body.inverse_moment) = (lighter, 100.0 * lighter);
@@ -35,7 +36,7 @@ fn momentum(system: &RigidSystem, time: f64) -> f64 {
     bodies(system).map(of).sum()
 }
 
-/// Lets a system run to the end without a storm: more impacts than so many, and all energy kept.
+/// Lets a system run to the end without a storm: with more than `impacts` impacts, and all energy kept.
 fn goes_on_elastically(system: &mut RigidSystem, impacts: u64) {
     let before = energy(system, 0.0);
     advance(system, END).expect("they part again");
@@ -46,13 +47,13 @@ fn goes_on_elastically(system: &mut RigidSystem, impacts: u64) {
 }
 
 #[test]
-fn what_forces_can_resolve_is_no_storm_however_many_impacts_there_are() {
+fn a_motion_that_forces_can_resolve_is_no_storm_however_many_impacts_there_are() {
     let mut system = vise(1e-10, 1e4, 0.5, SLOW);
     goes_on_elastically(&mut system, 150);
     assert_eq!(system.ledger_at(Time::from_seconds(END)).captures, 0.0);
 }
 
-/// Lets a light disc be crushed within the resolution time: just so many impacts are elastic.
+/// Lets a light disc be crushed within the resolution time: exactly the first `calm` impacts are elastic.
 fn ends_after(calm: usize, lighter: f64, room: f64, speed: f64) {
     let mut system = vise(2.0 * END, lighter, room, speed);
     let (energy_before, momentum_before) = (energy(&system, 0.0), momentum(&system, 0.0));
@@ -66,10 +67,10 @@ fn ends_after(calm: usize, lighter: f64, room: f64, speed: f64) {
     }
     let (before, after) = rates[calm];
     assert!(before < -1.0 && after.abs() < 1e-12 * -before, "from {before} to {after} m/s");
-    // Then the light one lies on a heavy one, and the other drives both back.
+    // After that the light disc lies on a heavy one, and the other drives both back.
     assert!(rates.len() < calm + 20, "{} impacts", rates.len());
     assert_eq!(system.counts().storms, 1);
-    // What is lost is just what the inelastic impact took: m/2 times the square of its closing speed, nearly.
+    // The energy lost is just that of the inelastic impact: nearly m/2 times the square of its closing speed.
     let ledger = system.ledger_at(Time::from_seconds(END));
     let lost = 0.5 * before * before / (lighter + 1.0);
     assert!((ledger.captures + lost).abs() < 1e-12, "{ledger:?}, {lost} J");
@@ -81,23 +82,23 @@ fn ends_after(calm: usize, lighter: f64, room: f64, speed: f64) {
 
 #[test]
 fn one_impact_more_than_a_row_may_have_in_the_resolution_time_is_without_elasticity() {
-    // Twenty events and ten for the one row that each of them has.
+    // A region of one row may have twenty events, and ten more for that row.
     ends_after(30, 1e10, 4.0 * TOLERANCES.target_gap, FAST);
 }
 
 #[test]
-fn what_goes_far_between_its_impacts_may_have_fifty_times_as_many() {
+fn a_disc_that_goes_far_between_its_impacts_may_have_fifty_times_as_many() {
     ends_after(1500, 1e10, 0.5, SLOW);
 }
 
 #[test]
-fn what_would_cost_much_energy_may_have_as_many_though_it_goes_nowhere() {
+fn costly_impacts_may_be_fifty_times_as_many_though_the_disc_goes_nowhere() {
     let mut system = vise(2.0 * END, 1e4, 4.0 * TOLERANCES.target_gap, FAST);
     goes_on_elastically(&mut system, 100);
 }
 
 #[test]
-fn what_would_cost_much_energy_may_have_a_hundred_times_as_many_again() {
+fn costly_impacts_far_apart_may_be_a_hundred_times_as_many_again() {
     let mut system = vise(2.0 * END, 1e8, 0.5, SLOW);
     let before = energy(&system, 0.0);
     advance(&mut system, END).expect("they part again");

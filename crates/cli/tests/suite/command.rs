@@ -1,4 +1,4 @@
-//! The command as a user meets it: exit codes, messages, JSON and files.
+//! The command, as users meet it: exit codes, messages, JSON and files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ position_tolerance = 1e-9
 position = [2.0, 0.0]
 "#;
 
-/// A folder of a test's own, removed when the test is over.
+/// A folder that one test has to itself, removed when the test is over.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -148,7 +148,7 @@ fn out_writes_recording_and_pictures() {
     let recording: serde_json::Value = serde_json::from_str(&read("recording.json")).expect("JSON");
     assert_eq!(recording["frames"].as_array().map(Vec::len), Some(4));
     assert!(read("result.json").contains("\"status\":\"done\""));
-    // There are no more times in between.
+    // There are no more output times in between.
     assert!(!Path::new(&folder.path("out/picture-0002.svg")).exists());
     for (name, time) in [("picture-0000.svg", "t = 0.750 s"), ("picture-0001.svg", "t = 1.500 s")] {
         assert!(read(name).contains(time), "{name}");
@@ -161,7 +161,7 @@ fn out_writes_recording_and_pictures() {
         "arcs are drawn as arcs: {}",
         read("end.svg")
     );
-    // What an earlier run of more pictures has left would seem to be of this one.
+    // Pictures that an earlier, longer run has left would seem to belong to this run.
     assert_eq!(halfgap(&["run", &scene, "--out", &out, "--pictures", "1", "--quiet"]).status.code(), Some(0));
     let is_there = |name: &str| Path::new(&out).join(name).exists();
     assert_eq!(["picture-0000.svg", "picture-0001.svg"].map(is_there), [true, false]);
@@ -421,7 +421,7 @@ fn sweep_gives_the_same_bits_on_many_threads_as_one_run_at_a_time() {
     let table = sweep("1");
     assert_eq!(sweep("4"), table);
     assert_eq!(table.lines().count(), 41);
-    // A run alone, of a file that says what the sweep put in.
+    // A run alone, of a file that holds the value that the sweep put in.
     let alone = BOUNCE.replace("name = \"ball\"", "name = \"ball\"\nelasticity = 0.3");
     let alone = json(&halfgap(&["run", &folder.write("alone.toml", &alone), "--json"]));
     let first: Vec<_> = table.lines().nth(1).expect("a first run").split(',').collect();
@@ -471,7 +471,7 @@ fn sweep_goes_on_past_a_value_of_which_no_world_can_be_made() {
     assert_eq!(object["runs"][1]["result"]["status"], "done");
 }
 
-/// A bar that a pin and a slot hold to second order only: once it turns, no forces keep it in both.
+/// A bar that a pin and a slot hold to second order only: once it turns, no forces keep it on both.
 const LOCKED: &str = r#"format = "halfgap-scene-1"
 title = "Locked"
 run = { duration = 1.0 }
@@ -511,7 +511,7 @@ fn a_contact_problem_that_stops_a_run_is_kept_and_can_be_replayed() {
     let output = halfgap(&["solve", &problem]);
     assert_eq!(output.status.code(), Some(3));
     assert!(folder.plain(&output.stdout).contains("INFEASIBLE"));
-    // A later run that does not stop takes it away.
+    // A later run that does not stop removes the file.
     let flight = folder.write("flight.toml", FLIGHT);
     assert_eq!(halfgap(&["run", &flight, "--quiet", "--out", &out]).status.code(), Some(0));
     assert!(!Path::new(&problem).exists());

@@ -1,9 +1,9 @@
-//! Two runs of the command write the same bytes, apart from the time they took.
+//! Two runs of the command write the same bytes, apart from their run times.
 
 use std::path::Path;
 use std::process::Command;
 
-/// Runs a scene into a folder of its own and reads back what was written, by file.
+/// Runs a scene into a folder of its own and returns the contents of the files written.
 fn files_of(run: &str) -> Vec<(String, String)> {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/capsules_in_a_round_room.toml");
     let folder = std::env::temp_dir().join(format!("halfgap-determinism-{run}-{}", std::process::id()));

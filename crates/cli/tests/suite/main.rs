@@ -1,4 +1,4 @@
-//! The command, run as a user runs it.
+//! The command, run as users run it.
 
 mod command;
 mod determinism;

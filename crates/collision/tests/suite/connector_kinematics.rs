@@ -10,9 +10,10 @@ use halfgap_geometry::{EdgeSpec, Rotation};
 use proptest::prelude::*;
 use std::sync::Arc;
 
-/// What the differences below are good for, relative to the scale of the terms; the formulas are exact.
+/// Tolerance of the differences below, relative to the scale of the terms; the formulas are exact.
 const DIFFERENCE: f64 = 1e-8;
-/// Steps [s] of the differences, at which rounding and truncation stay below that: order 8, h^8 against eps/h^2.
+/// Steps [s] of the differences, at which rounding and truncation stay below the tolerance: order 8, h^8 against
+/// eps/h^2.
 const STEP: f64 = 0.004;
 /// Kinds of cases.
 const KINDS: usize = 16;
@@ -59,7 +60,7 @@ impl Case {
         [speed, push + speed * (spin + 4.0 * speed)]
     }
 
-    /// How far from the centres of mass the row may act [m].
+    /// Largest distances [m] from the centres of mass at which the row may act.
     fn anchor_distances(&self) -> [f64; 2] {
         let sample = self.sample(0.0);
         let apart = (self.paths[0].position - self.paths[1].position).length();
@@ -70,7 +71,7 @@ impl Case {
 
     /// True if the gap is smooth over the differences, at a place where its terms are not large.
     fn is_smooth(&self) -> bool {
-        // A stop on a closed rail jumps by a lap somewhere.
+        // The gap of a stop on a closed rail jumps by a lap somewhere.
         let [first, last] = [-4.0 * STEP, 4.0 * STEP].map(|t| self.sample(t).gap);
         (last - first).abs() < 0.5 && self.has_smooth_curve()
     }
@@ -83,7 +84,7 @@ impl Case {
         });
         match (a.1, b.1) {
             (Some(first), Some(last)) => {
-                // At its ends a natural spline has a continuous curvature, but no more.
+                // At its ends a natural spline has a continuous curvature, but no continuous derivative of it.
                 let ends = [0.0, self.connector.path().map_or(0.0, |path| path.length())];
                 let room = |place: &halfgap_collision::RailPlace| 1.0 - place.curvature() * place.gap();
                 first.piece() == last.piece()
@@ -297,7 +298,7 @@ fn a_slot_that_turns_carries_its_point_outwards() {
     let arm = Path { spin: 2.0, ..STILL };
     let sample = slot.measure(0, &bead.at(0.0), &arm.at(0.0));
     assert_eq!((sample.gap, sample.kinematics.rate), (0.0, 0.0));
-    // Coriolis: the bead would have to be pushed with 2 w u.
+    // Coriolis: the bead needs a push of 2 w u.
     assert_eq!(sample.kinematics.gamma, -20.0);
 }
 

@@ -1,4 +1,4 @@
-//! Connectors as a whole: what they refuse, how far off they are, how they are aligned, their records.
+//! Connectors as a whole: the ones that are refused, their errors, their alignment, their records.
 
 use glam::DVec2;
 use halfgap_collision::{
@@ -52,7 +52,7 @@ fn rail_kinds() -> Vec<ConnectorKind> {
 
 #[test]
 fn a_slot_of_the_world_acts_on_a_body_at_the_point_of_the_body() {
-    // It may begin far away: what it is there is the same everywhere along it.
+    // The slot may begin far away: it is the same everywhere along it.
     let (far, own) = (Anchor { body: BodyId::WORLD, point: DVec2::new(9.0, -3.0) }, anchor(0, 0.3, -0.2));
     let (body, normal) = (still(1.0, 2.0, 0.4), DVec2::new(0.6, 0.8));
     let place = body.pose.point_to_world(own.point);
@@ -110,7 +110,7 @@ fn aligned_connectors_are_satisfied() {
 }
 
 #[test]
-fn what_is_satisfied_is_not_moved() {
+fn a_satisfied_connector_moves_no_body() {
     let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
     let rope = fine(ConnectorKind::Rope { a, b, length: 2.0 });
     let near = [still(0.5, 0.0, 0.0), still(0.0, 1.0, 0.0)];
@@ -135,8 +135,8 @@ fn a_stop_counts_what_is_left_of_the_rail() {
     assert!((gap(&arch(), 3.0, true, &top) - (3.0 - quarter)).abs() < 1e-15);
     // Beyond the end the rail goes on straight down.
     assert!((gap(&arch(), 0.0, false, &still(2.0, -0.3, 0.0)) + 0.3).abs() < 1e-15);
-    // On a closed rail what lies by next to nothing beyond the stop is at it; else it has come round, unless it is known that
-    // it was nearer.
+    // On a closed rail a point that lies beyond the stop by next to nothing is at the stop; any other point has come
+    // round, unless it is known that it was nearer.
     let start = DVec2::new(2.0, 0.0);
     let circle = [EdgeSpec::Arc { to: start, center: DVec2::ZERO, clockwise: false }];
     let circle = Arc::new(RailPath::from_edges(start, &circle).expect("a fine circle"));
@@ -200,7 +200,7 @@ fn a_point_that_a_rail_has_seen_may_be_on_a_continuation_that_passes_the_path() 
 }
 
 #[test]
-fn what_is_no_connector_is_refused() {
+fn bad_connectors_are_refused() {
     let (a, b) = (anchor(0, 0.0, 0.0), anchor(1, 0.0, 0.0));
     let refused = |kind| Connector::new(kind, 0.5).expect_err("no connector");
     assert_eq!(refused(ConnectorKind::Pin { a, b: a }), ConnectorError::SameBody);
@@ -254,13 +254,13 @@ fn a_connector_has_a_record_for_every_row() {
             match connector.kind {
                 ConnectorKind::Rod { length, .. } => assert_eq!(radius, Some(length)),
                 ConnectorKind::Rope { length, .. } => assert_eq!(radius, Some(-length)),
-                // Seen from its left, an arch to the left is hollow.
+                // Seen from its left, an arch that turns left is hollow.
                 ConnectorKind::Rail { .. } => assert_eq!(radius, Some(-2.0)),
                 _ => {}
             }
             records.push(record);
         }
-        // Neither rows of one connector nor those of two are ever one collision.
+        // Neither two rows of one connector nor rows of two connectors are ever one collision.
         records.extend(records.clone());
         merge_collisions(&mut records);
         assert_eq!(records.len(), 2 * connector.row_count());

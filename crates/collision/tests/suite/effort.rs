@@ -1,4 +1,4 @@
-//! What a search looks at: no more than can matter.
+//! Effort of a search: it looks at no more than can matter.
 
 use glam::DVec2;
 use halfgap_collision::{
@@ -10,7 +10,7 @@ use std::cell::Cell;
 
 const TOLERANCES: Tolerances = Tolerances { target_gap: 1e-8, accuracy: 6e-9, velocity_tol: 1e-9 };
 
-/// A flight that counts how often somebody asks where its body is.
+/// A flight that counts the queries for the place of its body.
 struct Counted {
     flight: Flight,
     looks: Cell<u32>,
@@ -55,7 +55,7 @@ impl Motion for Counted {
     }
 }
 
-/// What is found of two shapes within a second, and how often that has looked where the first is.
+/// Result of a search of two shapes over one second, and the number of queries for the place of the first.
 fn search(shapes: [&Shape; 2], motions: [&Counted; 2]) -> (Search, u32) {
     let [a, b] = [0, 1].map(|side| MovingShape { shape: shapes[side], motion: motions[side], offset: 0.0 });
     let found = first_contact(&a, &b, 1.0, &TOLERANCES, &SearchSettings::STANDARD);
@@ -74,7 +74,7 @@ fn blocks_that_fly_side_by_side_are_seen_not_to_meet_at_a_glance() {
 
 #[test]
 fn corners_that_cross_a_ring_are_not_looked_at_all_the_way() {
-    /// Far fewer than there are for each corner in each window of time.
+    /// Bound far below the number of looks for each corner in each window of time.
     const MOST_LOOKS: u32 = 60;
     let ring = Shape::ring(2.2, 2.0).expect("a fine ring");
     for corners in [4, 12] {
@@ -93,7 +93,7 @@ fn corners_that_cross_a_ring_are_not_looked_at_all_the_way() {
 
 #[test]
 fn a_pin_that_is_slow_in_its_hole_is_not_followed_at_the_pace_of_its_bodies() {
-    /// Clearance [m], and the speed [m/s] at which pin and hole come together while both go round at metres a second.
+    /// Clearance [m], and speed [m/s] at which pin and hole come together while both go round at metres a second.
     const CLEARANCE: f64 = 1e-5;
     const SPEED: f64 = 1e-4;
     const MOST_LOOKS: u32 = 1000;

@@ -9,11 +9,11 @@ use halfgap_collision::{
 };
 use halfgap_geometry::{EdgeSpec, Feature, FeatureId, PathSpec, Pose, Shape};
 
-/// Pairs of bodies that are tried.
+/// Number of pairs of bodies that are tried.
 const PAIRS: u64 = 10_000;
-/// Samples of a span before refinement.
+/// Number of samples of a span before refinement.
 const SAMPLES: u32 = 100;
-/// A sampled least gap within this part of the scale of the target may count as a contact or not.
+/// A sampled least gap within this fraction of the scale from the target may count as a contact or not.
 const UNDECIDED: f64 = 1e-10;
 
 /// A crescent: a convex and a concave arc.
@@ -70,7 +70,7 @@ struct Case {
 }
 
 impl Case {
-    /// Body a flies towards body b; every class of awkwardness gets its share.
+    /// Generates motions in which body a flies towards body b; every class of awkwardness gets its share.
     fn generate(random: &mut Random) -> Option<Self> {
         let class = random.next() % 6;
         let thin = class == 1;
@@ -161,13 +161,13 @@ impl Case {
     }
 }
 
-/// What sampling sees: the first time at or below the target, and the least height.
+/// Result of sampling: the first time at or below the target, and the least height.
 struct Sampled {
     first: Option<f64>,
     least: f64,
 }
 
-/// Steps as far as the speed bound allows, at least a sample's length; looks closer where the height has a dip.
+/// Samples in steps as long as the speed bound allows, at least a sample's length; refines where the height has a dip.
 fn sample(case: &Case) -> Sampled {
     let fastest = case.fastest();
     let floor = (case.span / f64::from(SAMPLES)).min(0.02 * case.scale() / fastest);
@@ -213,7 +213,7 @@ fn lowest(case: &Case, mut low: f64, mut high: f64) -> (f64, f64) {
     best
 }
 
-/// Where the height crosses zero between a time above and a time at or below, by bisection.
+/// The time at which the height crosses zero, by bisection between a time above and a time at or below zero.
 fn crossing(case: &Case, mut above: f64, mut below: f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (above + below);
@@ -296,7 +296,7 @@ fn nothing_is_proven_of_what_is_no_number() {
 
 #[test]
 fn a_speck_far_above_a_floor_is_searched_in_one_call() {
-    // Its first windows are as short as it takes to fall its own size.
+    // The first windows are as short as the time in which the speck falls its own size.
     let (floor, speck) =
         (Shape::block(10.0, 1.0).expect("a fine block"), Shape::disc(1e-9).expect("a fine radius"));
     let rest = Flight::fixed(DVec2::new(0.0, -0.5), 0.0);
@@ -311,7 +311,8 @@ fn a_speck_far_above_a_floor_is_searched_in_one_call() {
     assert!((found.time - 0.4f64.sqrt()).abs() < 1e-9, "{found:?}");
 }
 
-/// The time [s] at which a disc of a radius [m] that falls from half a metre above a height [m] first touches a shape.
+/// The time [s] at which a disc of a given radius [m], which falls from half a metre above a height [m], first touches
+/// a shape.
 fn falls_onto(shape: &Shape, radius: f64, place: DVec2) -> Option<f64> {
     let disc = Shape::disc(radius).expect("a fine radius");
     let rest = Flight::fixed(DVec2::ZERO, 0.0);
@@ -403,10 +404,10 @@ fn a_rule_with_a_wider_gap_than_all_others_fires() {
     assert_eq!(search.step(0.0, 1e-3), Search::Contact(found));
 }
 
-/// A disc leaves a corner of the ground so slowly that it has sunk below the target gap of the next side by the time
-/// that it comes over it, while the corner, which it touched before, fires later.
+/// A disc leaves a corner of the ground slowly: by the time that it comes over the next side, it has sunk below the
+/// target gap of that side, while the corner, which it touched before, fires later.
 #[test]
-fn what_sinks_beside_a_side_touches_it_when_it_comes_upon_it() {
+fn a_disc_that_sinks_beside_a_side_touches_it_when_it_comes_upon_it() {
     let corners = [
         (22.56, -3.0),
         (22.56, 0.195_099_590_626_241_71),
@@ -444,8 +445,8 @@ fn what_sinks_beside_a_side_touches_it_when_it_comes_upon_it() {
 
 #[test]
 fn a_rule_with_a_gap_far_below_the_surface_fires_however_short_the_search() {
-    // The corner of a block 5 mm below a floor's surface goes on into it, and less far than it is deep while
-    // it is searched.
+    // The corner of a block is 5 mm below a floor's surface and goes on into the floor, during the search by less than
+    // that depth.
     let floor = Shape::block(4.0, 1.0).expect("a fine floor");
     let block = Shape::block(1.3, 0.1).expect("a fine block");
     let (tilt, speed, deep) = (-0.01_f64, 12.0, 5e-3);
@@ -463,7 +464,7 @@ fn a_rule_with_a_gap_far_below_the_surface_fires_however_short_the_search() {
     let features = |shape: &Shape| (0..).map(FeatureId).take(shape.features().len()).collect::<Vec<_>>();
     let all = features(&floor).into_iter().flat_map(|a| features(&block).into_iter().map(move |b| [a, b]));
     let rules: Vec<FeatureRule> = all.map(|features| FeatureRule { features, target: Some(-6e-3) }).collect();
-    // Windows only: more pairs than are tried at once.
+    // Windows only: there are more pairs than the search tries directly.
     let settings = SearchSettings { direct_pairs: 0, ..SearchSettings::default() };
     let search =
         PairSearch { a: &side_a, b: &side_b, tolerances: &tolerances, settings: &settings, rules: &rules };
@@ -473,7 +474,7 @@ fn a_rule_with_a_gap_far_below_the_surface_fires_however_short_the_search() {
 
 #[test]
 fn corners_that_come_out_past_each_other_at_no_distance_do_not_meet() {
-    // A block falls along the side of a tower of which it has come past the lower end but for its upper corner.
+    // A block falls along the side of a tower; all of it has passed the tower's lower end but its upper corner.
     let (tower, block) =
         (Shape::block(1.0, 4.0).expect("a fine tower"), Shape::block(1.0, 1.0).expect("a fine block"));
     let tolerances = Tolerances { target_gap: 1e-10, accuracy: 0.6e-10, velocity_tol: 1e-9 };
@@ -524,7 +525,7 @@ fn two_discs_meet_to_the_bit_when_their_shapes_do() {
     for _ in 0..PAIRS {
         let gravity = DVec2::new(0.3, random.one_of(&[0.0, -9.81]));
         let radii = [random.between(0.1, 1.0), random.between(0.1, 1.0)];
-        // Some touch already, up to a fifth of their target too near.
+        // Some pairs touch already, with gaps up to a fifth below their target.
         let apart = radii[0] + radii[1] + random.one_of(&[0.8e-6, 1e-6, 1.1e-6, 0.5, 3.0]);
         let place = random.direction() * apart;
         let flights = [DVec2::ZERO, place].map(|position| {

@@ -1,4 +1,4 @@
-//! First contact and motion bounds do not depend on how a case is written down.
+//! First contact and motion bounds do not depend on the way in which a case is written down.
 
 use glam::DVec2;
 use halfgap_collision::{

@@ -7,11 +7,12 @@ use halfgap_collision::{Arms, GapKinematics, Spin};
 use halfgap_geometry::{DirectionRange, Feature, GapSample, LineFeature, RoundFeature};
 use proptest::prelude::*;
 
-/// What the kinematics promise, relative to the scale of the terms.
+/// Promised accuracy of the kinematics, relative to the scale of the terms.
 const PROMISE: f64 = 1e-6;
-/// What the differences below are good for; the formulas are exact, so this is what is asserted.
+/// Tolerance of the differences below. The formulas are exact, so this is the bound that is asserted.
 const DIFFERENCE: f64 = 1e-8;
-/// Steps [s] of the differences, at which rounding and truncation stay below that: order 8, h^8 against eps/h^2.
+/// Steps [s] of the differences, at which rounding and truncation stay below the tolerance: order 8, h^8 against
+/// eps/h^2.
 const STEP: f64 = 0.004;
 
 /// Two features and the paths of their bodies.
@@ -63,7 +64,7 @@ fn line(angle: f64, offset: f64) -> Feature {
     Feature::Line(LineFeature { normal, direction: normal.perp(), offset, start: -1.0, end: 1.0 })
 }
 
-/// The seven kinds of pairs; the numbers say where the features lie in their bodies.
+/// The seven kinds of pairs; the numbers give the places of the features in their bodies.
 fn features(kind: usize, centers: [DVec2; 2], [small, size, angle]: [f64; 3]) -> [Feature; 2] {
     let [a, b] = centers;
     match kind {
@@ -147,7 +148,7 @@ proptest! {
         let found = case.kinematics().acceleration(&primary.push, &normal.push);
         let scale = case.scales()[1].max(1.0);
         prop_assert!((found - difference).abs() <= DIFFERENCE * scale, "{} against {}", found, difference);
-        // Without accelerations what remains is gamma.
+        // Without accelerations the acceleration of the gap is gamma.
         prop_assert_eq!(case.kinematics().acceleration(&Spin::default(), &Spin::default()), case.kinematics().gamma);
     }
 

@@ -1,4 +1,4 @@
-//! Paths of rails: splines against curves that are known, nearest places against dense sampling.
+//! Paths of rails: splines against known curves, nearest places against dense sampling.
 
 use crate::random::Random;
 use glam::DVec2;
@@ -175,11 +175,11 @@ fn the_sum_of_chords_nears_the_length() {
     for path in all() {
         let sum = |count: u32| -> f64 {
             let place = |step| path.place_at(path.length() * f64::from(step) / f64::from(count)).point();
-            // The last place of a closed path is its first.
+            // The last place of a closed path coincides with its first.
             (0..count).map(|step| (place(step + 1) - place(step)).length()).sum()
         };
         let (coarse, fine) = (sum(2000), sum(4000));
-        // Chords fall short by h^2: extrapolated.
+        // Chords fall short by h^2: Richardson extrapolation.
         let extrapolated = fine + (fine - coarse) / 3.0;
         assert!((extrapolated - path.length()).abs() < 1e-6 * path.length(), "{extrapolated}");
     }
@@ -241,7 +241,8 @@ fn a_hint_leads_to_the_same_place_along_the_path() {
     let mut random = Random(2);
     for path in all() {
         for _ in 0..2000 {
-            // Close to the path, and far from crossing itself: what is near along it is the nearest.
+            // Close to the path, and far from its crossing with itself, the place near along the path is the nearest
+            // of all.
             let along = random.between(0.0, path.length());
             let on_path = path.place_at(along);
             let point = on_path.point() + on_path.normal() * random.between(-0.02, 0.02);
@@ -262,7 +263,7 @@ fn a_hint_leads_over_many_points() {
     let path = sampled_circle(400);
     let mut random = Random(5);
     for _ in 0..2000 {
-        // Up to 1 rad, or 64 points, away and round the joint of the ends: closer than what the whole spline has there.
+        // Up to 1 rad, or 64 points, away and past the joint of the ends: closer than any other place of the spline.
         let start = random.between(-1.0, 1.0) * path.length();
         let place = path.place_at(start + random.between(-1.5, 1.5));
         let point = place.point() + place.normal() * random.between(-0.5, 0.5);
@@ -274,7 +275,7 @@ fn a_hint_leads_over_many_points() {
 
 #[test]
 fn a_foot_is_exact_where_long_pieces_bend_sharply() {
-    // Two pieces of 3 m, which turn round within 0.5 m of the point they meet at.
+    // Two pieces of 3 m, which turn round within 0.5 m of the point at which they meet.
     let path = spline(&[(-0.2, 3.0), (-3.0, 6.0), (3.0, 6.0), (0.2, 3.0), (0.0, 0.0)], true);
     let turn = path.nearest(DVec2::ZERO, None).arc_length;
     let mut random = Random(6);
@@ -372,12 +373,12 @@ fn a_hint_keeps_its_branch_where_the_path_crosses_itself() {
 fn a_hint_that_stays_does_so_beyond_the_joint() {
     let path = stadium();
     let hint = path.place_at(1.9).hint().staying();
-    // Over the half circle, the straight side goes on.
+    // Over the half circle, the straight side is continued.
     let place = path.nearest(at(1.3, -0.4), Some(&hint));
     assert!((place.arc_length - 2.3).abs() < 1e-15 && (place.gap() - 0.1).abs() < 1e-15);
     let free = path.nearest(at(1.3, -0.4), Some(&path.place_at(1.9).hint()));
     assert!((free.gap()).abs() < 1e-15 && free.curvature() == 2.0);
-    // So does a circle, lap after lap.
+    // A circle is continued likewise, lap after lap.
     let path = loop_the_loop();
     let mut hint = path.place_at(3.0 + 0.3).hint().staying();
     for step in 1..40 {
@@ -405,7 +406,7 @@ fn knots_are_where_pieces_meet() {
             assert!(((place.arc_length - ahead.arc_length).abs() + 1e-13).rem_euclid(path.length()) < 2e-13);
         }
     }
-    // Round the loop and back along it; before and after, the straight continuations.
+    // Round the loop and back along it; beyond its knots lie the straight continuations.
     let path = loop_the_loop();
     assert_eq!(path.knots().len(), 4);
     for (knot, ahead) in [(path.knots()[1], 0.1), (path.knots()[2], -0.1)] {
@@ -413,7 +414,7 @@ fn knots_are_where_pieces_meet() {
         let place = path.nearest(expected.point(), Some(&path.hint_past(&knot, ahead > 0.0)));
         assert!((place.arc_length - expected.arc_length).abs() < 1e-13 && place.curvature() == 1.0);
     }
-    // An arc at an open end goes on straight.
+    // An arc at an open end continues straight, so that the end is a knot.
     let ends: Vec<f64> = hook().knots().iter().map(|knot| knot.arc_length).collect();
     assert_eq!((ends.len(), ends[0], ends[3]), (4, 0.0, hook().length()));
     assert!(bean().knots().is_empty());
@@ -421,7 +422,7 @@ fn knots_are_where_pieces_meet() {
         [EdgeSpec::Bulge { to: at(-1.0, 0.0), bulge: 1.0 }, EdgeSpec::Bulge { to: at(1.0, 0.0), bulge: 1.0 }];
     let circle = RailPath::from_edges(at(1.0, 0.0), &halves).expect("a fine circle");
     assert!(circle.knots().len() == 2 && circle.is_closed());
-    // Nobody leaves the one piece of a full circle.
+    // A full circle of one piece has no knot.
     let whole = [EdgeSpec::Arc { to: at(1.0, 0.0), center: at(0.0, 0.0), clockwise: false }];
     let circle = RailPath::from_edges(at(1.0, 0.0), &whole).expect("a fine circle");
     assert!(circle.knots().is_empty() && circle.is_closed());
@@ -481,7 +482,7 @@ fn small_misfits_are_made_exact() {
 }
 
 #[test]
-fn what_is_no_rail_is_refused() {
+fn bad_rails_are_refused() {
     let through = |points: &[(f64, f64)], closed| {
         let points: Vec<DVec2> = points.iter().copied().map(DVec2::from).collect();
         RailPath::through(&points, closed).expect_err("no spline")
@@ -507,7 +508,8 @@ fn what_is_no_rail_is_refused() {
 
 #[test]
 fn beyond_an_open_end_the_distance_is_that_from_the_nearest_continuation() {
-    // One starts and ends at the same place, in directions of its own; the others pass their own continuation.
+    // The first path starts and ends at the same place, in different directions; the others pass their own
+    // continuation.
     let drop = spline(&[(0.0, 0.0), (1.0, 2.0), (0.0, 3.0), (-1.0, 2.0), (0.0, 0.0)], false);
     let hook = spline(&[(0.0, 0.0), (0.0, 4.0), (2.0, 5.0), (1.0, 0.0)], false);
     let lines = [(0.0, 4.0), (1.0, 4.0), (1.0, -2.0)].map(|(x, y)| EdgeSpec::Line { to: at(x, y) });

@@ -124,7 +124,7 @@ fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
     assert!((moved - (moments[0].pose.position - flight.moving_at(late).pose.position)).length() < 1e-15);
     assert!((record.geometry.impact_arm_primary - DVec2::new(0.0, -0.5)).length() < 1e-15);
     assert!((record.geometry.arms.normal.x - (0.1 + 0.3 * early)).abs() < 1e-15);
-    // Free fall is what the estimate assumes: y = 1.1 - t - 5 t^2 meets 1 + target.
+    // The estimate assumes free fall: y = 1.1 - t - 5 t^2 meets 1 + target.
     let exact = (-1.0 + (1.0f64 + 20.0 * (0.1 - TOLERANCES.target_gap)).sqrt()) / 10.0;
     assert!((record.estimate().expect("it closes in between") - exact).abs() < 1e-12);
 }
@@ -161,7 +161,7 @@ fn a_block_flat_on_an_equal_block_touches_at_two_corners() {
     let found = detect((&block(1.0, 1.0), still(0.0, 1.001)), (&block(1.0, 1.0), still(0.0, 0.0)));
     assert_eq!(found.len(), 2, "{found:?}");
     for record in &found {
-        // The vertex on an edge is more exact than the two corners.
+        // The contact of a vertex with an edge is more exact than that of two corners.
         assert_eq!(record.parties.detector, Detector::VertexEdge);
         assert!((record.geometry.normal.y.abs() - 1.0).abs() < 1e-15);
         assert!((record.geometry.point_primary.x.abs() - 0.5).abs() < 1e-15);
@@ -171,8 +171,8 @@ fn a_block_flat_on_an_equal_block_touches_at_two_corners() {
 
 #[test]
 fn corners_that_pass_each_other_by_less_than_the_accuracy_touch_once() {
-    // The lower left corner of one block is beyond the upper right one of the other: each is near the other's
-    // edge, too, but beyond its end.
+    // The lower left corner of one block is beyond the upper right one of the other: each of them is near an edge of
+    // the other block, too, but beyond its end.
     let apart = 0.1 * TOLERANCES.accuracy;
     for angle in [-1e-3, 0.0, 1e-3] {
         let corner = DVec2::from_angle(angle).rotate(DVec2::new(-0.5, -0.5));
@@ -202,8 +202,8 @@ fn corners_that_meet_at_a_distance_of_rounding_touch_as_their_sides_do() {
 
 #[test]
 fn a_corner_leans_off_a_short_side_as_far_as_that_side_shows() {
-    // A small block lies over the corner of a large one, and its end sinks: along its side by less than the
-    // accuracy, though along the large one's it would be more.
+    // A small block lies over the corner of a large one, and its end sinks: along its own side by less than the
+    // accuracy, though along the side of the large block it would be by more.
     let (large, small) = (block(2.0, 2.0), block(0.1, 0.1));
     let found = |angle: f64| {
         detect((&large, still(0.0, 0.0)), (&small, at(1.0, 1.05 + TOLERANCES.target_gap, angle, DVec2::ZERO)))
@@ -217,7 +217,7 @@ fn a_corner_leans_off_a_short_side_as_far_as_that_side_shows() {
 
 #[test]
 fn a_tight_fit_has_its_own_thresholds() {
-    // A pin in a bore with a clearance of two target gaps: its target is a quarter of that.
+    // A pin in a bore with a clearance of two target gaps: its target is a quarter of the clearance.
     let clearance = 2.0 * TOLERANCES.target_gap;
     let ring = solid(Shape::ring(2.0, 1.0 + clearance).expect("a fine ring"));
     let found = detect((&disc(1.0), still(0.55 * clearance, 0.0)), (&ring, still(0.0, 0.0)));

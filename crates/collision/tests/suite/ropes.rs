@@ -6,14 +6,14 @@ use halfgap_collision::{
     Ball, BodyState, Flight, Motion, MotionBounds, Polynomial, Rope, RopeSearch, SearchSettings, rope_contact,
 };
 
-/// Ropes that are tried.
+/// Number of ropes that are tried.
 const ROPES: u32 = 3000;
-/// Samples of a span before refinement.
+/// Number of samples of a span before refinement.
 const SAMPLES: u32 = 1000;
 /// A sampled least gap within this [m] of 0 may count as taut or not.
 const UNDECIDED: f64 = 1e-10;
 
-/// A body that runs on a circle: nothing that has a closed form.
+/// A body that runs on a circle: a motion without a closed form.
 #[derive(Clone, Copy, Debug)]
 struct Swinging {
     center: DVec2,
@@ -59,7 +59,7 @@ fn gap<A: Motion, B: Motion>(rope: &Rope, a: &A, b: &B, time: f64) -> f64 {
     rope.length - (end_a - end_b).length()
 }
 
-/// Calls the search until it ends; also tells how many calls it took.
+/// Calls the search until it ends; also returns the number of calls.
 fn search<A: Motion, B: Motion>(rope: &Rope, a: &A, b: &B, span: f64) -> (RopeSearch, u32) {
     let settings = SearchSettings::default();
     let (mut from, mut calls) = (0.0, 0);
@@ -76,7 +76,7 @@ fn search<A: Motion, B: Motion>(rope: &Rope, a: &A, b: &B, span: f64) -> (RopeSe
     }
 }
 
-/// The first sampled time at which the gap is below 0, refined; and how near to 0 it came before.
+/// The first sampled time at which the gap is below 0, refined; and the least gap before.
 fn sampled<A: Motion, B: Motion>(rope: &Rope, a: &A, b: &B, span: f64) -> (Option<f64>, f64) {
     let time = |step: u32| span * f64::from(step) / f64::from(SAMPLES);
     let mut least = f64::INFINITY;
@@ -116,7 +116,8 @@ fn compare<A: Motion, B: Motion>(rope: &Rope, a: &A, b: &B, span: f64, name: &st
     let (found, _) = search(rope, a, b, span);
     match (found, expected) {
         (RopeSearch::Taut(time), Some(expected)) => {
-            // A rope that is hardly overstretched goes taut slowly: the square root of what cannot be told.
+            // The time at which a slightly overstretched rope goes taut is only known to the square root of the gap's
+            // rounding.
             let slow = gap(rope, a, b, expected.min(time) - 1e-4).abs() < 1e-5;
             let near = if slow { 1e-4 } else { 1e-8 };
             assert!((time - expected).abs() < near, "{name}: {time}, not {expected}: {rope:?}");
@@ -248,7 +249,7 @@ fn uniform_motion_has_a_closed_form() {
 
 #[test]
 fn a_rope_that_stays_taut_is_told_at_once() {
-    // On a circle of exactly the rope's length nothing closes or opens but by rounding.
+    // On a circle of exactly the rope's length the gap opens and closes by rounding only.
     let ball = Swinging { center: DVec2::ZERO, radius: 1.0, rate: 2.0, phase: 0.3, spin: 0.0 };
     let peg = Flight::fixed(DVec2::ZERO, 0.0);
     let settings = SearchSettings::default();

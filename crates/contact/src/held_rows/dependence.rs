@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rows_keep_falls_with_the_square_of_the_way_to_where_they_depend() {
+    fn the_share_that_rows_keep_falls_with_the_square_of_the_way_to_where_they_depend() {
         // Two rods hold a disc along directions that come together, and a third doubles the first.
         let mut held = HeldRows::default();
         held.set_structure(
@@ -181,9 +181,10 @@ mod tests {
     }
 
     #[test]
-    fn what_depends_on_rows_that_leave_little_is_told_from_their_rounding() {
+    fn a_row_that_depends_on_rows_that_leave_little_is_told_from_their_rounding() {
         let inertia = |mass: f64| InverseInertia { inverse_mass: 1.0 / mass, inverse_moment: 1.0 / mass };
-        // A light and a heavy body, both pinned to the world and to each other, and the heavy one once more.
+        // A light and a heavy body, both pinned to the world and to each other; the heavy one is pinned to the world
+        // once more.
         let sides = [[Some(0), None], [Some(0), Some(1)], [Some(1), None], [Some(1), None]];
         let sides: Vec<_> = sides.iter().flat_map(|sides| [*sides; 2]).collect();
         let arms = [[-0.987, -0.937], [0.986, -0.954], [-0.882, -0.968], [0.686, -0.979], [-0.418, -0.988]];

@@ -223,7 +223,7 @@ fn dot(a: &Lanes, b: &Lanes) -> f64 {
 mod tests {
     use super::*;
 
-    /// Entry of a matrix whose rows begin at different columns; its diagonal outweighs them.
+    /// Entry of a matrix whose rows begin at different columns; its diagonal outweighs the others.
     fn entry(first: &[usize], row: usize, column: usize) -> f64 {
         let (row, column) = (row.max(column), row.min(column));
         match row - column {
@@ -233,7 +233,7 @@ mod tests {
         }
     }
 
-    /// First columns of rows, from the diagonal to far away from it.
+    /// First columns of the rows, from the diagonal to far away from it.
     fn first_columns(count: usize) -> Vec<usize> {
         (0..count).map(|row| row.saturating_sub((row * 7 + row / 3) % 11)).collect()
     }
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn a_row_without_a_pivot_has_nothing_and_gives_nothing() {
-        // The sixth row is the second once more.
+        // The sixth row repeats the second.
         let count = 7;
         let first = vec![0; count];
         let of = |row: usize| if row == 5 { 1 } else { row };

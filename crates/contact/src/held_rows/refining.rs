@@ -161,7 +161,8 @@ mod tests {
 
     #[test]
     fn a_light_disc_on_two_long_arms_is_held_to_rounding() {
-        // Nearly all of each row's square is the turning of the disc; the raise by softness exceeds all the rest.
+        // Nearly all of each row's square comes from the turning of the disc; the raise by softness exceeds all the
+        // rest.
         let (block, disc) = (
             InverseInertia { inverse_mass: 0.505, inverse_moment: 2.448 },
             InverseInertia { inverse_mass: 0.748, inverse_moment: 394_127.0 },

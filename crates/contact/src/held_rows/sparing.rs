@@ -172,7 +172,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_spared_changes_nothing(
+        fn a_spared_row_changes_nothing(
             contacts in prop::collection::vec(prop::collection::vec((-1.0..1.0, 0.0..1.0), 1..6), 1..8)
         ) {
             let arms: Vec<Vec<f64>> =

@@ -162,7 +162,7 @@ mod tests {
         let landing: [&[f64]; 3] = [&[2.0, 1.0, 0.0], &[1.0, 1.0, 1.0], &[0.0, 1.0, 2.0]];
         let found = few(&landing, &[-1.0, -1.0, -1.0]).solve().expect("they agree");
         assert_eq!(found.impulses[..3].iter().sum::<f64>(), 1.0);
-        // The middle row is slower than the ends: held with one of these it drives the other to close, and another
+        // The middle row is slower than the ends: held with one of the ends it drives the other to close, and another
         // choice is needed.
         assert_eq!(few(&landing, &[-1.0, -0.5, -1.0]).solve(), None);
     }
@@ -177,7 +177,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_found_satisfies_the_problem(
+        fn the_answer_found_satisfies_the_problem(
             rows in prop::collection::vec(prop::array::uniform8(-1.0..1.0f64), 1..=FEW),
             offset in prop::array::uniform8(-1.0..1.0f64),
             bilateral in prop::array::uniform8(prop::bool::weighted(0.2)),

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn what_resists_small_impulses_is_held_by_large_ones() -> Result<(), ImpactError> {
+    fn rows_that_resist_small_impulses_are_held_by_large_ones() -> Result<(), ImpactError> {
         // A light body on two rails that are parallel up to 1e-4 is pinned by long arms to a heavy one and to another,
         // which hits the heavy one and touches a third.
         let inertias = [
@@ -447,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rows_were_unloaded_by_is_where_their_impulses_are_looked_for() -> Result<(), ImpactError> {
+    fn impulses_are_looked_for_where_rows_were_unloaded() -> Result<(), ImpactError> {
         // Discs in rows, each on two of the row below in directions that vary, fall onto a floor.
         const ACROSS: usize = 9;
         let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 8.0 };

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_held_is_struck_with_the_rest_though_it_opens_by_rounding() -> Result<(), ImpactError> {
+    fn a_held_row_is_struck_with_the_rest_though_it_opens_by_rounding() -> Result<(), ImpactError> {
         // A disc strikes another one, against which a third lies.
         let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
         let jacobian = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];

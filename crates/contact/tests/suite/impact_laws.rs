@@ -1,11 +1,11 @@
-//! What every impact law owes: no energy out of nothing, momentum kept, no row left closing.
+//! Promises of every impact law: no energy out of nothing, momentum kept, no row left closing.
 
 use crate::laws::{LAWS, ORDERS};
 use halfgap_collision::BodyId;
 use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder};
 use proptest::prelude::*;
 
-/// Sums of a few products of numbers near 1.
+/// Rounding of sums of a few products of numbers near 1.
 const ROUNDING: f64 = 1e-12;
 
 /// A body of the test: its inverse inertia and its velocities.
@@ -141,7 +141,7 @@ proptest! {
         }
         for law in [ImpactLaw::Hybrid, ImpactLaw::SerialSeparate, ImpactLaw::SerialGrouped, ImpactLaw::Simultaneous] {
             let (after, impact) = resolve(law, ImpactOrder::Fastest, &movers, &touches).expect("two free rows");
-            // Many rounds in a tight corner end without elasticity: that may lose some, but only then.
+            // Many rounds in a tight corner end without elasticity: those impacts may lose some energy, others none.
             if impact.solves() < 100 {
                 let largest = impact.impulses().iter().fold(1.0f64, |most, j| most.max(*j));
                 prop_assert!((energy(&after) - energy(&movers)).abs() <= 1e-11 * largest * largest, "{:?}", law);
@@ -176,7 +176,7 @@ proptest! {
     fn two_closing_rows_on_the_same_two_bodies_are_simultaneous_in_the_hybrid_law(
         movers in prop::array::uniform2(any_mover()), a in any_touch([0, 1]), b in any_touch([0, 1]),
     ) {
-        // Seen from its other side a contact that opens is one that closes.
+        // A contact that opens is one that closes, seen from its other side.
         let facing = |touch: Touch| if touch.row(&movers).rate < 0.0 { touch } else { touch.turned() };
         let touches = [facing(a), facing(b)];
         let (hybrid, _) = resolve(ImpactLaw::Hybrid, ImpactOrder::Fastest, &movers, &touches).expect("two rows");
@@ -200,7 +200,7 @@ proptest! {
 
 #[test]
 fn seeds_choose_which_of_two_equal_rows_comes_first() {
-    // A disc that flies into the corner of two others, slower along one normal: the order decides where it goes.
+    // A disc flies into the corner of two others, more slowly along one normal: the order of rows decides its way out.
     let mover = |velocity| Mover { inverse: [1.0, 1.0, 2.0], velocity };
     let movers = [mover([1.0, 0.0, 0.0]), mover([0.0; 3]), mover([0.0; 3])];
     let touch = |other, angle: f64| Touch { bodies: [0, other], angle, moments: [0.0; 2], elasticity: 1.0 };
@@ -244,8 +244,9 @@ fn held_rows_at_rest_take_part_in_a_simultaneous_impact() {
 }
 
 #[test]
-fn what_opens_by_rounding_rests_in_a_simultaneous_impact() {
-    // The first disc strikes one that touches a third: by what holds these they go apart, or together, a little.
+fn a_row_that_opens_by_rounding_rests_in_a_simultaneous_impact() {
+    // The first disc strikes the second, which touches a third: by the rounding of a held contact these two open, or
+    // close, a little.
     let mover = |velocity: f64| Mover { inverse: [1.0, 1.0, 2.0], velocity: [velocity, 0.0, 0.0] };
     let touch = |bodies| Touch { bodies, angle: std::f64::consts::PI, moments: [0.0; 2], elasticity: 1.0 };
     let touches = [touch([0, 1]), touch([1, 2])];
@@ -261,7 +262,8 @@ fn what_opens_by_rounding_rests_in_a_simultaneous_impact() {
     }
 }
 
-/// The speed with which a mass comes back that a lighter one, at rest between it and a wall, turns round, blow by blow.
+/// The speed at which a mass comes back from a wall when a lighter mass, at rest between it and the wall, turns it
+/// round blow by blow.
 fn turned_round_by(light: f64) -> f64 {
     let (mut heavy_speed, mut light_speed) = (1.0, 0.0);
     while heavy_speed > light_speed || light_speed > 0.0 {
@@ -303,7 +305,7 @@ fn light_bodies_before_a_wall_turn_a_heavy_one_round() {
 
 #[test]
 fn walls_that_all_but_face_each_other_turn_a_body_back() -> Result<(), ImpactError> {
-    // It goes into a wedge, and out again after pi blows for each radian of it, of which many are slow.
+    // The body goes into a wedge, and out again after pi blows for each radian of it, many of which are slow.
     for wedge in [0.3f64, 0.1, 0.05, 0.02] {
         let body = Mover { inverse: [1.0, 1.0, 0.0], velocity: [1.0, -0.3, 0.0] };
         let walls = Mover { inverse: [0.0; 3], velocity: [0.0; 3] };
@@ -327,8 +329,8 @@ fn walls_that_all_but_face_each_other_turn_a_body_back() -> Result<(), ImpactErr
 
 #[test]
 fn a_row_that_opens_is_not_held_by_force_in_a_simultaneous_impact() {
-    // The impulse along the first normal turns the second row round, which opened before: to stop it there would push
-    // along a motion that opens, and add energy.
+    // The impulse along the first normal turns round the second row, which opened before: stopping it there would do
+    // work along a motion that opens, and add energy.
     let mover = |velocity| Mover { inverse: [1.0, 1.0, 2.0], velocity };
     let movers = [mover([0.2, -1.0, 0.0]), mover([0.0; 3])];
     let touch = |angle| Touch { bodies: [0, 1], angle, moments: [0.0; 2], elasticity: 1.0 };

@@ -7,7 +7,7 @@ use halfgap_collision::BodyId;
 use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, InverseInertia};
 use proptest::prelude::*;
 
-/// Sums of some products of numbers near 1.
+/// Rounding of sums of some products of numbers near 1.
 const ROUNDING: f64 = 1e-12;
 /// The body of the test that stands for the background.
 const WORLD: usize = usize::MAX;
@@ -144,7 +144,7 @@ fn any_impact() -> impl Strategy<Value = (Vec<Mover>, Vec<Tie>)> {
     })
 }
 
-/// What every resolved impact owes.
+/// Checks the promises of every resolved impact.
 fn check(movers: &[Mover], ties: &[Tie], impact: &Impact, what: &str) -> Result<(), TestCaseError> {
     let now = after(movers, impact);
     let largest = largest_impulse(impact);
@@ -189,7 +189,7 @@ proptest! {
         for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid] {
             let (once, impact) = resolve(law, &movers, &ties);
             let (doubled, _) = resolve(law, &movers, &twice);
-            // Ricochets enlarge rounding, and where they are broken off depends on the number of rows.
+            // Ricochets enlarge rounding, and the number of rows decides where they are broken off.
             if impact.solves() > 20 {
                 continue;
             }
@@ -222,7 +222,7 @@ fn difference(these: &[Mover], those: &[Mover]) -> f64 {
     pairs.fold(0.0, |most, (p, q)| most.max((p - q).abs()))
 }
 
-/// By how much the motion after a simultaneous impact depends on the order of its rows, and by how much it may.
+/// Dependence of the motion after a simultaneous impact on the order of its rows, and the dependence allowed.
 fn difference_by_order(movers: &[Mover], ties: &[Tie]) -> (f64, f64) {
     let (forth, impact) = resolve(ImpactLaw::Simultaneous, movers, ties);
     let (back, _) = resolve(ImpactLaw::Simultaneous, movers, &reversed(ties));
@@ -230,11 +230,10 @@ fn difference_by_order(movers: &[Mover], ties: &[Tie]) -> (f64, f64) {
     (difference(&forth, &back), 1e-9 * scale * scale)
 }
 
-/// By how much the motion after a simultaneous impact changes with speeds that change by a few roundings.
+/// Change of the motion after a simultaneous impact when speeds change by a few roundings.
 ///
-/// Ricochets enlarge rounding, and a row that an earlier round left at rest may open by rounding in a later
-/// one: then the next round leaves it out, which is another motion. What rounding decides the order of rows
-/// may decide too.
+/// Ricochets enlarge rounding, and a row that an earlier round left at rest may open by rounding in a later one: then
+/// the next round leaves it out, which is another motion. The order of rows may decide all that rounding may decide.
 fn sensitivity(movers: &[Mover], ties: &[Tie]) -> f64 {
     let (as_given, _) = resolve(ImpactLaw::Simultaneous, movers, ties);
     let varied = |variant: usize| {
@@ -318,7 +317,7 @@ fn elastic_discs_in_a_tight_box_come_to_an_end() {
         let (movers, ties) = row_of_discs(count, 1.0, true);
         for law in LAWS {
             let (now, impact) = resolve(law, &movers, &ties);
-            // Few contacts may take two hundred blows a row before what is slow stops to count.
+            // Few contacts may take two hundred blows a row before slow rows stop to count.
             let first_stage = if ties.len() <= 4 { 200 } else { 20 };
             let most = (first_stage + 11 * 20) * ties.len() as u64 + 10;
             assert!(impact.solves() <= most, "{law:?}: {} solves of {count} discs", impact.solves());
@@ -396,8 +395,8 @@ fn a_disc_between_closing_jaws_is_infeasible() {
 
 #[test]
 fn a_weak_impact_does_not_mind_rates_of_rounding_in_doubled_joints() {
-    // The joint is given twice, and its rates differ by rounding of the bodies' speeds, which is much beside
-    // the impact.
+    // The joint is given twice, and its rates differ by the rounding of the bodies' speeds, which is large beside the
+    // impact.
     let (mut movers, mut ties) = pinned_chain(1);
     ties.extend_from_within(..);
     movers.push(Mover::new(0.5, 0.1, [0.0, -1e-10, 0.0]));
@@ -442,7 +441,8 @@ fn mover_of(inverse_mass: f64, inverse_moment: f64, velocity: [f64; 3]) -> Mover
 
 #[test]
 fn which_of_four_connectors_of_one_body_are_independent_does_not_show() {
-    // Three of the four hold the body; some three do so badly, and magnify what rounding leaves of the fourth.
+    // Three of the four connectors hold the body; some three of them hold it badly, and magnify the rounding that is
+    // left of the fourth.
     let movers = [
         mover_of(1.0007670227180745, 3.3333333333333335, [0.6514338096216623, 0.0, 0.0]),
         Mover::fixed([0.0; 3]),
@@ -526,7 +526,7 @@ fn an_impulse_that_is_carried_comes_back_as_far_as_it_is_needed() -> Result<(), 
 }
 
 #[test]
-fn what_slides_over_two_slopes_is_not_stopped_by_what_it_carries() -> Result<(), ImpactError> {
+fn a_point_that_slides_over_two_slopes_is_not_stopped_by_carried_impulses() -> Result<(), ImpactError> {
     // A point of 1 kg rises at 1 mm/s in a hollow of 1e-4 rad, along which it slides at 1 m/s.
     let body = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
     let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
@@ -549,7 +549,7 @@ fn what_slides_over_two_slopes_is_not_stopped_by_what_it_carries() -> Result<(),
         rows.iter().zip(impact.impulses()).map(|(row, impulse)| row.response[entry] * impulse).sum::<f64>()
     };
     assert!(change(0).abs() < 2e-4, "slowed by {} m/s", change(0));
-    // It goes up the side that it comes to.
+    // The point goes up the side that it comes to.
     assert!((rise + change(1) - angle * slide).abs() < 1e-7, "rises at {} m/s", rise + change(1));
     Ok(())
 }

@@ -66,7 +66,7 @@ fn islands_lie_in_holes_and_pieces_side_by_side() {
         .expect("a dumbbell without its bar");
     assert!((pieces.mass_properties().centroid - v(2.5, 0.0)).length() < 1e-15 * 4.0);
     assert!(pieces.contains(v(5.5, 0.0)) && !pieces.contains(v(2.5, 0.0)));
-    // A disc around one of the pieces overlaps neither wholly.
+    // A disc around one of the pieces overlaps the shape, and neither lies wholly within the other.
     let big = Shape::disc(2.0).expect("a fine disc");
     let found = pieces.distance(&Pose::IDENTITY, &big, &Pose::IDENTITY);
     assert_eq!(found.relation, Relation::Overlapping);
@@ -80,7 +80,7 @@ fn horns_are_vertices_and_clefts_are_not() {
     use FeatureKind::{ConcaveArc, ConvexArc, Vertex};
     assert_eq!(kinds(&shape), [Vertex, ConcaveArc, Vertex, ConcaveArc, Vertex, ConvexArc]);
     assert!(shape.mass_properties().area > 0.0);
-    // Two discs' worth of outline that touch from outside leave a cleft without width: a vertex would point into it.
+    // Two discs that touch from outside leave a cleft without width: a vertex there would point into it.
     let cleft = bulges(
         v(-2.0, 0.0),
         &[
@@ -93,7 +93,7 @@ fn horns_are_vertices_and_clefts_are_not() {
     );
     assert_eq!(kinds(&cleft).iter().filter(|&&kind| kind == Vertex).count(), 2, "only the upper corners");
     for turn in 0..50 {
-        // However the cusp is turned, rounding does not decide.
+        // Rounding does not decide, whichever way the cusp is turned.
         let pose = Pose::new(DVec2::ZERO, f64::from(turn) * 0.13);
         let p = |x: f64, y: f64| pose.point_to_world(v(x, y));
         let turned = bulges(p(-2.0, 0.0), &[(p(0.5, 0.0), -1.0), (p(2.0, 0.0), -1.0), (p(-2.0, 0.0), 1.0)]);
@@ -152,7 +152,7 @@ fn far_from_the_origin_only_the_positions_rounding_is_lost() {
     let there = a.distance(&moved(&here_a), &b, &moved(&here_b));
     assert!((here.distance - there.distance).abs() < 1e-15, "the shift is exact, and so is the answer");
     assert_eq!((here.edge_a, here.edge_b), (there.edge_a, there.edge_b));
-    // Features are measured in world coordinates and lose what those cannot hold.
+    // Features are measured in world coordinates and lose the digits that those cannot hold.
     for (p, q) in a.features().iter().flat_map(|p| b.features().iter().map(move |q| (p, q))) {
         let here = GapSample::measure(p, &here_a, q, &here_b).map(|sample| sample.gap);
         let there = GapSample::measure(p, &moved(&here_a), q, &moved(&here_b)).map(|sample| sample.gap);
@@ -211,7 +211,7 @@ fn the_tip_of_a_needle_is_a_vertex_however_sharp() {
                 let vertices = kinds(&needle).iter().filter(|kind| **kind == FeatureKind::Vertex).count();
                 assert_eq!(vertices, 3, "{width}");
             }
-            // As wide as what counts as one point, it may be refused, but not taken without its tip.
+            // A needle as narrow as the tolerance of coinciding points may be refused, but not taken without its tip.
             Err(error) => assert!(width < 1e-8, "{width}: {error}"),
         }
     }

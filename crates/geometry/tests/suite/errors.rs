@@ -1,4 +1,4 @@
-//! Each way in which a shape can be wrong, and what the message says of it.
+//! Each way in which a shape can be wrong, and the message that it gets.
 
 use halfgap_geometry::{Arc, ArcError, DVec2, EdgeSpec, Line, LineError, PathSpec, Shape, ShapeError};
 use std::f64::consts::TAU;

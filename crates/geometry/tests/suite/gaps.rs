@@ -1,16 +1,16 @@
-//! The gap between features: symmetry, invariance, and how it is tied to the distance of shapes.
+//! The gap between features: symmetry, invariance, and its relation to the distance of shapes.
 
 use crate::shapes::{any_angle, any_pose, any_shape, any_vector, map_spec, specs_of};
 use halfgap_geometry::{DVec2, Edge, Feature, GapSample, Pose, Relation, Rotation, Shape};
 use proptest::prelude::*;
 
-/// What rounding may cost, as part of the sizes involved.
+/// Rounding allowed, as a fraction of the sizes involved.
 const ROUNDING: f64 = 2e-14;
-/// Contacts this close to the end of a feature [rad or m] count as inside: where two smooth edges meet, rounding may
+/// Contacts this close [rad or m] to the end of a feature count as inside: where two smooth edges meet, rounding may
 /// place the contact on neither.
 const END_SLACK: f64 = 1e-7;
 
-/// True for a convex and a concave arc of the same radius: whether they fit is for rounding to say.
+/// True for a convex and a concave arc of the same radius: rounding decides whether they fit.
 fn barely_fits(p: &Feature, q: &Feature) -> bool {
     let (Some(p), Some(q)) = (p.radius(), q.radius()) else { return false };
     (p < 0.0) != (q < 0.0) && (p + q).abs() <= ROUNDING * p.abs()
@@ -62,7 +62,8 @@ proptest! {
         let gaps = samples(&a, &pose_a, &b, &pose_b);
         let valid = gaps.iter().filter(|sample| is_nearly_valid(sample));
         let least = valid.map(|sample| sample.gap.abs()).fold(f64::INFINITY, f64::min);
-        // A contact beyond the end of a feature by the slack is too near by its square at most.
+        // The gap of a contact beyond the end of a feature by the slack is too small by at most the square of the
+        // slack.
         let slack = END_SLACK * END_SLACK * size(&a, &pose_a, &b, &pose_b);
         prop_assert!((least - found.distance).abs() <= rounding + slack, "{least} {}", found.distance);
     }
@@ -109,7 +110,7 @@ proptest! {
         for (here, there) in here.iter().zip(&there) {
             prop_assert!((here.gap - there.gap).abs() <= rounding);
             let arm = (here.center_primary - here.center_normal).length();
-            // Near the other's center the normal is as good as the center's place.
+            // Near the other's center the normal is only as good as the place of the center.
             if arm > 1e-3 {
                 prop_assert!((turn.apply(here.normal) - there.normal).length() * arm <= rounding);
             }

@@ -1,4 +1,4 @@
-//! What the geometry promises, tested through its public API.
+//! Promises of the geometry, tested through its public API.
 
 mod degenerate;
 mod errors;

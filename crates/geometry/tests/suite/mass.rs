@@ -26,7 +26,7 @@ fn integrate(shape: &Shape) -> (f64, DVec2, f64) {
     (area, first, polar)
 }
 
-/// How the point of an edge moves with the share of its length.
+/// Derivative of the point of an edge by the fraction of its length.
 fn derivative(edge: &Edge, point: DVec2) -> DVec2 {
     match edge {
         Edge::Line(line) => line.to() - line.from(),
@@ -39,7 +39,7 @@ proptest! {
     fn mass_properties_match_quadrature(shape in any_shape()) {
         let mass = shape.mass_properties();
         let (area, first, polar) = integrate(&shape);
-        // A flat arc is as exact as the place of its far center.
+        // The mass properties of a flat arc are as exact as the place of its far center.
         let radius = |edge: &Edge| if let Edge::Arc(arc) = edge { arc.radius() } else { 0.0 };
         let flatness = 1e-3 * shape.edges().map(radius).fold(0.0, f64::max);
         let scale = 1.0 + shape.reach() * shape.reach() + flatness;

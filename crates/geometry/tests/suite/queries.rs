@@ -1,4 +1,4 @@
-//! Queries against sampling and against looking at every edge.
+//! Queries against sampling and against brute force over every edge.
 
 use crate::sampling::{SAMPLES, coarseness, outline_points, sampled_contains};
 use crate::shapes::{any_angle, any_pose, any_shape, any_vector, map_spec, specs_of};
@@ -8,7 +8,7 @@ use halfgap_geometry::{
 };
 use proptest::prelude::*;
 
-/// What rounding may cost, as part of the sizes involved.
+/// Rounding allowed, as a fraction of the sizes involved.
 const ROUNDING: f64 = 2e-14;
 
 fn sampled_distance(a: &[DVec2], b: &[DVec2]) -> f64 {
@@ -46,7 +46,7 @@ proptest! {
         let rounding = ROUNDING * (scale(&a) + scale(&b) + pose_a.position.length() + pose_b.position.length());
         prop_assert!(found.distance <= sampled + rounding, "{} {sampled}", found.distance);
         prop_assert!(sampled - found.distance <= coarseness(&a) + coarseness(&b) + rounding);
-        // The witnesses are as far apart as said, and lie on the edges named.
+        // The witnesses are apart by the distance returned, and lie on the edges named.
         prop_assert!(((found.point_a - found.point_b).length() - found.distance).abs() <= rounding);
         let (on_a, on_b) = (pose_a.point_to_body(found.point_a), pose_b.point_to_body(found.point_b));
         prop_assert!((a.edge(found.edge_a).nearest(on_a) - on_a).length() <= rounding);
@@ -133,7 +133,7 @@ proptest! {
             prop_assert!(found.distance <= rounding);
             prop_assert_eq!(found.relation, Relation::Crossing);
         } else {
-            // What is missing to the edges of the other, seen from inside of it.
+            // Distance to the nearest edge of the other block, seen from inside of it.
             let inside = |outer: DVec2, inner: DVec2| ((outer - inner) / 2.0 - place.abs()).min_element();
             let (size_a, size_b) = (DVec2::new(width_a, height_a), DVec2::new(width_b, height_b));
             let depth = inside(size_b, size_a).max(inside(size_a, size_b));
@@ -251,7 +251,7 @@ proptest! {
     fn how_long_the_direction_of_a_ray_is_does_not_matter(shape in any_shape(), origin in any_vector(3.0), angle in any_angle(), power in -40i32..40) {
         let direction = DVec2::from_angle(angle);
         let of_length = |length: f64| shape.cast_ray(&Ray { origin, direction: direction * length }, f64::INFINITY);
-        // A power of two rounds nothing.
+        // Multiplication by a power of two rounds nothing.
         prop_assert_eq!(of_length(2.0_f64.powi(power)), of_length(1.0));
         prop_assert_eq!(of_length(0.0), None);
         prop_assert_eq!(of_length(f64::NAN), None);
@@ -264,7 +264,7 @@ proptest! {
         prop_assume!((target - origin).length() > 1e-3);
         let distance = (target - origin).length();
         let ray = Ray { origin, direction: (target - origin) / distance };
-        // It may only graze a corner, and go on as it came.
+        // The ray may only graze a corner, and go on as it came.
         let end = shape.cast_ray(&ray, f64::INFINITY).map_or(10.0, |hit| hit.distance);
         for step in 1..200 {
             let point = origin + ray.direction * (end * f64::from(step) / 200.0);

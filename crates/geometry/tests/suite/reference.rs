@@ -3,7 +3,7 @@
 use halfgap_geometry::{Arc, DVec2, Edge, EdgeSpec, Line, PathSpec, Pose, Shape, edge_crossings};
 use serde_json::Value;
 
-/// The reference gives its figures to this accuracy.
+/// Accuracy of the figures that the reference gives.
 const TOLERANCE: f64 = 1e-9;
 
 /// A file of the reference data.
@@ -126,7 +126,7 @@ fn shapes_have_the_bounds_and_corners_of_the_reference() {
     }
 }
 
-/// What the moment of inertia of a shape in the reference is that of.
+/// The figure whose moment of inertia the reference gives to a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum MomentOf {
     /// The shape itself.
@@ -135,7 +135,7 @@ enum MomentOf {
     Rectangle,
     /// A disc of this radius [m].
     Disc(f64),
-    /// A number that was set by hand.
+    /// A number set by hand.
     Stated(f64),
 }
 
@@ -172,7 +172,7 @@ fn moments_are_those_of_the_reference_where_it_computes_them() {
             MomentOf::Stated(moment) => moment,
         };
         assert!((moment - number(&reference["moment_per_mass"])).abs() < TOLERANCE, "{name}: {moment}");
-        // Where the moment is that of the shape, so is the centre of mass.
+        // If the moment is that of the shape, the centre of mass is its centroid, too.
         let off = (shape.mass_properties().centroid - vector(&reference["center_of_mass"])).length();
         assert!(moment_of != MomentOf::Shape || off < TOLERANCE, "{name}: {off}");
     }
@@ -228,7 +228,7 @@ fn check_point(edge: &Edge, query: &Value) {
     assert!((edge.signed_distance(p) - number(&query["distance_to_line"])).abs() < TOLERANCE, "{query}");
     let foot = vector(&query["nearest"]);
     assert!((edge.normal_at(foot) - vector(&query["normal"])).length() < TOLERANCE, "{query}");
-    // The reference's nearest point is that of the whole line or circle; it is ours if the edge reaches so far.
+    // The nearest point of the reference is that of the whole line or circle; it is ours if the edge reaches as far.
     let nearest = edge.nearest(p);
     if query["distance_to_point"].is_number() {
         assert!((nearest - foot).length() < TOLERANCE, "{query}");

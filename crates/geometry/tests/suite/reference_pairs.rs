@@ -8,11 +8,11 @@ use halfgap_geometry::{DVec2, Feature, FeatureKind, GapSample, Pose, Shape};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Gaps [m] and normals agree to this.
+/// Largest difference [m] of gaps, and of normals, that agree.
 const TOLERANCE: f64 = 1e-6;
 /// The distance [m] within which the reference reports a contact.
 const DISTANCE_TOL: f64 = 0.01;
-/// More than the deepest penetration [m] in the data.
+/// Bound above the deepest penetration [m] in the data.
 const DEEPEST: f64 = 0.016;
 
 /// A body of a case, in coordinates about the reference's centre of mass.
@@ -28,7 +28,7 @@ fn body(value: &Value, all: &[(String, Value, Shape)]) -> Body {
     Body { shape: shape.translated(-vector(&reference["center_of_mass"])), pose }
 }
 
-/// A gap of ours, with the kinds of its features, lesser first, and the normal from `b` to `a`.
+/// One of our gaps, with the kinds of its features, lesser first, and the normal from `b` to `a`.
 struct Ours {
     kinds: (FeatureKind, FeatureKind),
     sample: GapSample,
@@ -51,7 +51,7 @@ fn all_gaps(a: &Body, b: &Body) -> Vec<Ours> {
     sampled.collect()
 }
 
-/// How a record compares with the best of our gaps, and which.
+/// Class of a record compared with the best of our gaps, and the index of that gap.
 fn classify(record: &Value, ours: &[Ours]) -> (String, usize) {
     let distance = number(&record["distance"]);
     let sign = if record["first"] == "a" { 1.0 } else { -1.0 };

@@ -5,7 +5,7 @@ use halfgap_geometry::{DVec2, Edge, Shape};
 /// Sampled points per edge.
 pub(crate) const SAMPLES: u32 = 64;
 
-/// The point of an edge at a share of its length.
+/// The point of an edge at a fraction of its length.
 pub(crate) fn point_at(edge: &Edge, share: f64) -> DVec2 {
     match edge {
         Edge::Line(line) => line.from() + (line.to() - line.from()) * share,
@@ -41,7 +41,7 @@ pub(crate) fn sampled_contains(shape: &Shape, point: DVec2) -> bool {
     let mut odd = false;
     for edge in shape.edges() {
         let mut points: Vec<DVec2> = edge_points(edge).collect();
-        // The very ends, so that neighbours leave no chink.
+        // The exact ends, so that neighbours leave no chink.
         points[0] = edge.from();
         points[SAMPLES as usize] = edge.to();
         odd ^= points.windows(2).filter(|pair| crosses(pair)).count() % 2 == 1;

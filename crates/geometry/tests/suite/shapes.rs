@@ -55,7 +55,7 @@ pub(crate) fn map_spec(spec: &PathSpec, map: &impl Fn(DVec2) -> DVec2, mirrored:
     PathSpec { start: map(spec.start), edges: spec.edges.iter().map(edge).collect() }
 }
 
-/// The specification from which the shape could have been made.
+/// The specification that makes the shape again.
 pub(crate) fn specs_of(shape: &Shape) -> Vec<PathSpec> {
     let edge = |edge: &Edge| match edge {
         Edge::Line(line) => EdgeSpec::Line { to: line.to() },
@@ -113,7 +113,7 @@ fn moon() -> impl Strategy<Value = Shape> {
     })
 }
 
-/// Any shape of a size of about 1 m, not always about its origin.
+/// Any shape of a size of about 1 m, whose middle need not be its origin.
 pub(crate) fn any_shape() -> impl Strategy<Value = Shape> {
     let shift = prop_oneof![2 => Just(DVec2::ZERO), 1 => any_vector(1.0)];
     (prop_oneof![4 => outline_shape(), 3 => ready_made(), 1 => moon()], shift)
@@ -125,7 +125,7 @@ pub(crate) fn any_vector(size: f64) -> impl Strategy<Value = DVec2> {
     (-size..size, -size..size).prop_map(|(x, y)| DVec2::new(x, y))
 }
 
-/// Angles, right ones more often than chance has it.
+/// Angles, with more right ones than chance gives.
 pub(crate) fn any_angle() -> impl Strategy<Value = f64> {
     prop_oneof![prop::sample::select(vec![0.0, PI / 2.0, PI, -PI / 2.0, PI / 4.0]), -PI..PI,]
 }

@@ -98,7 +98,7 @@ mod tests {
         let runs = [run(&[1.0, 2.0]), run(&[1.01, 2.0])];
         let is_between = |time: f64| EventTimes::is_between(&runs, BODY, time, 0.01);
         assert_eq!([0.995, 1.005, 1.015, 1.5].map(is_between), [false, true, false, false]);
-        // Just then states may be those before or those after.
+        // At just that time the states may be those before or those after.
         assert!(is_between(2.0));
         assert!(!EventTimes::is_between(&runs, BodyId(2), 1.005, 0.01));
     }

@@ -55,7 +55,7 @@ mod tests {
     fn a_drift_is_not_chaos() {
         let drift = shifts(|time| 1e-8 * time * time);
         assert_eq!(judge(&drift, 1e-8), Growth { chaotic: false, trusted_until: None });
-        // Not exact enough: lost in the end, but not chaotic.
+        // A drift that is lost in the end is inexact, but not chaotic.
         let loose = shifts(|time| 1e-5 * time * time);
         assert_eq!(judge(&loose, 1e-5), Growth { chaotic: false, trusted_until: Some(31.0) });
     }
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_touches_at_a_wide_gap_is_not_chaos() {
+    fn a_touch_at_a_wide_gap_is_not_chaos() {
         // A ball of 0.1 m whose zone is 5 mm away from the floor.
         let shift = shifts(|time| if time > 40.0 { 0.1 } else { 1e-9 });
         assert_eq!(judge(&shift, 5e-2), Growth { chaotic: false, trusted_until: None });

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_varied_is_named() {
+    fn fields_that_cannot_be_varied_are_named() {
         let message = |field: &str| {
             varied(field).and_then(|scene| scene.with(-1.0)).expect_err("a bad field").to_string()
         };

@@ -1,4 +1,4 @@
-//! What cannot be simulated is told, with all that happened before, and told again to whoever wants to go on.
+//! Failures: a scene that cannot be simulated is told, with all events before, and told again at every further try.
 
 use glam::DVec2;
 use halfgap::force::{ForceLaw, Snapshot, Spring, Wrenches};
@@ -9,7 +9,7 @@ use halfgap::{
 };
 use std::sync::Arc;
 
-/// Gravity [m/s^2] on a body that is no number once the body rises.
+/// A force law whose gravity [m/s^2] on a body is NaN once the body rises.
 #[derive(Debug)]
 struct OnlyDown([BodyId; 1]);
 
@@ -116,7 +116,7 @@ fn a_gap_that_is_lost_in_rounding_is_refused() {
     assert!(matches!(&accuracy, Err(error) if error.to_string() == refused("accuracy")), "{accuracy:?}");
 }
 
-/// A push on the body that is named second.
+/// A law that pushes a given one of its two bodies, though it may name another.
 #[derive(Debug)]
 struct Push([BodyId; 2], usize);
 

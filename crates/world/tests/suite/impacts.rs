@@ -89,7 +89,7 @@ fn a_ball_dropped_on_a_floor_bounces_as_the_parabolas_say() {
     let rest = (2.0f64 / 9.81).sqrt() * 1.8 / 0.2;
     let mut last = 0.0;
     world.advance_to(10.0, &mut |event| last = event.time()).expect("it comes to rest");
-    // Bounces slower than the velocity tolerance are left out, which would have taken this long.
+    // Bounces slower than the velocity tolerance are left out; they would have taken this long.
     let unresolved = 2.0 * world.tolerances().velocity_tol / (9.81 * 0.2);
     assert!(unresolved < 1e-5 && (last - rest).abs() < unresolved, "at rest at {last} s, not at {rest} s");
     let state = world.state(ball);
@@ -163,10 +163,10 @@ fn the_background_is_told_of_as_bodies_are() {
     assert_eq!(world.inertia(BodyId::WORLD), None);
 }
 
-/// What is done to a world and a body of it, with somebody to be told.
+/// An operation on a world and a body of it, with a listener for events.
 type Act = fn(&mut World, BodyId, &mut dyn FnMut(&Event));
 
-/// What is slow and closes at the start is stopped before anybody can listen: it is told all the same, once.
+/// Contacts that close slowly at the start are stopped before any listener is there: they are told all the same, once.
 #[test]
 fn an_impact_at_the_start_is_told_first() {
     let overrides =

@@ -1,4 +1,4 @@
-//! Steps of the methods without error estimate: as long as they are said to be.
+//! Steps of the methods without error estimate have the length that the settings give.
 
 use glam::DVec2;
 use halfgap::geometry::Shape;
@@ -26,7 +26,7 @@ fn a_fixed_step_is_as_long_as_it_is_said_to_be() {
         for (time_step, steps) in [(0.1, 20), (0.05, 40), (0.01, 200), (0.001, 2000)] {
             let mut world = pendulum(integrator, time_step);
             world.advance_to(2.0, &mut |_| ()).expect("it swings");
-            // Sums of steps are rounded: one may begin just before the end.
+            // Sums of steps are rounded: a step may begin just before the end.
             let made = world.statistics().steps;
             assert!((steps..=steps + 2).contains(&made), "{integrator:?}, {time_step} s: {made} steps");
         }

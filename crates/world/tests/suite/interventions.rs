@@ -1,4 +1,4 @@
-//! What a user does to a world while it runs, and stops at events of his choice.
+//! Interventions of callers while a world runs, and stops at events that they choose.
 
 use glam::DVec2;
 use halfgap::geometry::Shape;
@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 const GRAVITY: f64 = 10.0;
 
-/// Discs of 1 kg and 0.5 m that rest on each other on a floor at y = 0, and bounce by an elasticity.
+/// Discs of 1 kg and 0.5 m that rest on each other on a floor at y = 0, with an elasticity.
 fn tower(count: usize, elasticity: f64) -> (World, Vec<BodyId>) {
     let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(5.0), ..WorldSettings::default() });
     let floor = Shape::block(10.0, 1.0).expect("a fine size");
@@ -54,7 +54,7 @@ fn upwards(body: BodyId, speed: f64) -> Intervention {
 }
 
 #[test]
-fn what_rests_is_thrown() {
+fn a_resting_disc_is_thrown() {
     let (mut world, discs) = tower(1, 0.5);
     world.advance_to(1.0, &mut |_| ()).expect("it rests");
     let mut ended = 0;
@@ -70,7 +70,7 @@ fn what_rests_is_thrown() {
 }
 
 #[test]
-fn what_is_pushed_into_what_it_rests_on_bounces_by_the_impact_law() {
+fn a_disc_pushed_into_its_floor_bounces_by_the_impact_law() {
     let (mut world, discs) = tower(1, 0.5);
     world.advance_to(1.0, &mut |_| ()).expect("it rests");
     let mut impulses = Vec::new();
@@ -90,7 +90,7 @@ fn an_impulse_goes_through_all_that_touches() {
         .intervene(&[Intervention::Impulse { body: discs[0], impulse, point }], &mut |_| ())
         .expect("it rises");
     for &disc in &discs {
-        // They go up together.
+        // All discs go up together.
         assert!((world.state(disc).velocity.y - 1.0).abs() < 1e-9, "{:?}", world.state(disc));
     }
 }
@@ -99,7 +99,7 @@ fn an_impulse_goes_through_all_that_touches() {
 fn a_blow_on_a_pendulum_turns_all_of_it() {
     let (mut world, [upper, lower]) = double_pendulum();
     world.advance_to(0.5, &mut |_| ()).expect("it hangs still");
-    // At its end: the equations of impulses of two pinned rods.
+    // The blow is at the end of the lower rod: impulse equations of two pinned rods.
     let blow =
         Intervention::Impulse { body: lower, impulse: DVec2::new(7.0, 0.0), point: DVec2::new(0.0, -2.0) };
     world.intervene(&[blow], &mut |_| ()).expect("it swings");
@@ -152,7 +152,7 @@ fn interventions_in_one_call_follow_each_other() {
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_and_nothing_is_done() {
+fn an_impossible_intervention_is_refused_and_nothing_is_done() {
     let (mut world, discs) = tower(1, 1.0);
     let before = format!("{:?}", world.state(discs[0]));
     let floor = world.find("floor").expect("it is there");
@@ -189,7 +189,7 @@ fn nothing_else_is_touched() {
     assert_ne!(alone.state(discs[2]), struck.state(discs[2]));
 }
 
-/// A disc that bounces, and when it does.
+/// A disc that has just been thrown up at 4 m/s from a floor, on which it bounces with an elasticity of 0.8.
 fn bouncing() -> (World, BodyId) {
     let (mut world, discs) = tower(1, 0.8);
     world.intervene(&[upwards(discs[0], 4.0)], &mut |_| ()).expect("it flies");
@@ -218,7 +218,7 @@ fn an_advance_stops_where_it_is_told_to_and_goes_on_as_if_it_had_not() {
 }
 
 #[test]
-fn who_stops_at_an_event_can_act_there() {
+fn a_caller_that_stops_at_an_event_can_act_there() {
     let (mut world, disc) = bouncing();
     let stop = &mut |_: &Event| ControlFlow::Break(());
     assert!(world.advance_while(2.0, stop).expect("it bounces").is_break());
@@ -228,7 +228,7 @@ fn who_stops_at_an_event_can_act_there() {
 }
 
 #[test]
-fn what_is_struck_where_contacts_carry_impulses_only_bounces_and_comes_to_rest() {
+fn a_disc_struck_where_contacts_carry_impulses_only_bounces_and_comes_to_rest() {
     let settings = WorldSettings { contacts: false, usual_speed: Some(5.0), ..WorldSettings::default() };
     let mut builder = WorldBuilder::new(settings);
     let [floor, disc] = [Shape::block(10.0, 1.0), Shape::disc(0.5)].map(|shape| shape.expect("a fine size"));
@@ -265,7 +265,7 @@ fn door(rate: f64) -> (World, BodyId) {
 }
 
 #[test]
-fn who_holds_a_door_for_long_holds_it() {
+fn a_door_held_by_interventions_for_long_is_held() {
     let (mut world, bar) = door(1.0);
     let hold = Intervention::Velocity { body: bar, velocity: DVec2::ZERO, angular_velocity: 0.0 };
     for frame in 1..=3000 {
@@ -286,8 +286,8 @@ fn a_door_that_hardly_moves_is_no_trouble() {
     }
 }
 
-/// A plank on a block that juts out over another block, which is slid in and stopped there: all of 1 kg. Each is
-/// so many gaps above what it stands on, and in a state of its own if there are any.
+/// A plank on a block that juts out over another block, which is slid in and stopped there: all of 1 kg. Each part is
+/// a given number of gaps above the one that it stands on; `states` replaces the places and speeds.
 fn plank(gaps: f64, states: Option<&[BodyState]>) -> (World, Vec<BodyId>) {
     let mut builder = WorldBuilder::new(WorldSettings { usual_speed: Some(2.0), ..WorldSettings::default() });
     let block = |width: f64, height: f64| Shape::block(width, height).expect("a fine size");
@@ -309,7 +309,7 @@ fn plank(gaps: f64, states: Option<&[BodyState]>) -> (World, Vec<BodyId>) {
 }
 
 #[test]
-fn what_is_driven_into_another_group_takes_it_along() {
+fn a_body_driven_into_another_group_takes_it_along() {
     let gap = plank(0.0, None).0.tolerances().target_gap;
     for gaps in [1.0, 1.2, 1.4, 1.5] {
         let (mut world, bodies) = plank(gaps * gap, None);
@@ -332,8 +332,9 @@ fn what_is_driven_into_another_group_takes_it_along() {
 }
 
 #[test]
-fn what_is_pushed_in_a_world_at_rest_comes_to_rest_on_what_it_meets() {
-    // Seen from above: height [m], angle [rad] and mass [kg] of two blocks, and how the first is thrown.
+fn a_block_pushed_in_a_world_at_rest_comes_to_rest_on_the_block_it_meets() {
+    // Seen from above: height [m], angle [rad] and mass [kg] of two blocks; velocity [m/s] across and spin [rad/s] of
+    // the first.
     let cases = [
         ([(-0.0031, -0.9055, 1.2996), (-0.1980, 0.0256, 1.1553)], (-0.1982, 0.8662)),
         ([(-0.3179, -0.0742, 0.9418), (-0.1198, -0.0241, 1.2524)], (0.1671, 0.8994)),
@@ -371,7 +372,7 @@ fn what_is_pushed_in_a_world_at_rest_comes_to_rest_on_what_it_meets() {
 }
 
 #[test]
-fn what_is_pressed_down_gently_for_long_stays_where_it_is() {
+fn a_block_pressed_down_gently_for_long_stays_where_it_is() {
     let settings = WorldSettings { tolerance: 1e-2, duration: Some(10.0), ..WorldSettings::default() };
     let mut builder = WorldBuilder::new(settings);
     let [floor, block] =
@@ -393,7 +394,7 @@ fn what_is_pressed_down_gently_for_long_stays_where_it_is() {
 }
 
 #[test]
-fn who_has_asked_for_too_long_a_time_may_ask_for_less() {
+fn a_caller_that_has_asked_for_too_long_a_time_may_ask_for_less() {
     let (mut world, _) = double_pendulum();
     let start = Intervention::Velocity { body: BodyId(0), velocity: DVec2::X, angular_velocity: 2.0 };
     world.intervene(&[start], &mut |_| ()).expect("it swings");
@@ -405,7 +406,7 @@ fn who_has_asked_for_too_long_a_time_may_ask_for_less() {
 }
 
 #[test]
-fn what_is_damped_in_flight_loses_no_work_by_interventions() {
+fn a_disc_damped_in_flight_loses_no_work_by_interventions() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let state = BodyState { velocity: DVec2::new(1.0, 1.0), ..BodyState::default() };
     let disc = Shape::disc(0.5).expect("a fine radius");

@@ -1,4 +1,4 @@
-//! Worlds as a user builds, reads, runs and records them, tested through the public API.
+//! Worlds as users build, read, run and record them, tested through the public API.
 
 mod failures;
 mod impacts;

@@ -1,4 +1,4 @@
-//! Runs, what they record, and pictures of recordings that have nothing much to show.
+//! Runs, their recordings, and pictures of recordings that have nothing much to show.
 
 use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};

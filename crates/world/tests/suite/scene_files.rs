@@ -1,4 +1,4 @@
-//! Scene files: every reference scene is read, both formats say the same, and what is wrong is named.
+//! Scene files: every reference scene is read, both formats say the same, and mistakes are named.
 
 use halfgap::scene::{Scene, SceneFormat, SceneSource};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What is done to a world before its start: connectors put together, velocities made to fit, gaps lifted.
+//! Corrections before the start of a world: connectors put together, velocities made to fit, gaps lifted.
 
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::{
@@ -53,7 +53,7 @@ fn a_pin_that_is_a_little_off_is_put_together_by_the_lighter_body() {
 }
 
 #[test]
-fn what_fits_is_not_moved() {
+fn a_bob_that_fits_its_rod_is_not_moved() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let place = DVec2::new(0.1, 0.7);
     let bob = builder.add(disc("bob", 1.0, place));
@@ -100,7 +100,7 @@ fn a_body_that_is_many_times_its_size_off_is_put_together() {
 
 #[test]
 fn connectors_are_no_farther_apart_for_a_coarse_zone() {
-    // Two rods that are 50 micrometres too short for what is between them, where bodies touch within millimetres.
+    // Two rods that are 50 micrometres too short for their ends, in a world where bodies touch within millimetres.
     let overrides =
         ToleranceOverrides { target_gap: Some(5e-3), accuracy: Some(3e-3), ..ToleranceOverrides::default() };
     let settings = WorldSettings { start_connector_error: Some(0.2), overrides, ..WorldSettings::default() };
@@ -215,7 +215,7 @@ fn gaps_are_lifted_without_taking_connectors_apart() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let floor = Shape::block(10.0, 1.0).expect("fine sides");
     builder.add(BodySpec::fixed("floor", floor, DVec2::new(0.0, -0.5)));
-    // Exactly on the floor, and hung on a rod that slants: it must move to the side to get up.
+    // The disc is exactly on the floor, and hung on a slanting rod: it must move to the side to get up.
     let ball = builder.add(disc("ball", 1.0, DVec2::new(0.0, 0.5)));
     let joint = builder.add_connector(rod(at(3.0, 4.5), center(ball), 5.0));
     let world = build(builder);
@@ -257,7 +257,7 @@ fn aligned_bodies_are_moved_one_after_another() {
 }
 
 #[test]
-fn what_names_no_body_is_refused() {
+fn a_connector_that_names_no_body_is_refused() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
     let bob = builder.add(disc("bob", 1.0, DVec2::ZERO));
     builder.add_connector(pin(center(bob), center(BodyId(7))));
@@ -266,7 +266,7 @@ fn what_names_no_body_is_refused() {
 }
 
 #[test]
-fn what_is_too_far_out_to_compute_with_is_refused_by_name_and_number() {
+fn a_body_too_far_out_to_compute_with_is_refused_by_name_and_number() {
     let near = || disc("near", 1.0, DVec2::ZERO);
     let refusal = |body: BodySpec| {
         let mut builder = WorldBuilder::new(WorldSettings::default());
@@ -335,8 +335,8 @@ fn a_connector_too_far_out_is_refused_by_name_and_number() {
     }
 }
 
-/// Blocks on each other whose places and angles are off by a billionth: what is lifted from one corner comes
-/// down on the other, and all of them lean on each other.
+/// Blocks on each other whose places and angles are off by a billionth: a block lifted off one corner comes down on
+/// the other, and all of them lean on each other.
 #[test]
 fn blocks_that_overlap_a_little_with_a_corner_each_are_lifted_together() {
     let mut builder = WorldBuilder::new(WorldSettings::default());
@@ -363,7 +363,7 @@ fn blocks_that_overlap_a_little_with_a_corner_each_are_lifted_together() {
 
 #[test]
 fn discs_that_touch_in_a_triangle_all_touch_after_they_are_lifted() {
-    // The heavy one stays, and the others push each other aside: by the least displacement, beyond their target
+    // The heavy disc stays, and the others push each other aside by the least displacement, beyond their target gap
     // from it.
     let corners = [DVec2::ZERO, DVec2::new(0.6, 0.0), DVec2::new(-0.23333333333333336, 0.5527707983925666)];
     let radii = [0.1, 0.5, 0.5];
@@ -388,7 +388,7 @@ fn discs_that_touch_in_a_triangle_all_touch_after_they_are_lifted() {
 
 #[test]
 fn discs_in_a_bearing_with_less_play_than_gaps_stay_where_they_are_given() {
-    // To first order a disc that is lifted from the ring and from the shaft could be anywhere along them.
+    // To first order a disc that is lifted off the ring and the shaft could be anywhere along them.
     let overrides =
         ToleranceOverrides { target_gap: Some(2e-4), accuracy: Some(2e-7), ..ToleranceOverrides::default() };
     let mut builder = WorldBuilder::new(WorldSettings { overrides, ..WorldSettings::default() });

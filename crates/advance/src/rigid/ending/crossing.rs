@@ -336,7 +336,7 @@ mod tests {
     fn a_smooth_fall_takes_few_looks() {
         for (start, end) in [(0.3, 1.0), (1.0, 1e-3), (1e-6, 1.0)] {
             let mut looks = 0;
-            // From the start to minus the end, ever steeper.
+            // The function falls from the start to minus the end, ever steeper.
             let f = |t: f64| start - (start + end) * t * (1.0 + t * t) / 2.0;
             let fall = close((0.0, f(0.0)), (1.0, f(1.0)), 1.0, |t| {
                 looks += 1;
@@ -370,7 +370,7 @@ mod tests {
                 let expected = [(depth / 3.0).sqrt(), (1.0 - depth).acos() / 1.7].map(|way| lowest - way);
                 for (fall, expected) in fall.into_iter().zip(expected) {
                     let fall = fall.unwrap_or_else(|| panic!("it dips at {lowest} by {depth}"));
-                    // To the rounding of the function, by its slope.
+                    // Good to the rounding of the function, by its slope.
                     let sharp = 1e-15 / depth.sqrt() + 1e-12;
                     assert!((fall - expected).abs() < sharp, "{fall} {expected}");
                 }
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_in_from_just_beyond_and_leaves_before_the_first_node_is_found() {
+    fn a_function_that_rises_from_just_below_and_falls_before_the_first_node_is_found() {
         let after_rise = |room: f64| {
             let f = |t: f64| t * (room - t) - 1e-18;
             fall_after_rise(&std::array::from_fn(|index| f(node(index, 2.0))), 2.0, f)
@@ -390,15 +390,15 @@ mod tests {
             let fall = after_rise(room).expect("it leaves");
             assert!((fall - room).abs() < 1e-12 && fall >= room, "{fall}");
         }
-        // A function that only goes farther below has not been above, and one that is above at the first node has not
-        // left.
+        // A function that only goes farther below has not been above, and a function that is above at the first node
+        // has not left.
         assert_eq!(after_rise(-0.1), None);
         assert_eq!(after_rise(1.0), None);
     }
 
     #[test]
     fn a_dip_soon_after_the_start_is_found() {
-        // It rises as t^6, to some ten thousand times the depth of its dip.
+        // The function rises as t^6, to some ten thousand times the depth of its dip.
         let f = |t: f64| 1e-14 - 1e-10 * t * t + 1e-6 * t.powi(6);
         let early = |span: f64| std::array::from_fn(|index| f(early_node(index, span)));
         let fall = early_fall(f(0.0), &early(1.0), 1.0, f).expect("it dips");
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn what_starts_below_zero_and_goes_on_falling_has_fallen() {
+    fn a_function_that_starts_below_zero_and_goes_on_falling_has_fallen() {
         const BELOW: f64 = 1e-14;
         let fall = |allowed: f64, rate: f64| {
             let f = |t: f64| -BELOW - rate * t;
@@ -419,12 +419,12 @@ mod tests {
             let offset = fall(allowed, 1e-3).expect("it falls");
             assert!((offset / (1e3 * (allowed - BELOW)) - 1.0).abs() < 1e-2, "{offset}");
         }
-        // A function that stays where it is, or rises, has not.
+        // A function that stays where it is, or rises, has not fallen.
         assert_eq!(fall(2.0 * BELOW, 0.0), None);
         assert_eq!(fall(2.0 * BELOW, -1.0), None);
-        // One that is lower already has.
+        // A function that is lower already has fallen.
         assert_eq!(fall(0.5 * BELOW, -1.0), Some(0.0));
-        // One that is back by the first node had.
+        // A function that is back by the first node had fallen.
         let dips = |t: f64| -BELOW - t * (0.3 - t);
         let values = std::array::from_fn(|index| dips(node(index, 2.0)));
         let offset = fall_from_below(&values, 2.0, 2.0 * BELOW, dips).expect("it dips");
@@ -432,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn what_starts_below_zero_must_rise_first() {
+    fn a_function_that_starts_below_zero_must_rise_first() {
         assert_eq!(sampled(1.0, |t| t - 2.0), None);
         let fall = sampled(4.0, |t| (t - 0.5) * (3.0 - t)).expect("it falls at 3");
         assert!((fall - 3.0).abs() < 1e-12);

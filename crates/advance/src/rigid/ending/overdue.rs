@@ -54,7 +54,7 @@ mod tests {
     /// Weight of a body [N].
     const WEIGHT: f64 = 9.81;
 
-    /// Lifts body 1 ever more: after a second with its weight.
+    /// A force that lifts body 1 ever more: after a second by the body's weight.
     #[derive(Debug)]
     struct Lift;
 
@@ -99,7 +99,7 @@ mod tests {
             let Some((offset, SegmentEnd::Release(0))) = group.event else {
                 panic!("{late}: {:?}", group.event)
             };
-            // With twice as much, or as much as may be rounding.
+            // The contact lets go when it pulls twice as much as at the start, or as much as may be rounding.
             let pull = (late + offset) / late;
             assert!(pull > 1.0 && pull < 10.0, "{late} s late: {offset} s");
         }
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_contact_that_is_a_little_beyond_its_features_from_the_start_runs_off() {
-        // The corner goes 0.2 rad on; the block topples on.
+        // The corner reaches 0.2 rad farther; the block topples on.
         for beyond in [1e-7, 1e-4] {
             let group = stepped(block_on_its_corner(), |group| {
                 turn_on_its_corner(group, group.state[2] + 0.2 + beyond, 1.0);

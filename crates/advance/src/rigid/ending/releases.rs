@@ -206,7 +206,7 @@ mod tests {
     fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
         assert_eq!(firm_part(10.0, 9.0), None);
         assert_eq!(firm_part(9.0, 10.0), None);
-        // It falls by 8 N along the step, and to begin with no more than four times as fast.
+        // The force falls by 8 N along the step, and at first no more than four times as fast.
         assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
         assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
         // A contact that starts without force is looked at at once.
@@ -215,11 +215,11 @@ mod tests {
     }
 
     #[test]
-    fn what_may_lose_its_force_is_looked_at_when_its_time_comes() {
+    fn a_contact_that_may_lose_its_force_is_looked_at_when_its_time_comes() {
         let leader = BodyId(1);
         let mut system = resting_discs(&[0.0]);
         let mut group = system.groups.take(leader).expect("it is held");
-        // As if its force fell from twice its weight and were gone at the end.
+        // As if the disc's force fell from 20 N, twice its weight, to -20 N at the end.
         group.forces[0] = 20.0;
         group.end_forces[0] = -20.0;
         system.with_group(&mut group, |dynamics, _| {
@@ -237,7 +237,7 @@ mod tests {
             system.queue.time_of(system.source_id(Source::Group(leader))),
             Some(group.start.plus(offset))
         );
-        // An event found for a time that has gone by happens now.
+        // An event found for a time that has passed happens now.
         let mut group = system.groups.take(leader).expect("it goes on");
         let late = 2.0 * group.span;
         (group.event, group.look) = (None, Some(late));

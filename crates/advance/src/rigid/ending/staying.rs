@@ -152,8 +152,8 @@ mod tests {
     /// Length of a segment [s].
     const SPAN: f64 = 0.125;
 
-    /// Whether the contact of body 1, with a changed start, is said to stay on its features along a segment, and
-    /// whether it does.
+    /// Runs the contact of body 1 along a segment from a changed start. Returns whether it is said to stay on its
+    /// features, and whether it does.
     fn said_and_done(mut system: RigidSystem, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = system.groups.take(BodyId(1)).expect("it is held");
         set_out(&mut group);
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_slides_along_a_floor_stays_up_to_its_end() {
+    fn a_disc_that_slides_along_a_floor_stays_up_to_its_end() {
         // The floor ends 1 m from the disc, which neither speeds up nor turns.
         for speed in [-150.0, 0.0, 1.0, 7.5, 7.99, 8.01, 9.0, 50.0] {
             let expected = speed * SPAN < 1.0;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rolls_over_a_round_corner_stays_up_to_its_ends() {
+    fn a_block_that_rolls_over_a_round_corner_stays_up_to_its_ends() {
         let spins = (0..=60).map(|index| 0.25 * f64::from(index));
         let answers = spins.map(|spin| {
             let [said, done] =
@@ -198,7 +198,7 @@ mod tests {
         });
         let counts = answers
             .fold([0, 0], |[said, done], answer| [said + i32::from(answer[0]), done + i32::from(answer[1])]);
-        // Bounds tell so of most that stay.
+        // Bounds say so of most of the contacts that stay.
         assert!(counts[1] < 60 && 4 * counts[0] > 3 * counts[1], "{counts:?}");
     }
 }

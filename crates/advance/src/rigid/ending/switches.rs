@@ -189,7 +189,7 @@ mod tests {
         let value = |offset: f64| (1.0 + offset) - (1.0 + 0.3);
         let offset = rings_at(0.3, false).expect("it rings");
         assert!(value(offset) > 0.0, "what sets out there is on the new branch: {offset}");
-        // Where a group is made because it has just changed branch, rounding may say that it is about to.
+        // Where a group is made because its law has just changed branch, rounding may say that the law is about to.
         assert_eq!(rings_at(1e-15, true), None);
     }
 }

@@ -118,9 +118,9 @@ mod tests {
 
     /// Gap [m] at which bodies fire.
     const GAP: f64 = 5e-3;
-    /// Gap [m] in the zone, above that at which bodies fire.
+    /// Gap [m] in the target zone, above the gap at which bodies fire.
     const FAR: f64 = 7e-3;
-    /// Gap [m] in the zone, below that at which bodies fire.
+    /// Gap [m] in the target zone, below the gap at which bodies fire.
     const NEAR: f64 = 4.9e-3;
     /// Angle [rad] of the shuttle.
     const TILT: f64 = -2e-5;
@@ -165,15 +165,15 @@ mod tests {
     }
 
     #[test]
-    fn what_has_room_is_not_held_by_the_angle_of_its_sides() {
+    fn a_shuttle_with_room_is_not_held_by_the_angle_of_its_sides() {
         assert!((velocity_after(FAR, 0.0).y + 1.0).abs() < 1e-9);
-        // Where it touches both walls, it is a wedge.
+        // Where the shuttle touches both walls, it is a wedge.
         let velocity = velocity_after(NEAR, 0.0);
         assert!(velocity.y.abs() < 1e-6, "{velocity}");
     }
 
     #[test]
-    fn what_has_room_is_pressed_against_one_side_only() {
+    fn a_shuttle_with_room_is_pressed_against_one_side_only() {
         let velocity = velocity_after(FAR, 1.0);
         assert!((velocity.y + 1.0).abs() < 1e-4, "{velocity}");
         assert!(velocity.x.abs() < 1e-4, "the wall stops it: {velocity}");

@@ -332,12 +332,12 @@ mod tests {
     use crate::rigid::test_scene::resting_discs;
 
     #[test]
-    fn what_was_stopped_deep_sinks_a_part_of_what_is_left() {
+    fn a_contact_stopped_deep_sinks_a_part_of_the_depth_left() {
         let mut system = resting_discs(&[0.0]);
         let Tolerances { target_gap, .. } = system.settings.tolerances;
         let bodies = [BodyId(0), BodyId(1)];
         let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
-        // With contact forces it sinks by no more than can be told.
+        // With contact forces the contact sinks by no more than can be told.
         assert_eq!(system.sinks_to(touch, -1e-3), -1e-3 - system.sink());
         system.settings.impulse_step = Some(1e-3);
         let room = system.room_to_sink(bodies);
@@ -352,7 +352,7 @@ mod tests {
         assert!((sinks_by(DEEPEST_SHARE) * room / system.sink() - 1.0).abs() < 1e-9, "no farther than that");
     }
     #[test]
-    fn what_is_pressed_collides_only_so_often_in_a_step() {
+    fn a_pressed_contact_collides_only_so_often_in_a_step() {
         let mut system = resting_discs(&[0.0]);
         let bodies = [BodyId(0), BodyId(1)];
         let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };

@@ -447,8 +447,8 @@ mod tests {
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
-    /// Whether a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is pushed up with
-    /// an acceleration [m/s^2].
+    /// True if the contact of a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is
+    /// pushed up with an acceleration [m/s^2].
     fn beam_holds_disc_below(push: f64) -> bool {
         const GAP: f64 = FINE.tolerances.target_gap;
         let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
@@ -488,7 +488,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_a_pull_across_the_normal_presses_nothing() {
+    fn the_rounding_of_a_pull_across_the_normal_presses_nothing() {
         // A block falls along two walls that it just fits between, and that narrow by rounding.
         let body = |shape: Result<Shape, _>, inverse: f64| Body {
             shape: shape.expect("a fine size"),
@@ -513,7 +513,7 @@ mod tests {
     }
 
     #[test]
-    fn what_opens_as_slowly_as_what_rests_is_let_go_where_contacts_take_turns() {
+    fn a_contact_that_opens_as_slowly_as_one_at_rest_is_let_go_where_contacts_take_turns() {
         let mut system = resting_discs(&[0.0]);
         let mut work = system.work.take().expect("the start has made it");
         system.dissolve(BodyId(1));
@@ -530,9 +530,9 @@ mod tests {
     }
 
     #[test]
-    fn what_others_keep_from_coming_back_does_not_hop() {
+    fn a_contact_that_others_keep_from_coming_back_does_not_hop() {
         assert!(beam_holds_disc_below(1.0));
-        // Without the posts the beam would come down on it at once.
+        // Without the posts the beam would come down on the disc at once.
         assert!(!beam_holds_disc_below(1e-7));
     }
 }

@@ -233,7 +233,7 @@ mod tests {
     use halfgap_contact::Row;
 
     #[test]
-    fn what_is_cut_is_expected_to_carry_its_force_again() {
+    fn a_cut_contact_is_expected_to_carry_its_force_again() {
         let mut system = resting_discs(&[0.0, 1.5]);
         let mut work = system.work.take().expect("the start has made it");
         system.dissolve(BodyId(1));

@@ -112,7 +112,8 @@ mod tests {
     use super::*;
     use crate::rigid::test_scene::resting_discs;
 
-    /// Whether a disc that makes 64 steps of a length [s] in succession is hasty, by a first and by a second query.
+    /// Hastiness of the group of a disc that makes 64 steps of a length [s] in succession, by a first and by a second
+    /// query.
     fn haste(step: f64) -> [bool; 2] {
         let mut system = resting_discs(&[0.0]);
         let mut work = system.work.take().expect("the start has made it");

@@ -60,7 +60,7 @@ mod tests {
     use halfgap_collision::{Body, BodyId, BodyState};
     use halfgap_geometry::{FeatureId, Shape};
 
-    /// Two elastic discs at their target gap that close with 2 m/s, and their pair.
+    /// Two elastic discs at their target gap that close at 2 m/s, and their pair.
     fn meeting() -> (RigidSystem, PairId, [FeatureId; 2]) {
         let disc = |side: f64| {
             let shape = Shape::disc(0.5).expect("a fine radius");
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn a_pair_that_fires_for_the_first_time_bounces() {
         let (mut system, pair, features) = meeting();
-        // The start has seen it at its target: a moment later it has been elsewhere.
+        // The start has seen the pair at its target: a moment later it has been elsewhere.
         system.pairs.seen_mut(pair).clear();
         system.told.has_hit = false;
         system.handle_contact(pair, features).expect("one row");

@@ -210,7 +210,7 @@ mod tests {
                 assert!(flyer.unwound_at(start).angle.abs() <= TAU);
             }
             let after = flyer.moving_at(later).pose.rotation;
-            // An angle within the segment has the rounding of a number of that size.
+            // An angle within the segment has the rounding of a number of its own size.
             let sharp = f64::EPSILON * (1.0 + angle.abs());
             assert!(
                 (before.cos - after.cos).abs() <= sharp && (before.sin - after.sin).abs() <= sharp,

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_events_read_fits_into_lines_of_the_cache() {
+    fn the_data_that_events_read_fit_into_lines_of_the_cache() {
         assert_eq!([size_of::<Lane>(), size_of::<Flyer>(), size_of::<Pair>()], [128, 192, 32]);
     }
 }

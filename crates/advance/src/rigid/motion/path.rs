@@ -206,7 +206,7 @@ mod tests {
     use halfgap_collision::BodyId;
 
     #[test]
-    fn what_is_known_of_a_segment_is_what_its_polynomials_say() {
+    fn motion_and_bounds_of_a_segment_are_those_of_its_polynomials() {
         let mut system = block_on_its_corner();
         let group = system.groups.take(BodyId(1)).expect("it is held");
         let mut dense = DensePath::default();

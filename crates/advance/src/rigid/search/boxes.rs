@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_flies_off_leaves_few_boxes_however_fast_it_is() {
+    fn a_body_that_flies_off_leaves_few_boxes_however_fast_it_is() {
         for distance in [1e6, 1e20, 1e50] {
             let mut room = Room::new(0.5, 1e-9);
             let (mut way, mut boxes) = (0.0, 0);

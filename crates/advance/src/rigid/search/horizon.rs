@@ -57,10 +57,10 @@ mod tests {
     const FAR: BodyId = BodyId(2);
     /// Time [s] at which the moving square meets the near one.
     const MEETS_NEAR: f64 = 0.05;
-    /// Time [s] at which it meets the far one, if the near one is away.
+    /// Time [s] at which the moving square meets the far one, if the near one is away.
     const MEETS_FAR: f64 = 0.2;
 
-    /// A square that moves at 1 m/s towards a small one, behind which there is a large one.
+    /// A square that moves at 1 m/s towards a small one, which has a large one behind it.
     fn squares_in_a_row() -> RigidSystem {
         let bodies = [(0.5, 0.0, 1.0), (0.05, 0.325, 0.0), (1.0, 0.95, 0.0)].map(|(side, x, speed)| {
             let shape = Shape::block(side, side).expect("a fine size");
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_come_after_the_first_contact_is_not_looked_for() {
+    fn contacts_after_the_first_one_are_not_looked_for() {
         let system = squares_in_a_row();
         let known = |a, b| {
             let pair = system.pairs.get(system.pairs.between(a, b).expect("they are near each other"));

@@ -191,7 +191,7 @@ mod tests {
     use halfgap_collision::BodyId;
 
     #[test]
-    fn what_opens_from_where_the_search_does_not_look_fires_where_it_lies() {
+    fn a_contact_that_opens_from_where_the_search_does_not_look_fires_where_it_lies() {
         let mut system = resting_discs(&[0.0]);
         let target = system.settings.tolerances.target_gap;
         let mut work = EventWork::default();
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fires_where_it_lies_goes_on_to_do_so_when_others_collide() {
+    fn a_contact_that_fires_where_it_lies_goes_on_to_do_so_when_others_collide() {
         let mut system = resting_discs(&[0.0]);
         let target = system.settings.tolerances.target_gap;
         let mut work = EventWork::default();

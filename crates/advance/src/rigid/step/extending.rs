@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_projection_takes_is_noted_once() {
+    fn the_energy_that_a_projection_takes_is_noted_once() {
         let mut system = pendulum();
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         let taken = system.with_group(&mut group, |dynamics, tools| {
@@ -167,7 +167,7 @@ mod tests {
         const ANGLE: f64 = 1e-5;
         /// Error of the second rod's length [m].
         const ERROR: f64 = 1e-7;
-        /// Distance [m] by which the disc may move for it.
+        /// Largest distance [m] by which the disc may move for that error.
         const WAY: f64 = 1e-5;
         let mut system = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, ANGLE)]);
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
@@ -177,18 +177,18 @@ mod tests {
             dynamics.end_on_rows(tools);
             (dynamics.group.end_state[1] - before[1]).abs()
         });
-        // To correct the lengths of both rods would take a centimetre across them.
+        // Correcting the lengths of both rods would take a centimetre across them.
         assert!(moved < WAY, "{moved} m");
     }
 
     #[test]
-    fn what_moves_the_end_of_a_short_step_is_no_velocity() {
+    fn a_shift_of_the_end_of_a_short_step_is_no_velocity() {
         let mut system = pendulum();
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
         group.next_step = Some(1e-9);
         let velocity = system.with_group(&mut group, |dynamics, tools| {
             dynamics.extend(tools).expect("it falls");
-            // A projection might move the end by as much: over this step it would be 1 m/s.
+            // A projection might move the end by this distance: over this step it would be 1 m/s.
             dynamics.group.end_state[1] += 1e-9;
             dynamics.evaluate_end();
             dynamics.make_dense(tools.stepper);
@@ -199,12 +199,12 @@ mod tests {
     }
 
     #[test]
-    fn what_swings_between_the_ends_of_a_step_makes_it_shorter() {
+    fn a_motion_that_swings_between_the_ends_of_a_step_makes_it_shorter() {
         /// Rate [1/s] at which the spin decays.
         const RATE: f64 = 1e6;
         /// Product of that rate and the length of a step whose error estimate does not show the decay.
         const UNTOLD: f64 = 5.75;
-        // Ten times the error that is allowed: the disc moves at 2 m/s and has a radius of 0.5 m.
+        // Ten times the allowed error: the disc moves at 2 m/s and has a radius of 0.5 m.
         let spin = 10.0 * FINE.steps.local_error * 2.0 / 0.5;
         let mut system = turning_disc_on_rods(&[DVec2::ZERO], spin, RATE);
         let mut group = system.groups.take(BodyId(0)).expect("it is held");
@@ -225,7 +225,7 @@ mod tests {
         let [kept, lost] = system.with_group(&mut group, |dynamics, tools| {
             let energy = dynamics.extend(tools).expect("it swings");
             let kept = dynamics.lost_energy(&tools.settings.steps, energy);
-            // Rows that nearly depend on each other may do work like this.
+            // A loss like the work of rows that nearly depend on each other.
             dynamics.group.end_state[4] *= 1.0 - 1e-6;
             [kept, dynamics.lost_energy(&tools.settings.steps, None)]
         });

@@ -62,18 +62,19 @@ mod tests {
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
-    /// Points on a circle of 1 m around the origin.
+    /// Number of points on a circle of 1 m around the origin.
     const POINTS: u32 = 48;
-    /// Angle from one to the next [rad].
+    /// Angle [rad] from one point to the next.
     const SPACING: f64 = TAU / POINTS as f64;
     /// Start of the disc, in spacings past a point.
     const BEGIN: f64 = 0.3;
-    /// A local error at which the joints count, though the method could step that far.
+    /// Local error at which the joints count, though the method could step that far.
     const FINE_ERROR: f64 = 1e-8;
-    /// A local error at which the curve is as good as smooth.
+    /// Local error at which the curve is as good as smooth.
     const COARSE_ERROR: f64 = 1e-4;
 
-    /// Way, in spacings, of the first step of a disc that runs on the curve through the points at a speed [m/s].
+    /// Distance, in spacings, covered by the first step of a disc that runs on the curve through the points at a speed
+    /// [m/s].
     fn way_of_a_step(local_error: f64, speed: f64) -> f64 {
         let at = |index: f64| DVec2::from_angle(SPACING * index);
         let points: Vec<DVec2> = (0..POINTS).map(|index| at(f64::from(index))).collect();

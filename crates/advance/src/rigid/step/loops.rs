@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use halfgap_collision::{BodyId, ConnectorId};
 
-    /// Whether connectors of two rows each close a loop, given the places among three bodies that they join.
+    /// True if connectors of two rows each, between the given places of three bodies, close a loop.
     fn any(ends: &[[Option<u32>; 2]]) -> bool {
         let row = |connector: usize, index: usize| HeldRow {
             source: RowSource::Connector(ConnectorId(connector as u32), index),
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_back_is_a_loop() {
+    fn a_chain_that_comes_back_is_a_loop() {
         // A chain from the world, a tree, and two chains that each hang by themselves.
         assert!(!any(&[[None, Some(0)], [Some(0), Some(1)], [Some(2), Some(1)]]));
         assert!(!any(&[[Some(1), Some(0)], [Some(1), Some(2)], [Some(1), None]]));

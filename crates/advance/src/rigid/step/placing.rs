@@ -83,8 +83,8 @@ mod tests {
     use glam::DVec2;
     use halfgap_collision::{BodyId, Moving};
 
-    /// All bodies in the middle of a segment along which one slides and turns: by `place_at`, and with only the poses
-    /// put.
+    /// Motions of all bodies in the middle of a segment along which one body slides and turns: placed by `place_at`,
+    /// and with only the poses put.
     fn placed_and_put(mut system: RigidSystem, body: BodyId) -> [Vec<Moving>; 2] {
         let mut group = system.groups.take(body).expect("it is held");
         system.with_group(&mut group, |dynamics, tools| {
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_is_where_it_is_placed() {
+    fn a_body_that_is_put_is_where_it_is_placed() {
         for system in [resting_discs(&[0.0]), block_on_its_corner()] {
             let [placed, put] = placed_and_put(system, BodyId(1));
             assert!(placed[1].velocity.distance(DVec2::ZERO) > 0.0);

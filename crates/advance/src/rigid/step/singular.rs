@@ -237,7 +237,7 @@ mod tests {
 
     const METHOD: Method = Method::Dop853;
 
-    /// Shares at the stages of a step of a length [s]: `floor` plus the square of the way to a point [s], up to a
+    /// Shares at the stages of a step of a length [s]: `floor` plus the square of the distance to a point [s], up to a
     /// factor.
     fn seen(length: f64, point: f64, floor: f64) -> Kept {
         let mut kept = Kept::default();
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn what_shorter_steps_do_not_mend_passes_astride() {
+    fn an_error_that_shorter_steps_do_not_mend_passes_astride() {
         const LOCAL_ERROR: f64 = 1e-9;
         let mut kept = seen(1.0, 0.46, 0.0);
         assert!(kept.passes_astride(1.0, 3.0, LOCAL_ERROR));
@@ -297,7 +297,7 @@ mod tests {
         for (error, passes) in [(20.0, false), (10.0, false), (15.0, true), (1e4, false)] {
             assert_eq!(kept.passes_astride(1.0, error, LOCAL_ERROR), passes, "{error}");
         }
-        // With a coarse tolerance an error norm above 4 is no rounding.
+        // With a coarse tolerance an error norm above 4 is not rounding.
         let mut kept = seen(1.0, 0.46, 0.0);
         for error in [10.0, 15.0] {
             assert!(!kept.passes_astride(1.0, error, 1e-5), "{error}");
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_rows_keep_otherwise_leads_no_step() {
+    fn shares_that_show_no_point_ahead_lead_no_step() {
         // The point is behind, or far ahead, or before the first stage, or astride; or the share does not vanish.
         for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
             assert_eq!(seen(1.0, point, floor).better_length(1.0, 1.0, METHOD), None, "{point}");
@@ -319,8 +319,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_measured_otherwise_compares_with_what_was_before() {
-        /// Makes a step that starts 0.5 s before a point, with roots of the shares in some unit.
+    fn shares_in_another_measure_compare_with_those_before() {
+        /// Makes a step that starts 0.5 s before a point, with the roots of the shares in some unit.
         fn step(kept: &mut Kept, unit: f64) {
             kept.open();
             for node in [0.1, 0.2, 0.4] {
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_made_shorter_does_not_end_at_a_point() {
+    fn a_shortened_step_does_not_end_at_a_point() {
         let kept = seen(1.0, 0.3, 0.0);
         for (factor, expected) in [(0.9, 0.643), (0.5, 0.0667), (0.2, 0.2)] {
             let [asked, led] = kept.shorter_lengths(1.0, factor, METHOD);

@@ -6,7 +6,7 @@ use halfgap_contact::{
 
 use super::data::{Case, collection, disproof, judge, scales};
 
-/// Whether an answer is good by the rules of the documentation, without allowance for contradictions.
+/// True if an answer is good by the rules of the documentation, without allowance for contradictions.
 fn judge_answer(case: &Case, solution: &Solution) -> Result<(), String> {
     let judged = judge(&case.problem, &solution.force);
     if !judged.good() {

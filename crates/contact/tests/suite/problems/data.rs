@@ -104,7 +104,8 @@ pub(crate) fn judge(problem: &Problem, force: &[f64]) -> Judged {
     Judged { natural, growth, backward: natural / (1.0 + growth) }
 }
 
-/// Why z proves nothing, if so: it must be z ≥ 0 and Aᵀz ≤ 0 (= 0 for bilateral rows) up to rounding, and bᵀz < 0.
+/// The reason why z proves nothing, `None` if it is a proof: z ≥ 0 and Aᵀz ≤ 0 (= 0 for bilateral rows) up to
+/// rounding, and bᵀz < 0.
 pub(crate) fn disproof(problem: &Problem, z: &[f64]) -> Option<&'static str> {
     let (s, scale) = scales(problem);
     let a = problem.dense();

@@ -102,7 +102,7 @@ fn units_from_1e_minus_12_to_1e12_make_no_difference() {
 }
 
 #[test]
-fn what_is_not_a_number_is_named_by_its_row() {
+fn numbers_that_are_not_finite_are_named_by_their_row() {
     let wrong = Problem::from_dense(&[vec![1.0, 0.0], vec![0.0, f64::NAN]], &[0.0, 0.0]);
     assert!(matches!(wrong, Err(ProblemError::NotFinite { row: 1, .. })));
     let wrong = Problem::from_dense(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[f64::INFINITY, 0.0]);
@@ -114,7 +114,8 @@ fn what_is_not_a_number_is_named_by_its_row() {
     assert_eq!(problem.len(), 3);
 }
 
-/// A pendulum's joint, its first row doubled and the copy's offset nudged by a part of it.
+/// A pendulum's joint with its first row doubled, and the offset of the copy changed by the fraction `nudge` of
+/// itself.
 fn doubled_joint(nudge: f64) -> Problem {
     let mut problem = Problem::new();
     let body = problem.add_body(InverseInertia { inverse_mass: 0.5, inverse_moment: 3.0 }).unwrap();
@@ -131,7 +132,7 @@ fn joints_that_contradict_each_other_by_rounding_are_solved_by_least_squares() {
     for nudge in [1e-12, 1e-10, 1e-9] {
         let problem = doubled_joint(nudge);
         let solution = solve(&problem).unwrap();
-        // What is left is half the nudge on either row, so neither is favoured.
+        // Half the nudge is left on either row, so neither is favoured.
         let left = [solution.acceleration[0], solution.acceleration[2]];
         assert!((left[0] + nudge).abs() < 1e-14 && (left[1] - nudge).abs() < 1e-14, "{left:?}");
         let expected = nudge / (0.5_f64 + 3.0 * 0.16).sqrt() / (9.81 / (0.5_f64 + 3.0 * 0.09).sqrt());

@@ -1,4 +1,4 @@
-//! Problems that went wrong once: found by trying many of a family.
+//! Problems that were once solved wrongly, found by trials of many problems of one family.
 
 use halfgap_contact::{
     Auto, DualActiveSet, InverseInertia, Lemke, Problem, Row, Solution, SolveError, Solver,
@@ -6,7 +6,7 @@ use halfgap_contact::{
 
 use super::data::{Case, Judged, disproof, judge};
 
-/// The answer of a solver to a problem, and how good it is.
+/// The answer of a solver to a problem, and the quality of the answer.
 fn solved(solver: &mut dyn Solver, name: &str) -> (Solution, Judged) {
     let case = Case::found(name);
     let mut solution = Solution::new();
@@ -27,7 +27,7 @@ fn solvable_problems_that_were_called_infeasible_are_solved() {
         "ring_of_three_off_by_1e-5",
         "truss_of_9_rods_kicked",
         "linear_program_of_rows_far_apart",
-        // Bodies are met in another order than their own, which the proximal method did not expect.
+        // Bodies are met in another order than their numbers, which the proximal method did not expect.
         "islands_of_66_rows",
     ] {
         let (_, judged) = solved(&mut Auto::default(), name);
@@ -44,7 +44,7 @@ fn require_modest(name: &str) {
 
 #[test]
 fn forces_of_jammed_bodies_are_modest() {
-    // They may press each other by any amount, and the middle of all such forces lies beyond all bounds.
+    // The bodies may press each other by any amount, and the middle of all those forces lies beyond all bounds.
     for name in ["discs_jammed_under_a_lid", "eight_bodies_160_contacts"] {
         require_modest(name);
     }
@@ -52,7 +52,7 @@ fn forces_of_jammed_bodies_are_modest() {
 
 #[test]
 fn a_contact_holds_what_two_pins_at_one_place_would_hold_by_huge_forces() {
-    // The block turns by no force that the pins can make, and rests on its other end.
+    // No force of the pins turns the block, and it rests on its other end.
     for name in ["two_pins_3e-8_apart", "two_pins_1e-8_apart"] {
         require_modest(name);
         let (solution, _) = solved(&mut DualActiveSet::default(), name);
@@ -78,7 +78,7 @@ fn contacts_that_contradict_each_other_by_rounding_are_made_to_agree_once() {
 }
 
 #[test]
-fn what_takes_more_digits_than_usual_is_solved() {
+fn problems_that_take_more_digits_than_usual_are_solved() {
     for name in ["truss_of_9_rods", "ropes_nearly_parallel", "block_jammed_in_a_pit"] {
         let (_, judged) = solved(&mut Auto::default(), name);
         assert!(judged.growth < 1e9 && judged.backward <= 1e-14, "{name}: {judged:?}");
@@ -119,7 +119,7 @@ fn joints_that_nearly_depend_on_each_other_are_solved_by_least_squares() {
 }
 
 #[test]
-fn what_rounding_makes_of_a_ray_is_no_proof() -> Result<(), Box<dyn std::error::Error>> {
+fn a_ray_made_by_rounding_is_no_proof() -> Result<(), Box<dyn std::error::Error>> {
     // Two contacts with forces of 1e4 and 1e5, one of them of a light body with a moment far too small for
     // it, and a joint.
     let inverse_mass = [9145.108044063347, 9145.108044063347, 0.00012616026371794375];
@@ -136,7 +136,7 @@ fn what_rounding_makes_of_a_ray_is_no_proof() -> Result<(), Box<dyn std::error::
     let mut solution = Solution::new();
     Auto::default().solve(&problem, &mut solution)?;
     assert!(solution.force[2] > 1e5, "{:?}", solution.force);
-    // Its pivots may not find them, but then it must not say that there are none.
+    // The pivots of Lemke's method may miss the forces, but must not claim that there are none.
     let outcome = Lemke::default().solve(&problem, &mut solution);
     assert!(!matches!(outcome, Err(SolveError::Infeasible(_))), "{outcome:?}");
     Ok(())
@@ -149,7 +149,7 @@ fn a_row_that_rounding_left_out_of_the_basis_is_taken_in() {
 }
 
 #[test]
-fn what_has_no_solution_is_proven() {
+fn problems_without_a_solution_are_proven_infeasible() {
     for name in [
         "doubled_joint_off_by_1e-4",
         "contradicting_matrix_35",
@@ -160,7 +160,7 @@ fn what_has_no_solution_is_proven() {
         "two_blocks_squeezed_mass_ratio_1e6",
         "pit_mass_ratio_1e9",
         "unsymmetric_doubled_joint_off_by_1e-7",
-        // Beyond what is tried with more digits.
+        // Beyond the size at which more digits are tried.
         "discs_jammed_in_a_box",
     ] {
         let case = Case::found(name);
@@ -174,7 +174,7 @@ fn what_has_no_solution_is_proven() {
     }
 }
 
-/// A problem with so many discs at rest on a floor before its rows.
+/// A problem with a number of discs at rest on a floor before its rows.
 fn beside_discs(name: &str, discs: usize, offset: f64) -> Problem {
     let mut file = Case::found(name).file;
     let rows = file.j.as_mut().unwrap();
@@ -188,7 +188,7 @@ fn beside_discs(name: &str, discs: usize, offset: f64) -> Problem {
 }
 
 #[test]
-fn what_has_no_solution_has_none_beside_other_bodies() {
+fn a_problem_without_a_solution_has_none_beside_other_bodies() {
     let (name, mut solution) = ("nine_rows_of_whole_numbers", Solution::new());
     for discs in [0, 24, 35, 39, 100] {
         let problem = beside_discs(name, discs, -1.0);
@@ -204,7 +204,7 @@ fn what_has_no_solution_has_none_beside_other_bodies() {
             }
             other => panic!("{discs} discs: {other:?}"),
         }
-        // Beside offsets so large it is rounding.
+        // Beside offsets as large as these the contradiction is rounding.
         let problem = beside_discs(name, discs + 1, -1e9);
         Auto::default().solve(&problem, &mut solution).unwrap();
     }
@@ -216,8 +216,8 @@ fn a_doubtful_verdict_on_an_island_does_not_stand_against_a_solution() {
     assert!(judged.growth < 1e8 && judged.backward <= 1e-14, "{judged:?}");
 }
 
-/// Two bodies held together by two pins on a line at an angle to the y axis, whose four rows hold three
-/// motions. The offsets are those of some accelerations, and one of the pins is off along the line.
+/// Two bodies held together by two pins on a line at an angle to the y axis, whose four rows hold three motions. The
+/// offsets follow from some accelerations, and one of the pins is off along the line.
 fn two_pins(angle: f64, off: f64) -> Problem {
     let mut problem = Problem::new();
     let bodies = [(3.4, 67.3), (1.7, 9.9)].map(|(inverse_mass, inverse_moment)| {
@@ -250,7 +250,8 @@ fn two_pins_that_hold_the_same_are_solved_or_contradict_each_other_however_they_
                 let solved = solver.solve(&two_pins(angle, off), &mut solution);
                 assert!(solved.is_ok() && solution.inconsistency <= 1e-8, "{angle}, {off}: {solved:?}");
             }
-            // Less than a hundredth of this, times the reciprocal of what rounding leaves of A, may pass for forces.
+            // A contradiction of less than a hundredth of 1e-4, times the reciprocal of what rounding leaves of A, may
+            // pass for forces.
             let problem = two_pins(angle, 1e-4);
             match solver.solve(&problem, &mut solution) {
                 Err(SolveError::Infeasible(proof)) => {

@@ -1,4 +1,4 @@
-//! Bimatrix games: costs to two players, who look for strategies from which neither gains by turning alone.
+//! Bimatrix games: costs to two players, and the strategies from which neither gains by turning alone.
 
 use halfgap_contact::{Auto, Lemke, Problem, Solution, Solver};
 use proptest::prelude::*;
@@ -8,7 +8,7 @@ use super::data::judge;
 /// Costs to both players of a game, by the first one's strategies, then the second one's.
 type Costs = Vec<Vec<[f64; 2]>>;
 
-/// The problem of a game, w = -1 + [0 A; Bᵀ 0] z, with its rows in the order of some keys, and b in some units.
+/// The problem of a game, w = -1 + [0 A; Bᵀ 0] z, with its rows sorted by keys, and b scaled by a unit.
 fn game(costs: &Costs, keys: &[u32], unit: f64) -> Problem {
     let (m, n) = (costs.len(), costs[0].len());
     let mut order: Vec<usize> = (0..m + n).collect();
@@ -26,7 +26,7 @@ fn game(costs: &Costs, keys: &[u32], unit: f64) -> Problem {
 }
 
 fn any_costs() -> impl Strategy<Value = Costs> {
-    // Small integers tie often.
+    // Costs that are small integers tie often.
     let cost = prop_oneof![(1..6_u32).prop_map(f64::from), 0.01..100.0_f64];
     let cost = prop::array::uniform2(cost);
     (1..9_usize, 1..9_usize)

@@ -1,4 +1,4 @@
-//! The choice of forces where redundant contacts leave one.
+//! The choice of forces where redundant contacts leave several.
 
 use halfgap_contact::{Auto, ForceSelection, InverseInertia, Problem, Row, Settings, Solution, Solver};
 

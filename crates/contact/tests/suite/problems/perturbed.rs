@@ -38,7 +38,7 @@ fn nearly_redundant_variations_are_solved_or_proven_infeasible() {
                         failures.push(format!("{} {size:e}: {judged:?}", case.name));
                     }
                 }
-                // Some rows then contradict each other truly: opposite sides of a disc, a joint given twice.
+                // Some rows of a variation contradict each other truly: opposite sides of a disc, a joint given twice.
                 Err(SolveError::Infeasible(proof)) => {
                     failures.extend(
                         disproof(&problem, &proof.direction).map(|why| format!("{}: {why}", case.name)),

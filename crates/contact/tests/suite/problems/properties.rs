@@ -1,4 +1,4 @@
-//! What must not change the answer, on random problems of bodies.
+//! Changes that must leave the answer as it is, on random problems of bodies.
 
 use halfgap_contact::{
     Auto, DualActiveSet, InverseInertia, Lemke, Problem, ProximalNewton, Row, Solution, Solver,
@@ -37,7 +37,7 @@ impl Raw {
     }
 }
 
-/// Problems that have a solution: b is what keeps random velocities apart, b = -A f0 + a0 with f0, a0 ≥ 0.
+/// Problems that have a solution: b = -A f0 + a0 with random f0, a0 ≥ 0.
 fn any_problem() -> impl Strategy<Value = Raw> {
     let mass = prop::array::uniform2(prop_oneof![0.1..10.0_f64, Just(1.0)]);
     let row = (
@@ -80,7 +80,8 @@ fn difference(problem: &Problem, x: &[f64], y: &[f64]) -> f64 {
     (0..s.len()).map(|i| (x[i] - y[i]).abs() / s[i] / scale).fold(0.0, f64::max)
 }
 
-/// Accelerations agree to this part of the scale: the residual rule, through the condition of small random problems.
+/// Largest difference of accelerations that agree, as a fraction of the scale: the residual rule, through the
+/// condition of small random problems.
 const CLOSE: f64 = 1e-9;
 
 proptest! {

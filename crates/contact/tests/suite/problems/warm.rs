@@ -1,4 +1,4 @@
-//! Warm starts: the same answer, whatever became of the contacts in between.
+//! Warm starts: the same answer, whatever has changed about the contacts in between.
 
 use halfgap_contact::{
     Auto, ContactKey, DualActiveSet, InverseInertia, Problem, Row, Solution, Solver, WarmStart,
@@ -49,7 +49,7 @@ fn contacts_are_found_again_by_their_keys() {
 fn keys_of_a_matrix_tell_which_of_its_rows_carried_a_force() {
     let mut solver = DualActiveSet::default();
     let (mut solution, mut warm) = (Solution::new(), WarmStart::new());
-    // One that takes a while.
+    // A problem that takes a while.
     let mut iterations = |case: &&Case| {
         let solved = case.problem.len() < 60 && solver.solve(&case.problem, &mut solution).is_ok();
         solved && solution.iterations > 3
@@ -85,7 +85,7 @@ fn a_misleading_warm_start_does_no_harm() {
     let (mut right, mut solution, mut warm) = (Solution::new(), Solution::new(), WarmStart::new());
     let mut solver = DualActiveSet::default();
     solver.solve(&case.problem, &mut right).unwrap();
-    // Everything open that was closed, and closed that was open.
+    // Every closed row is guessed open, and every open row closed.
     let mut wrong = right.clone();
     wrong.active = (0..case.problem.len()).filter(|row| !right.active.contains(row)).collect();
     warm.remember(&case.problem, &wrong);
@@ -105,7 +105,7 @@ fn a_right_guess_needs_no_pivots() {
     solver.solve_from(&case.problem, &warm, &mut solution).unwrap();
     assert_eq!(solution.iterations, 0, "{} without a guess", cold.iterations);
     assert!(cold.iterations > 0);
-    // Nothing known is as good as no guess.
+    // A guess of which nothing is known does as well as none.
     warm.guess((0..case.problem.len()).map(|_| None));
     solver.solve_from(&case.problem, &warm, &mut solution).unwrap();
     assert_eq!(solution.iterations, cold.iterations);

@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_looked_for_around_its_place() {
+    fn a_missing_field_is_looked_for_around_its_place() {
         let top = FieldPath::top();
         assert!(found(&top.field("b").field("c").field("mass")).starts_with(r#""c""#));
         assert!(found(&top.field("a").element(9)).starts_with(r#""a""#));
