@@ -167,19 +167,17 @@ fn a_parallelogram_with_a_redundant_crank_swings_as_one_pendulum() {
 }
 
 #[test]
-fn a_parallelogram_through_its_dead_point_ends_with_an_error_or_keeps_its_energy() {
+fn a_parallelogram_that_is_let_go_near_its_dead_point_keeps_its_energy() {
     // Where cranks and coupler are in one line the loop may go on in two ways, and its rows depend on each other. Let
     // go near the top, it passes that point on its way down.
     let (mut world, crank) = parallelogram(2, 3.0);
     let energy = world.energy().total();
     let mut worst: f64 = 0.0;
     for piece in 1..=400 {
-        if world.advance_to(0.01 * f64::from(piece), &mut |_| {}).is_err() {
-            break;
-        }
+        advance(&mut world, 0.01 * f64::from(piece));
         worst = worst.max((world.energy().total() - energy).abs());
     }
-    assert!(world.state(crank).angle.is_finite());
+    assert!((world.state(crank).angle - 3.0).abs() > 0.5, "it has swung");
     within("parallelogram at its dead point: energy [J]", worst, 1e-6);
     within("parallelogram at its dead point: connectors [m]", connector_error(&world), 1e-9);
 }
