@@ -4,6 +4,7 @@
 use super::within;
 use halfgap::{BodyId, Event};
 use halfgap_tests::world_of;
+use std::f64::consts::TAU;
 
 /// Times [s] at which the contacts of a scene end, up to its end.
 fn releases(text: &str, duration: f64) -> Vec<f64> {
@@ -15,43 +16,50 @@ fn releases(text: &str, duration: f64) -> Vec<f64> {
     times
 }
 
+/// A disc in an upright guide on a floor, which a turning force lifts now and then.
+fn guided_disc(magnitude: f64, rate: f64, phase: f64, duration: f64, tolerance: f64) -> String {
+    format!(
+        r#"
+        format = "halfgap-scene-1"
+        title = "t"
+        run = {{ duration = {duration:?}, tolerance = {tolerance:e} }}
+        [[body]]
+        name = "floor"
+        fixed = true
+        shape = {{ block = {{ width = 20.0, height = 1.0 }} }}
+        position = [0.0, -0.5]
+        [[body]]
+        name = "disc"
+        shape = {{ disc = {{ radius = 0.1 }} }}
+        mass = 1.0
+        elasticity = 0.0
+        position = [0.0, 0.1]
+        [[connector]]
+        slot = {{ a = {{ body = "world", point = [0.0, 0.0] }}, b = {{ body = "disc", point = [0.0, 0.0] }}, normal = [1.0, 0.0] }}
+        [[force]]
+        gravity = {{ acceleration = [0.0, -9.81] }}
+        [[force]]
+        rotating = {{ body = "disc", point = [0.0, 0.0], magnitude = {magnitude:?}, rate = {rate:?}, phase = {phase:?} }}
+        "#
+    )
+}
+
+/// The time [s] nearest to another at which the force on a guided disc comes to lift it: the floor presses with
+/// N = 9.81 - M sin(phase + rate t).
+fn lift_near(time: f64, magnitude: f64, rate: f64, phase: f64) -> f64 {
+    let lifts = (9.81f64 / magnitude).asin();
+    let turn = ((phase + rate * time - lifts) / TAU).round();
+    (lifts + turn * TAU - phase) / rate
+}
+
 #[test]
 fn a_disc_in_a_guide_leaves_its_floor_when_a_turning_force_lifts_it() {
-    // The disc stands wholly still until then, so that no error of its steps shows how the force turns: the floor
-    // presses with N = 9.81 - M sin(phase + rate t).
+    // It stands wholly still until then, so that no error of its steps tells how the force turns.
     let (mut worst, mut count) = (0.0f64, 0);
     for (magnitude, rate, phase) in [(12.0, 10.0, -0.35), (11.0, 8.5, -2.85)] {
-        for tolerance in ["1e-3", "1e-5", "1e-7", "1.1e-8", "1e-8", "9e-9", "4e-9", "1e-9", "1e-10"] {
-            let text = format!(
-                r#"
-                format = "halfgap-scene-1"
-                title = "t"
-                run = {{ duration = 1.5, tolerance = {tolerance} }}
-                [[body]]
-                name = "floor"
-                fixed = true
-                shape = {{ block = {{ width = 20.0, height = 1.0 }} }}
-                position = [0.0, -0.5]
-                [[body]]
-                name = "disc"
-                shape = {{ disc = {{ radius = 0.1 }} }}
-                mass = 1.0
-                elasticity = 0.0
-                position = [0.0, 0.1]
-                [[connector]]
-                slot = {{ a = {{ body = "world", point = [0.0, 0.0] }}, b = {{ body = "disc", point = [0.0, 0.0] }}, normal = [1.0, 0.0] }}
-                [[force]]
-                gravity = {{ acceleration = [0.0, -9.81] }}
-                [[force]]
-                rotating = {{ body = "disc", point = [0.0, 0.0], magnitude = {magnitude}, rate = {rate}, phase = {phase} }}
-                "#
-            );
-            for time in releases(&text, 1.5) {
-                // The angle at which the force begins to lift the disc, in the nearest turn.
-                let lifts = (9.81f64 / magnitude).asin();
-                let turn = ((phase + rate * time - lifts) / std::f64::consts::TAU).round();
-                let expected = (lifts + turn * std::f64::consts::TAU - phase) / rate;
-                worst = worst.max((time - expected).abs());
+        for tolerance in [1e-3, 1e-5, 1e-7, 1.1e-8, 1e-8, 9e-9, 4e-9, 1e-9, 1e-10] {
+            for time in releases(&guided_disc(magnitude, rate, phase, 1.5, tolerance), 1.5) {
+                worst = worst.max((time - lift_near(time, magnitude, rate, phase)).abs());
                 count += 1;
             }
         }
@@ -59,6 +67,76 @@ fn a_disc_in_a_guide_leaves_its_floor_when_a_turning_force_lifts_it() {
     // Three turns of the first and two of the second lift it in that time, at each of nine tolerances.
     assert_eq!(count, 45);
     within("a turning force lifts a disc: release [s]", worst, 1e-8);
+}
+
+#[test]
+fn a_force_that_turns_fast_lifts_a_disc_in_its_first_turn() {
+    // Thousands of turns would fit into the first steps.
+    let mut worst = 0.0f64;
+    for (share, rate, phase) in
+        [(1.3, 14531.9, 2.549), (3.0, 30505.0, 0.2344), (1.01, 371.76, 2.4827), (1.3, 740.74, 2.4795)]
+    {
+        let magnitude = share * 9.81;
+        for tolerance in [1e-4, 4.5e-7, 1e-8, 9.7e-9, 1e-10] {
+            let turns = 30.0 * TAU / rate;
+            let times = releases(&guided_disc(magnitude, rate, phase, turns, tolerance), turns);
+            let first = *times.first().unwrap_or_else(|| panic!("it is lifted: {rate} rad/s at {tolerance}"));
+            // The first lift after the start.
+            let near = lift_near(0.0, magnitude, rate, phase);
+            let expected = if near < 0.0 { near + TAU / rate } else { near };
+            worst = worst.max((first - expected).abs() * rate);
+        }
+    }
+    within("a fast force lifts a disc: release, angle [rad]", worst, 1e-6);
+}
+
+#[test]
+fn a_light_disc_leaves_its_floor_as_a_planet_flies_over_it() {
+    // It stands still while the planet comes from far away, and is pulled for a moment only: the floor presses with
+    // N = m (9.81 - s h / r^3), where h is the height of the planet's path above the disc and r its distance.
+    let (height, speed, mass) = (1.5f64, 40.0f64, 1e-7f64);
+    let strength = 3.0 * 9.81 * height * height;
+    let expected = {
+        let lifts = (strength * height / 9.81).cbrt();
+        1.0 - (lifts * lifts - height * height).sqrt() / speed
+    };
+    for tolerance in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10] {
+        let text = format!(
+            r#"
+            format = "halfgap-scene-1"
+            title = "t"
+            run = {{ duration = 2.0, tolerance = {tolerance:e} }}
+            [[body]]
+            name = "floor"
+            fixed = true
+            shape = {{ block = {{ width = 20.0, height = 1.0 }} }}
+            position = [0.0, -0.5]
+            [[body]]
+            name = "disc"
+            shape = {{ disc = {{ radius = 0.1 }} }}
+            mass = {mass:e}
+            elasticity = 0.0
+            position = [0.0, 0.1]
+            [[body]]
+            name = "planet"
+            shape = {{ disc = {{ radius = 0.05 }} }}
+            mass = 1.0
+            position = [{start:?}, {above:?}]
+            velocity = [{speed:?}, 0.0]
+            [[connector]]
+            slot = {{ a = {{ body = "world", point = [0.0, 0.0] }}, b = {{ body = "disc", point = [0.0, 0.0] }}, normal = [1.0, 0.0] }}
+            [[force]]
+            gravity = {{ acceleration = [0.0, -9.81], bodies = ["disc"] }}
+            [[force]]
+            mutual_gravity = {{ strength = {strength:?} }}
+            "#,
+            start = -speed,
+            above = 0.1 + height,
+        );
+        let times = releases(&text, 1.5);
+        let first = *times.first().unwrap_or_else(|| panic!("it is lifted, at {tolerance}"));
+        within(&format!("a planet lifts a disc at {tolerance:e}: release [s]"), first - expected, 1e-6);
+    }
 }
 
 /// A disc and a block that a spring with a dashpot presses together, both at a speed [m/s].
@@ -93,6 +171,25 @@ fn a_pair_that_drifts_away_rests_on_each_other_as_one_that_stays() {
             let what = format!("a pair pressed together goes {:.0e} m: its distance [m]", speed * 300.0);
             within(&what, apart(speed, tolerance) - at_rest, 3e-7);
         }
+    }
+}
+
+#[test]
+fn a_long_planned_run_changes_its_first_second_by_no_more_than_the_tolerance() {
+    // Two free discs meet after a second: with e = 0.5 and equal masses the one at 1 m/s leaves 0.25 and 0.75 m/s. In
+    // a million seconds they would fall 5e12 m.
+    for duration in [2.0, 1e3, 1e6] {
+        let text = format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = {duration:?} }}\n\
+             [[body]]\nname = \"a\"\nshape = {{ disc = {{ radius = 0.2 }} }}\nmass = 1.0\nelasticity = 0.5\nvelocity = [1.0, 0.0]\n\
+             [[body]]\nname = \"b\"\nshape = {{ disc = {{ radius = 0.3 }} }}\nmass = 1.0\nelasticity = 0.5\nposition = [1.5, 0.0]\n\
+             [[force]]\ngravity = {{ acceleration = [0.0, -9.81] }}\n"
+        );
+        let mut world = world_of(&text);
+        world.advance_to(2.0, &mut |_| {}).unwrap_or_else(|error| panic!("{error}"));
+        let error = (world.state(BodyId(0)).position.x - 1.25).abs();
+        let error = error.max((world.state(BodyId(1)).position.x - 2.25).abs());
+        within(&format!("free discs of a run of {duration:.0e} s meet: place [m]"), error, 1e-8);
     }
 }
 

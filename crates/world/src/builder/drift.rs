@@ -2,20 +2,21 @@
 
 use super::BodySpec;
 use crate::connector::ConnectorSpec;
-use crate::force::{ForceLaw, Wrench};
+use crate::force::ForceLaw;
 use glam::DVec2;
 use halfgap_advance::rigid::FlightLaw;
 use halfgap_collision::BodyId;
 use std::sync::Arc;
 
-/// Bounds the distance [m] by which the common centre of mass of all bodies moves in a duration [s], under the forces
-/// at the start; `None` if there is a fixed body, a connector or a force law ties a body to the world, a body is damped,
-/// or there is only one.
+/// Bounds the distance [m] by which the centre of mass of several bodies moves in a duration [s] by its velocity and
+/// gravity; `None` for one body, if a fixed body, a connector or a force law ties any of them to the world, or if their
+/// motion is damped.
 ///
-/// Coordinates grow by that, and their rounding with them, although the bodies stay together.
+/// Coordinates grow by that, and their rounding with them, although the bodies stay together. Forces other than gravity do
+/// not count: between the bodies they cancel, and those from outside may turn.
 pub(super) fn drift(
     bodies: &[BodySpec],
-    (laws, wrenches): (&[FlightLaw], &[Wrench]),
+    laws: &[FlightLaw],
     (connectors, forces): (&[ConnectorSpec], &[Arc<dyn ForceLaw>]),
     duration: f64,
 ) -> Option<f64> {
@@ -26,11 +27,11 @@ pub(super) fn drift(
         return None;
     }
     let (mut mass, mut momentum, mut force) = (0.0, DVec2::ZERO, DVec2::ZERO);
-    for ((body, law), wrench) in bodies.iter().zip(laws).zip(wrenches) {
+    for (body, law) in bodies.iter().zip(laws) {
         let inertia = body.inertia.as_ref()?;
         mass += inertia.mass;
         momentum += inertia.mass * body.state.velocity;
-        force += inertia.mass * law.acceleration + wrench.force;
+        force += inertia.mass * law.acceleration;
     }
     Some((momentum.length() + 0.5 * force.length() * duration) * duration / mass)
 }

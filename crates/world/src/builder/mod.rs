@@ -365,9 +365,13 @@ impl WorldBuilder {
         }
         bounds.into_iter().for_each(|bounds| scales.set_bounds(bounds));
         self.bodies.iter().for_each(|body| scales.include_distance(largest_radius(&body.shape)));
-        let (acting, ties) = ((&self.laws[..], wrenches), (&self.connectors[..], &self.forces[..]));
-        let drift = self.settings.duration.and_then(|duration| drift(&self.bodies, acting, ties, duration));
-        drift.into_iter().for_each(|distance| scales.include_distance(distance));
+        let ties = (&self.connectors[..], &self.forces[..]);
+        let drift =
+            self.settings.duration.and_then(|duration| drift(&self.bodies, &self.laws, ties, duration));
+        if let (Some(drift), Some(largest)) = (drift, scales.largest_coordinate()) {
+            // Gaps may be wider for it by no more than the tolerance.
+            scales.include_distance(drift.min(self.settings.tolerance * largest));
+        }
         // Where nothing moves and no forces act, interventions are to be expected: the speed that crosses the whole
         // scene in the run is taken for usual then.
         let crossing = scales.coordinate / self.settings.duration.unwrap_or(TIME_TO_MOVE);

@@ -129,6 +129,7 @@ impl Dynamics<'_> {
             .min(self.longest_watched_step())
             .min(self.longest_turning_step())
             .min(self.longest_smooth_step(control))
+            .min(self.longest_lawful_step())
             .min(self.longest_stable_step(method));
         self.note_damping();
         let limit = control.largest_step.unwrap_or(LONGEST_STEP).min(longest);
@@ -247,12 +248,17 @@ impl Dynamics<'_> {
     /// events anyway, and in stiff groups, whose steps grow much at once when a fast part has decayed, only contact
     /// forces bound it.
     fn largest_growth(&self) -> f64 {
-        let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
-        if is_smooth && self.group.stepping() != Stepping::Stiff {
-            STEADY_GROWTH
-        } else {
-            self.growth_by_forces()
+        if self.group.stepping() == Stepping::Stiff {
+            return self.growth_by_forces();
         }
+        let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
+        let of_forces = if is_smooth { STEADY_GROWTH } else { self.growth_by_forces() };
+        // On a body that is held still a force law may change much faster than along the last step, unseen by errors,
+        // unless the laws tell a length over which they vary.
+        let is_blind = !self.group.laws.is_empty()
+            && self.group.force_length.is_infinite()
+            && self.any_rests(&self.group.end_state);
+        if is_blind { of_forces.min(STEADY_GROWTH) } else { of_forces }
     }
 
     /// Factor by which a step may grow so that no contact force varies along it by more than its size, at the rate of

@@ -17,6 +17,8 @@ const STANDSTILL: f64 = 1e-140;
 /// Energy that rounding of positions may add in a step, as a multiple of `local_error` times the square of the scene's
 /// speed: with more, no choice of steps conserves energy.
 const UNRESOLVED: f64 = 1e4;
+/// Fraction of the length over which forces of laws vary by which bodies may move in a step of a group with contacts.
+const APPROACH: f64 = 0.5;
 /// Least number of target gaps over which forces on bodies in contact must vary: over fewer, the gaps of the contacts
 /// would decide on the forces.
 const TOLD_FROM_GAP: f64 = 10.0;
@@ -35,6 +37,15 @@ impl Dynamics<'_> {
         let allowed = ROUNDING_SHARE * self.physics.mechanism.tolerances.accuracy / f64::EPSILON;
         let of_places = allowed / self.top_speed(&self.group.state);
         (2.0 * allowed / self.group.free_acceleration).sqrt().min(of_places)
+    }
+
+    /// The longest step [s] in which the bodies of a group with contacts move by a fraction of the length over which forces
+    /// of laws vary: of bodies that are held still, no error tells that such a force comes and goes.
+    pub(super) fn longest_lawful_step(&self) -> f64 {
+        if self.group.force_length.is_infinite() || self.group.rows.iter().all(|row| row.bilateral) {
+            return f64::INFINITY;
+        }
+        APPROACH * self.group.force_length / self.top_speed(&self.group.state)
     }
 
     /// Distance [m] from a body's centre of mass to its farthest point.
@@ -97,16 +108,26 @@ impl Dynamics<'_> {
 
     /// Speed [m/s] of the fastest point of the group in a state.
     pub(super) fn top_speed(&self, state: &[f64]) -> f64 {
+        self.speeds(state).fold(0.0, f64::max)
+    }
+
+    /// True if a body of the group moves no faster than a contact closes that counts as slow.
+    pub(super) fn any_rests(&self, state: &[f64]) -> bool {
+        let slow = self.physics.mechanism.tolerances.velocity_tol;
+        self.speeds(state).any(|speed| speed <= slow)
+    }
+
+    /// Speed [m/s] of the fastest point of each body of the group in a state.
+    fn speeds(&self, state: &[f64]) -> impl Iterator<Item = f64> {
         let count = self.group.bodies.len();
-        let speeds = self.group.bodies.iter().enumerate().map(|(place, &body)| {
+        self.group.bodies.iter().enumerate().map(move |(place, &body)| {
             let at = 3 * (count + place);
             self.physics.mechanism.flyers[body.index()].fastest_point([
                 state[at],
                 state[at + 1],
                 state[at + 2],
             ])
-        });
-        speeds.fold(0.0, f64::max)
+        })
     }
 
     /// Error of a velocity [m/s] that is just acceptable.
