@@ -1,7 +1,7 @@
 //! Releases: contacts that lose their force within a group's segment.
 //!
-//! To know a force takes an evaluation of the group, so a release is looked for only when the time comes up to which
-//! none can happen. The segment is searched in one part, or in as many as the forces ask for.
+//! Each value of a force takes an evaluation of the group, so a release is looked for only when the time comes up to
+//! which none can happen. The segment is searched in one part, or in as many as the forces ask for.
 
 use super::crossing::{NODES, Part, interpolated};
 use super::earliest::Earliest;
@@ -48,11 +48,10 @@ impl Dynamics<'_> {
         let mut earliest = Earliest { found: self.pull_at_start().or(self.group.event) };
         let mut forces = std::mem::take(&mut self.stage.samples.forces);
         let mut pulled = std::mem::take(&mut self.group.pulled);
-        let mut part = Part::all(self.group.span);
-        let mut halvings = 0;
+        let (span, narrowest) = (self.group.span, NARROWEST * self.group.span);
+        let (mut part, mut halvings) = (Part::all(span), 0);
         while earliest.is_after(part.from) {
             self.sample_forces(&mut forces, part);
-            let narrowest = NARROWEST * self.group.span;
             while halvings < MOST_HALVINGS && part.span() > narrowest && !self.is_resolved_by(&forces, part) {
                 part.to = part.node(NODES / 2);
                 halvings += 1;
@@ -62,11 +61,11 @@ impl Dynamics<'_> {
             self.find_overdue(&mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
                 PULL * dynamics.stage.least[row]
             });
-            if part.to >= self.group.span {
+            if part.to >= span {
                 break;
             }
             // The next part may be twice as long.
-            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(self.group.span) };
+            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(span) };
         }
         self.group.pulled = pulled;
         self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
