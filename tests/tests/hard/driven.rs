@@ -206,6 +206,28 @@ fn settling(duration: f64, tolerance: f64) -> String {
 }
 
 #[test]
+fn bodies_that_attract_each_other_take_no_more_steps_for_going_along_fast() {
+    let pair = |speed: f64| {
+        let body = |name: &str, rest: &str| {
+            format!("[[body]]\nname = \"{name}\"\nvelocity = [{speed:?}, 0.0]\nelasticity = 0.5\n{rest}\n")
+        };
+        format!(
+            "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = {{ duration = 20.0 }}\n{}{}\
+             [[force]]\nmutual_gravity = {{ strength = 0.5 }}\n",
+            body("disc", "mass = 1.0\nshape = { disc = { radius = 0.2 } }"),
+            body(
+                "block",
+                "mass = 2.0\nshape = { block = { width = 0.4, height = 0.3 } }\nposition = [0.6, 0.02]\nangle = 0.1"
+            ),
+        )
+    };
+    for speed in [0.0, 10.0, 1e4] {
+        let steps = steps(&pair(speed), 20.0);
+        within(&format!("a pair attracts each other at {speed:.0e} m/s, 20 s: steps"), steps as f64, 3000.0);
+    }
+}
+
+#[test]
 fn a_mass_that_has_settled_on_a_damped_spring_takes_long_steps() {
     // The swing dies away within 100 s. After that the work of the dashpot is the rounding of velocities that are
     // themselves rounding.

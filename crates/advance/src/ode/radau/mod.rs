@@ -66,6 +66,8 @@ pub(super) struct Radau {
     jacobian: Vec<f64>,
     /// Rounding of the active components along a step.
     rounding: Vec<f64>,
+    /// Size of the rounding of their rates.
+    rate_rounding: Vec<f64>,
     real: Factors,
     pair: Factors,
     right: Vec<f64>,
@@ -211,14 +213,15 @@ impl Radau {
     /// part follows that. Rates are rounded with either sign: the largest of a few patterns of signs counts.
     fn find_rounding(&mut self) {
         let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
+        self.rate_rounding.clear();
+        self.rate_rounding.extend(slopes_of(&self.jacobian, self.active).map(|slopes| {
+            slopes.iter().zip(&self.start).map(|(slope, value)| slope.abs() * rounding(value)).sum::<f64>()
+        }));
         self.rounding.clear();
         self.rounding.resize(self.active, 0.0);
         for pattern in 0..SIGN_PATTERNS {
             let of_rates = &mut self.right[..self.active];
-            let rows = of_rates.iter_mut().zip(slopes_of(&self.jacobian, self.active));
-            for (row, (of_rate, slopes)) in rows.enumerate() {
-                let values = slopes.iter().zip(&self.start);
-                let size: f64 = values.map(|(slope, value)| slope.abs() * rounding(value)).sum();
+            for (row, (of_rate, &size)) in of_rates.iter_mut().zip(&self.rate_rounding).enumerate() {
                 *of_rate = if is_negative(pattern, row) { -size } else { size };
             }
             if self.solved {

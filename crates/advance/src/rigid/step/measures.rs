@@ -1,9 +1,11 @@
 //! Scales of a group's steps: its length, its speed, its rounding, and the errors that are just acceptable.
 
-use super::dynamics::Dynamics;
+use super::dynamics::{Dynamics, body_state};
 use super::extending::Tools;
+use super::group::Group;
 use super::segment::StepControl;
 use crate::ode::Stepper;
+use glam::DVec2;
 use halfgap_collision::BodyId;
 
 /// Exponent of the error in the first step: one over the order of the default method.
@@ -40,12 +42,21 @@ impl Dynamics<'_> {
     }
 
     /// The longest step [s] in which the bodies of a group with contacts move by a fraction of the length over which forces
-    /// of laws vary: of bodies that are held still, no error tells that such a force comes and goes.
+    /// of laws vary: of bodies that are held still, no error tells that such a force comes and goes. A motion that all
+    /// bodies share does not count where the laws act between them alone.
     pub(super) fn longest_lawful_step(&self) -> f64 {
-        if self.group.force_length.is_infinite() || self.group.rows.iter().all(|row| row.bilateral) {
+        let Group { bodies, laws, rows, state, .. } = &*self.group;
+        if self.group.force_length.is_infinite() || rows.iter().all(|row| row.bilateral) {
             return f64::INFINITY;
         }
-        APPROACH * self.group.force_length / self.top_speed(&self.group.state)
+        let mut named = laws.iter().flat_map(|&law| self.physics.laws[law].bodies());
+        let common = if named.all(|body| bodies.binary_search(body).is_ok()) {
+            let velocities = (0..bodies.len()).map(|place| body_state(state, bodies.len(), place).velocity);
+            velocities.sum::<DVec2>() / bodies.len() as f64
+        } else {
+            DVec2::ZERO
+        };
+        APPROACH * self.group.force_length / self.speeds(state, common).fold(0.0, f64::max)
     }
 
     /// Distance [m] from a body's centre of mass to its farthest point.
@@ -108,23 +119,23 @@ impl Dynamics<'_> {
 
     /// Speed [m/s] of the fastest point of the group in a state.
     pub(super) fn top_speed(&self, state: &[f64]) -> f64 {
-        self.speeds(state).fold(0.0, f64::max)
+        self.speeds(state, DVec2::ZERO).fold(0.0, f64::max)
     }
 
     /// True if a body of the group moves no faster than a contact closes that counts as slow.
     pub(super) fn any_rests(&self, state: &[f64]) -> bool {
         let slow = self.physics.mechanism.tolerances.velocity_tol;
-        self.speeds(state).any(|speed| speed <= slow)
+        self.speeds(state, DVec2::ZERO).any(|speed| speed <= slow)
     }
 
-    /// Speed [m/s] of the fastest point of each body of the group in a state.
-    fn speeds(&self, state: &[f64]) -> impl Iterator<Item = f64> {
+    /// Speed [m/s] of the fastest point of each body of the group in a state, less a velocity [m/s] that all share.
+    fn speeds(&self, state: &[f64], common: DVec2) -> impl Iterator<Item = f64> {
         let count = self.group.bodies.len();
         self.group.bodies.iter().enumerate().map(move |(place, &body)| {
             let at = 3 * (count + place);
             self.physics.mechanism.flyers[body.index()].fastest_point([
-                state[at],
-                state[at + 1],
+                state[at] - common.x,
+                state[at + 1] - common.y,
                 state[at + 2],
             ])
         })
