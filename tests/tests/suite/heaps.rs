@@ -4,6 +4,8 @@ use halfgap::geometry::DVec2;
 use halfgap::scene::Scene;
 use halfgap::{BodyState, World};
 use halfgap_tests::mechanism::{GRAVITY, Workshop, at_rest, block, disc};
+use halfgap_tests::random::Random;
+use std::ops::ControlFlow;
 
 const RADIUS: f64 = 0.25;
 const ELASTICITY: f64 = 0.2;
@@ -58,6 +60,52 @@ fn a_hundred_discs_pile_up_without_harm() {
     let lost = -(ledger.impacts + ledger.captures);
     assert!(lost > 0.1 * start, "{ledger:?}");
     assert!(ledger.projections.abs() + ledger.integration_error().abs() < 1e-6 * start, "{ledger:?}");
+}
+
+#[test]
+fn discs_that_nearly_fill_their_box_are_held_by_few_of_their_contacts() {
+    /// Columns and rows of discs that are packed as close as they go, but for this much [m].
+    const COLUMNS: u32 = 8;
+    const ROWS: u32 = 5;
+    const LOOSE: f64 = 1e-7;
+    const TOLERANCE: f64 = 1e-3;
+    /// Number of events by which they have settled.
+    const MOST_REPORTS: u32 = 100_000;
+    // More than a hundred contacts, of which the bodies need two a disc; others fall on top.
+    let gap = 1e-2 * TOLERANCE * RADIUS;
+    let apart = 2.0 * RADIUS + gap;
+    let wall = f64::from(COLUMNS - 1) * apart + 2.0 * (RADIUS + gap);
+    for seed in 0..30 {
+        let mut random = Random::new(seed);
+        let mut shop = Workshop::new(TOLERANCE);
+        shop.fixed("floor", block(wall + 4.0, 1.0), DVec2::new(0.5 * wall, -0.5));
+        shop.fixed("left", block(1.0, 30.0), DVec2::new(-0.5, 15.0));
+        shop.fixed("right", block(1.0, 30.0), DVec2::new(wall + 0.5, 15.0));
+        let mut add = |x: f64, y: f64| {
+            let place = at_rest(x + RADIUS + gap, y + RADIUS + gap);
+            shop.settler(&format!("disc at {x}, {y}"), disc(RADIUS), 1.0, place, ELASTICITY);
+        };
+        let height = 0.75f64.sqrt() * apart;
+        for row in 0..ROWS {
+            for column in 0..COLUMNS - row % 2 {
+                let x = (f64::from(column) + 0.5 * f64::from(row % 2)) * apart;
+                let [right, up] = [0, 1].map(|_| random.between(-LOOSE, LOOSE));
+                add(x + right, f64::from(row) * height + up);
+            }
+        }
+        for column in 0..COLUMNS / 2 {
+            let x = (2.0 * f64::from(column) + random.between(0.1, 0.9)) * apart;
+            add(x, f64::from(ROWS - 1) * height + apart + random.between(0.05, 0.25));
+        }
+        let mut world = shop.build();
+        let mut reports = 0;
+        let outcome = world.advance_while(0.5, &mut |_| {
+            reports += 1;
+            if reports < MOST_REPORTS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        let end = outcome.unwrap_or_else(|error| panic!("{seed}: {error}"));
+        assert!(end.is_continue(), "{seed}: {:?} at {} s", world.statistics(), world.time());
+    }
 }
 
 #[test]

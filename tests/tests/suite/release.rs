@@ -321,3 +321,38 @@ fn contacts_with_firm_forces_are_not_looked_at_again() {
     let per_step = statistics.evaluations as f64 / statistics.steps as f64;
     assert!(statistics.steps > 20 && per_step < 18.0, "{per_step} over {} steps", statistics.steps);
 }
+
+/// Two stones of a half arch, of inner radius 1 m, between a floor and a wall.
+fn half_arch(outer: f64, joint: f64, tolerance: f64) -> World {
+    let mut shop = Workshop::new(tolerance);
+    shop.fixed("wall", block(0.5, 6.0), DVec2::new(-0.25, 1.0));
+    shop.fixed("floor", block(2.0, 0.5), DVec2::new(1.8, -0.25));
+    for (name, from, to) in [("lower", 0.0, joint), ("upper", joint, 0.5 * PI)] {
+        let at = |angle: f64, radius: f64| radius * DVec2::from_angle(angle);
+        let vertices = [at(from, 1.0), at(from, outer), at(to, outer), at(to, 1.0)];
+        let stone = Shape::polygon(&vertices).expect("a stone");
+        let place = stone.mass_properties().centroid;
+        shop.dull(name, stone, 1.0, at_rest(place.x, place.y));
+    }
+    shop.build()
+}
+
+#[test]
+fn stones_that_slide_apart_do_not_pull_as_their_faces_part() {
+    // Two corners hold the stones flush. As the faces slide off each other, the corners come together, and their forces
+    // grow without bound and change sign: one of them must let go before.
+    let mut parted = 0;
+    for case in 0..24 {
+        let outer = 1.2 + 0.01 * f64::from(case);
+        let joint = [0.7, 0.8, 0.9][case as usize % 3];
+        let mut world = half_arch(outer, joint, 1e-3);
+        let before = world.contact_forces().len();
+        for step in 1..=120 {
+            advance(&mut world, 5e-3 * f64::from(step));
+            let least = world.contact_forces().iter().fold(0.0f64, |least, row| least.min(row.force));
+            assert!(least > -1e-6 * GRAVITY, "{outer} m, {joint} rad: {least} N at {} s", world.time());
+        }
+        parted += u32::from(world.contact_forces().len() < before);
+    }
+    assert_eq!(parted, 24);
+}

@@ -1,7 +1,8 @@
 //! Releases: contacts that lose their force within a group's segment.
 //!
 //! Each value of a force takes an evaluation of the group, so a release is looked for only when the time comes up to
-//! which none can happen. The segment is searched in one part, or in as many as the forces ask for.
+//! which none can happen. The segment is searched up to its end or to the event found otherwise, in one part, or in as
+//! many as the forces ask for.
 
 use super::crossing::{NODES, Part, interpolated};
 use super::earliest::Earliest;
@@ -23,12 +24,16 @@ const STEEP: f64 = 4.0;
 /// middles of the first and the last interval, where quartics err most, and in an inner one. They have no common divisor
 /// with each other and the nodes, so that a fast oscillation does not look the same at all of them.
 const BETWEEN_NODES: [f64; 3] = [0.118_034, 0.381_966, 0.854_102];
-/// Difference there, as a fraction of the largest sample, up to which quartics show where forces vanish.
+/// Difference there, as a fraction of the largest sample, up to which quartics show where forces vanish; a difference that
+/// is less than the force that counts as none does not matter.
 const RESOLVED: f64 = 3e-4;
 /// Span of a part, as a fraction of the segment, that is not halved any more: forces jump there.
 const NARROWEST: f64 = 1e-8;
-/// Largest number of times that parts of one segment are halved, in all.
+/// Largest number of times that parts of one segment are halved, in all, where force laws press the contacts.
 const MOST_HALVINGS: usize = 10_000;
+/// The same number without force laws: forces are smooth then, but for poles, each of which takes as many halvings as lead
+/// to the narrowest part. More are needed only where forces are rounding.
+const HALVINGS_AT_POLES: usize = 64;
 
 /// Watch for contact forces that fall to zero.
 const RELEASES: Watch = Watch {
@@ -48,11 +53,13 @@ impl Dynamics<'_> {
         let mut earliest = Earliest { found: self.pull_at_start().or(self.group.event) };
         let mut forces = std::mem::take(&mut self.stage.samples.forces);
         let mut pulled = std::mem::take(&mut self.group.pulled);
-        let (span, narrowest) = (self.group.span, NARROWEST * self.group.span);
-        let (mut part, mut halvings) = (Part::all(span), 0);
+        let narrowest = NARROWEST * self.group.span;
+        let end = earliest.limit().unwrap_or(self.group.span);
+        let most = if self.group.laws.is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
+        let (mut part, mut halvings) = (Part::all(end), 0);
         while earliest.is_after(part.from) {
             self.sample_forces(&mut forces, part);
-            while halvings < MOST_HALVINGS && part.span() > narrowest && !self.is_resolved_by(&forces, part) {
+            while halvings < most && part.span() > narrowest && !self.is_resolved_by(&forces, part) {
                 part.to = part.node(NODES / 2);
                 halvings += 1;
                 self.sample_forces(&mut forces, part);
@@ -61,28 +68,27 @@ impl Dynamics<'_> {
             self.find_overdue(&mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
                 PULL * dynamics.stage.least[row]
             });
-            if part.to >= span {
+            if part.to >= end {
                 break;
             }
             // The next part may be twice as long.
-            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(span) };
+            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(end) };
         }
         self.group.pulled = pulled;
         self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
         self.stage.samples.forces = forces;
     }
 
-    /// True if the quartics through the samples show all that contact forces do on a part of the segment. Only force laws
-    /// can make steps too long for that: of bodies that are held altogether, no error tells how their forces vary.
+    /// True if the quartics through the samples show all that contact forces do on a part of the segment. No error
+    /// estimate tells how forces vary that hold bodies altogether, nor that forces grow without bound where rows become
+    /// singular: two corners that hold a body flush come together as it slides off.
     fn is_resolved_by(&mut self, forces: &[[f64; NODES]], part: Part) -> bool {
-        if self.group.laws.is_empty() {
-            return true;
-        }
         BETWEEN_NODES.into_iter().all(|fraction| {
             self.evaluate_at(part.from + fraction * part.span());
             forces.iter().enumerate().filter(|(_, values)| values[0].is_finite()).all(|(row, values)| {
                 let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-                (self.pressure(row) - interpolated(values, fraction)).abs() <= RESOLVED * size
+                let allowed = self.stage.least[row].max(RESOLVED * size);
+                (self.pressure(row) - interpolated(values, fraction)).abs() <= allowed
             })
         })
     }

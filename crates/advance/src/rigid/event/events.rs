@@ -336,7 +336,7 @@ impl RigidSystem {
         let EventWork { region, settling, .. } = &mut *work;
         settling.set_likely(region.records.iter().map(|record| self.is_likely(record)));
         settling.expect_forces(region, &self.told.changes.end);
-        let may_hop = work.region.cause != Cause::Start;
+        let may_hop = work.region.cause != Cause::Start && !work.region.is_hasty;
         self.settle_region(work, may_hop)?;
         for round in 1..=HOP_ROUNDS {
             if !self.any_held_hops(work) {

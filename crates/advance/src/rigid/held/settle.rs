@@ -102,7 +102,10 @@ impl RigidSystem {
         while self.drop_idle(region, settling, stage) {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
-        if self.has_pulled(time) || region.cause == Cause::Start {
+        if !is_start && settling.is_shared() {
+            self.spare_nearly_redundant(region, settling);
+        }
+        if is_start || self.has_pulled(time) {
             // The last problem may still have had candidates that were then dropped without a force.
             self.pose_problem(region, settling, stage);
             self.spare_redundant(region, settling, stage);

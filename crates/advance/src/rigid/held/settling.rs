@@ -7,7 +7,9 @@ use crate::rigid::event::region::{Region, Touch};
 use crate::rigid::report::RowForce;
 use crate::rigid::step::rows::HeldRow;
 use halfgap_collision::BodyId;
-use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
+use halfgap_contact::{
+    Auto, InverseInertia, Method, Problem, Settings, Solution, SolveError, Solver, WarmStart,
+};
 
 /// Contradiction of rows, relative to the largest acceleration, up to which contacts are solved by least squares: that
 /// of rows that move no faster than at rest. The contradiction of contacts that crush a body is of the order of 1.
@@ -164,6 +166,11 @@ impl Settling {
         });
         candidates.sort_unstable();
         dropped.len() < before
+    }
+
+    /// True if the last answer may have spread forces over rows that depend on each other.
+    pub(super) fn is_shared(&self) -> bool {
+        self.solution.method == Method::ProximalNewton
     }
 
     pub(super) fn solve_leniently(&mut self) -> Result<(), SolveError> {
