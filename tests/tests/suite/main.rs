@@ -7,6 +7,7 @@ mod estimate_error;
 mod groups;
 mod heaps;
 mod impacts;
+mod laws;
 mod mirror;
 mod parser_fuzz;
 mod rail_stops;

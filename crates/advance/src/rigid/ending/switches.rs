@@ -1,9 +1,10 @@
 //! Early ends of a group's segment that no held row shows: a stop that closes, a force law that changes branch.
 
 use super::crossing::{NODES, between_nodes, first_fall, node};
+use super::earliest::Earliest;
 use crate::rigid::motion::law::Snapshot;
 use crate::rigid::step::dynamics::Dynamics;
-use crate::rigid::step::group::{Group, Stop};
+use crate::rigid::step::group::{Group, SegmentEnd, Stop};
 use crate::rigid::step::rows::moving_of;
 
 /// Factor by which the search for a stop that is touched is shortened, until its point is off it at the first node.
@@ -12,6 +13,9 @@ const SHORTER: f64 = 0.25;
 const MOST_SHORTER: usize = 30;
 /// Largest number of times that the wait after a change of sign is doubled until it shows: slow changes show late.
 const MOST_TICKS: usize = 16;
+/// Times after the end of a segment at which a change of sign is looked for, in ticks of the clock. The last is longer than
+/// the shortest step.
+const TICKS_AFTER_END: [f64; 4] = [128.0, 512.0, 2048.0, 8192.0];
 /// Fraction of the first segment of a group after which the sign of a switching function is read.
 const SIGN_AT: f64 = 1.0 / 1024.0;
 
@@ -78,12 +82,9 @@ impl Dynamics<'_> {
         self.physics.laws[law].switch(index, &now)
     }
 
-    /// Offset [s] of the first change of sign of a switching function. As a group is made just after a change, the
-    /// function is zero: its sign is read a little later.
+    /// Offset [s] of the first change of sign of a switching function.
     pub(super) fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
-        let Group { span, start, made, .. } = *self.group;
-        let sign_at = if start == made { span * SIGN_AT } else { 0.0 };
-        let sign = self.switch_at(law, index, sign_at).signum();
+        let (span, sign_at, sign) = (self.group.span, self.sign_at(), self.sign_before(law, index));
         let values = std::array::from_fn(|node_index| {
             let value = sign * self.switch_at(law, index, node(node_index, span));
             if node_index == 0 { value.max(0.0) } else { value }
@@ -95,12 +96,60 @@ impl Dynamics<'_> {
         Some(self.beyond_switch((law, index), sign, offset))
     }
 
+    /// Offset [s] of the first change of sign of a switching function just after the end of the segment: so soon that the
+    /// next step would have to go over it, however short. Dense output reaches that far beyond its end.
+    pub(crate) fn find_switch_at_end(&mut self) -> Option<f64> {
+        let mut earliest = Earliest::default();
+        for place in 0..self.group.laws.len() {
+            let law = self.group.laws[place];
+            for index in 0..self.physics.laws[law].switches() {
+                earliest.offer(self.find_change_at_end(law, index), SegmentEnd::Switch);
+            }
+        }
+        earliest.limit()
+    }
+
+    /// Offset [s] just after the end of the segment at which one switching function has changed its sign.
+    fn find_change_at_end(&mut self, law: usize, index: usize) -> Option<f64> {
+        let (span, tick, sign) = (self.group.span, self.clock_ticks(1.0), self.sign_before(law, index));
+        let offsets = TICKS_AFTER_END.map(|ticks| span + ticks * tick);
+        let is_changed = |dynamics: &mut Self, offset| sign * dynamics.switch_at(law, index, offset) < 0.0;
+        let found = offsets.iter().position(|&offset| is_changed(self, offset))?;
+        let mut after = offsets[found];
+        let mut before = if found == 0 { span } else { offsets[found - 1] };
+        while after - before > 2.0 * tick {
+            let middle = f64::midpoint(before, after);
+            *(if is_changed(self, middle) { &mut after } else { &mut before }) = middle;
+        }
+        // Sums of clock times and offsets are rounded once more.
+        Some(after + tick)
+    }
+
+    /// A number [s] of ticks of the clock at the end of the segment.
+    pub(crate) fn clock_ticks(&self, count: f64) -> f64 {
+        let span = self.group.span;
+        count * f64::EPSILON * (self.start.seconds() + span).abs().max(span)
+    }
+
+    /// Sign of a switching function along the segment, before it changes. As a group is made just after a change, the
+    /// function is zero: its sign is read a little later.
+    fn sign_before(&mut self, law: usize, index: usize) -> f64 {
+        let offset = self.sign_at();
+        self.switch_at(law, index, offset).signum()
+    }
+
+    /// Offset [s] at which the signs of switching functions are read.
+    fn sign_at(&self) -> f64 {
+        let Group { span, start, made, .. } = *self.group;
+        if start == made { span * SIGN_AT } else { 0.0 }
+    }
+
     /// First offset [s] that the clock resolves after a switching function has changed its sign from the given one,
     /// near where it does. Where the function is zero the law may take either branch, and a segment that starts there
     /// must be on the one that the law goes on with.
     fn beyond_switch(&mut self, (law, index): (usize, usize), sign: f64, offset: f64) -> f64 {
         // Sums of clock times and offsets are rounded once more.
-        let tick = f64::EPSILON * (self.start.seconds() + offset).abs().max(offset);
+        let tick = self.clock_ticks(1.0);
         let mut wait = tick;
         for _ in 0..MOST_TICKS {
             if offset + wait + tick >= self.group.span {

@@ -162,11 +162,14 @@ impl RigidSystem {
             // The middle of the segment, at which the error was read, is not reached.
             group.largest_error = 0.0;
         }
-        // Along a step over the kink of a force dense output errs by more than the estimate of the step's error.
-        let is_smooth = !matches!(group.event, Some((_, SegmentEnd::Switch)));
+        // Along a step over the kink of a force dense output errs by more than the estimate of the step's error; a step that
+        // ends just before the kink leads over it.
+        let is_switch = matches!(group.event, Some((_, SegmentEnd::Switch)));
         if offset != group.span || source == Source::Dense {
             self.with_group(&mut group, |dynamics, tools| {
-                let by_dense = source == Source::Dense || (is_smooth && dynamics.is_dense_exact(offset));
+                let leads_over = is_switch && offset > dynamics.group.span;
+                let is_exact = leads_over || (!is_switch && dynamics.is_dense_exact(offset));
+                let by_dense = source == Source::Dense || is_exact;
                 if by_dense || !dynamics.repeat_to(tools, offset) {
                     dynamics.end_by_dense(offset);
                 }

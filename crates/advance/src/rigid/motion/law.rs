@@ -75,8 +75,14 @@ impl<'a> Wrenches<'a> {
 
 /// A force law.
 ///
-/// A law must be smooth inside a step: where it changes branch, a switching function must change sign, and that is
-/// located like an impact. Change the parameters of a law only together with an intervention on one of its bodies,
+/// A law must be smooth inside a step: where it changes branch, a switching function must change sign, and the step is
+/// made to end there. The functions are sampled at five moments of each step, so two changes of sign within one step may
+/// be missed, as may a smooth force that comes and goes: where forces last for a shorter time than the motion without
+/// them would take steps, bound these, by [`length`](Self::length) where forces depend on places, or by a longest step
+/// where they depend on the time.
+///
+/// A body must not stay where a law changes branch, pressed there from both sides, as under dry friction: it would take a
+/// step for each crossing. Change the parameters of a law only together with an intervention on one of its bodies,
 /// which restarts their steps; a change of velocity by zero will do.
 pub trait ForceLaw: Debug + Send + Sync {
     /// Name of the law in messages and in the energy ledger.
@@ -87,7 +93,7 @@ pub trait ForceLaw: Debug + Send + Sync {
     fn bodies(&self) -> &[BodyId];
 
     /// Adds the forces [N] and torques [N m] of one moment. They must depend on the snapshot alone: this is called any
-    /// number of times, and not in the order of time.
+    /// number of times, not in the order of time, and for moments and places beyond those that are reached.
     fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>);
 
     /// Potential energy V [J], with force = -dV/dposition and torque = -dV/dangle; `None` if there is none: the law's
@@ -103,7 +109,8 @@ pub trait ForceLaw: Debug + Send + Sync {
     }
 
     /// Length [m] over which the forces vary by their own size, |F| / |dF/dposition|; `None` if it is never less than
-    /// the size of the bodies.
+    /// the size of the bodies. In one step the bodies of the law move by no more than it. Where a law names one body, its
+    /// motion counts as it is, else that relative to the mean of all bodies that share the step.
     fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None

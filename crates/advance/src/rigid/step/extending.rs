@@ -5,6 +5,7 @@
 
 use super::attempt::StepFailure;
 use super::dynamics::Dynamics;
+use super::group::SegmentEnd;
 use crate::ode::{Stepper, StiffnessEstimate};
 use crate::rigid::system::RigidSettings;
 
@@ -18,6 +19,13 @@ const MOST_SHORTENINGS: usize = 8;
 const DEEP: f64 = 4.0;
 /// A shorter step is worthwhile if it leaves less than this fraction of the excess of the one before.
 const WORTHWHILE: f64 = 0.5;
+
+/// Time before a change of a law's branch at which a step ends, in ticks of the clock.
+const TICKS_BEFORE_SWITCH: f64 = 64.0;
+/// Factor by which that time grows where the change then turns out to come earlier.
+const WIDER: f64 = 8.0;
+/// Largest number of steps that are tried before a change.
+const MOST_APPROACHES: usize = 8;
 
 /// Stepper, buffer and settings with which a group is stepped.
 pub(crate) struct Tools<'a> {
@@ -33,7 +41,7 @@ impl Dynamics<'_> {
             let told = self.extend_on_rows(tools)?;
             self.note_stiffness(tools, told);
             self.find_event();
-            return Ok(());
+            return self.end_before_switch(tools);
         }
         let told = self.extend_unwatched(tools)?;
         self.note_stiffness(tools, told);
@@ -42,6 +50,30 @@ impl Dynamics<'_> {
         // Of projected ends only rounding is left, so the gaps of the last evaluation tell.
         let is_projected = tools.settings.projection;
         self.group.largest_error = if is_projected { self.stage.gap_error } else { self.connector_error() };
+        Ok(())
+    }
+
+    /// Makes a step over a change of a law's branch anew, so that it ends just before the change. Stages beyond it have
+    /// the forces of another branch: with them a step may err by any amount, unseen by its error estimate, and so may its
+    /// dense output, by which the change was found.
+    fn end_before_switch(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+        if self.group.laws.is_empty() || !tools.stepper.method().is_adaptive() {
+            return Ok(());
+        }
+        let mut before = self.clock_ticks(TICKS_BEFORE_SWITCH);
+        for _ in 0..MOST_APPROACHES {
+            let Some((offset, SegmentEnd::Switch)) = self.group.event else { break };
+            if offset <= 2.0 * before {
+                break;
+            }
+            self.group.next_step = Some(offset - before);
+            self.extend_on_rows(tools)?;
+            self.find_event();
+            before *= WIDER;
+        }
+        if self.group.event.is_none() {
+            self.group.event = self.find_switch_at_end().map(|offset| (offset, SegmentEnd::Switch));
+        }
         Ok(())
     }
 

@@ -21,6 +21,8 @@ const STANDSTILL: f64 = 1e-140;
 const UNRESOLVED: f64 = 1e4;
 /// Fraction of the length over which forces of laws vary by which bodies may move in a step of a group with contacts.
 const APPROACH: f64 = 0.5;
+/// The same fraction in a group without contacts.
+const FREE_APPROACH: f64 = 1.0;
 /// Least number of target gaps over which forces on bodies in contact must vary: over fewer, the gaps of the contacts
 /// would decide on the forces.
 const TOLD_FROM_GAP: f64 = 10.0;
@@ -41,22 +43,29 @@ impl Dynamics<'_> {
         (2.0 * allowed / self.group.free_acceleration).sqrt().min(of_places)
     }
 
-    /// The longest step [s] in which the bodies of a group with contacts move by a fraction of the length over which forces
-    /// of laws vary: of bodies that are held still, no error tells that such a force comes and goes. A motion that all
-    /// bodies share does not count where the laws act between them alone.
+    /// The longest step [s] in which the bodies of a group move by a share of the length over which forces of laws vary: a
+    /// longer one may pass over such a force unseen. In a group with contacts that share is less: of bodies that are held
+    /// still, no error tells that a force comes and goes. A motion that all bodies share does not count where the laws act
+    /// between them alone.
     pub(super) fn longest_lawful_step(&self) -> f64 {
         let Group { bodies, laws, rows, state, .. } = &*self.group;
-        if self.group.force_length.is_infinite() || rows.iter().all(|row| row.bilateral) {
+        if self.group.force_length.is_infinite() {
             return f64::INFINITY;
         }
-        let mut named = laws.iter().flat_map(|&law| self.physics.laws[law].bodies());
-        let common = if named.all(|body| bodies.binary_search(body).is_ok()) {
+        let is_free = rows.iter().all(|row| row.bilateral);
+        let approach = if is_free { FREE_APPROACH } else { APPROACH };
+        // A law that names one body depends on where that is.
+        let is_between = |law: &usize| {
+            let named = self.physics.laws[*law].bodies();
+            named.len() > 1 && named.iter().all(|body| bodies.binary_search(body).is_ok())
+        };
+        let common = if laws.iter().all(is_between) {
             let velocities = (0..bodies.len()).map(|place| body_state(state, bodies.len(), place).velocity);
             velocities.sum::<DVec2>() / bodies.len() as f64
         } else {
             DVec2::ZERO
         };
-        APPROACH * self.group.force_length / self.speeds(state, common).fold(0.0, f64::max)
+        approach * self.group.force_length / self.speeds(state, common).fold(0.0, f64::max)
     }
 
     /// Distance [m] from a body's centre of mass to its farthest point.
