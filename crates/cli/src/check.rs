@@ -24,7 +24,7 @@ pub(crate) fn check(options: &CheckOptions) -> Result<End, Failure> {
         let report = match check_file(scene, options.tolerance) {
             Ok(report) => FileReport { report, file: scene.display().to_string(), usable: true },
             Err(error) => {
-                eprintln!("{}", describe(&error));
+                output::tell(&describe(&error));
                 unusable(scene, &error)
             }
         };
@@ -56,11 +56,11 @@ fn check_file(path: &Path, tolerance: Option<f64>) -> Result<CheckReport, SceneE
     }
     let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
     for warning in world.warnings() {
-        eprintln!("warning: {}: {warning}", path.display());
+        output::tell(&format!("warning: {}: {warning}", path.display()));
     }
     let report = check_world(&mut world, &scene);
     for finding in &report.findings {
-        eprintln!("warning: {}: {finding}", path.display());
+        output::tell(&format!("warning: {}: {finding}", path.display()));
     }
     Ok(report)
 }

@@ -1,5 +1,6 @@
 //! Ends of commands with their exit codes, and messages of failures.
 
+use crate::output;
 use halfgap::scene::SceneError;
 use std::fmt::Write;
 use std::io;
@@ -51,7 +52,7 @@ impl Failure {
 
     /// Writes the message to standard error.
     pub(crate) fn report(&self) {
-        eprintln!("{}", self.message());
+        output::tell(&self.message());
     }
 
     fn message(&self) -> String {

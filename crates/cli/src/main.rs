@@ -1,8 +1,14 @@
 //! The `halfgap` command: runs, varies and checks scene files, and solves contact problems.
 //!
 //! `args` declares the command line; each subcommand is a module of its own (`run` with `files`, `check`, `sweep` with
-//! `vary`, `solve`), `failure` makes messages and exit codes, `table` the tables, `output` writes to standard output,
-//! `progress` shows the progress bar, `interrupt` handles Ctrl-C and SIGTERM.
+//! `vary`, `solve`), `failure` makes messages and exit codes, `table` the tables, `output` writes to standard output
+//! and standard error, `progress` shows the progress bar, `interrupt` handles Ctrl-C and SIGTERM.
+
+#![warn(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "print macros panic where nothing can be written; `output` does not"
+)]
 
 mod args;
 mod check;

@@ -1,4 +1,4 @@
-//! Standard output.
+//! Standard output, for results, and standard error, for messages.
 
 use crate::failure::Failure;
 use std::io::{self, Write};
@@ -10,4 +10,10 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Output(error)),
         _ => Ok(()),
     }
+}
+
+/// Writes a line to standard error. A message that cannot be written is lost: it must cost neither the result nor the
+/// exit code.
+pub(crate) fn tell(line: &str) {
+    let _ = io::stderr().lock().write_all(format!("{line}\n").as_bytes());
 }

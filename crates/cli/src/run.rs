@@ -19,7 +19,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     }
     let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
     for warning in world.warnings() {
-        eprintln!("warning: {}: {warning}", options.scene.display());
+        output::tell(&format!("warning: {}: {warning}", options.scene.display()));
     }
     // Without a folder there is no recording to lose: a signal ends the command at once, as usual.
     let interrupt = if options.out.is_some() { Interrupt::listen() } else { Interrupt::default() };
@@ -53,14 +53,17 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         (false, true) => output::print(&table::of_estimate(&result)),
     };
     for finding in &report.findings {
-        eprintln!("warning: {}: {finding}", options.scene.display());
+        output::tell(&format!("warning: {}: {finding}", options.scene.display()));
     }
     if let Some(error) = &report.error {
-        eprintln!("error: {}: stopped early: {error}", options.scene.display());
+        output::tell(&format!("error: {}: stopped early: {error}", options.scene.display()));
     }
     if let (Ok(true), Some(folder)) = (&problem, &options.out) {
         let path = folder.join(files::PROBLEM);
-        eprintln!("note: `halfgap solve {}` explains the contact problem that has no answer", path.display());
+        output::tell(&format!(
+            "note: `halfgap solve {}` explains the contact problem that has no answer",
+            path.display()
+        ));
     }
     written?;
     problem?;

@@ -66,7 +66,7 @@ pub(crate) fn run(args: &SolveArgs) -> Result<End, Failure> {
     let (file, problem, next) = match read(args) {
         Ok(read) => read,
         Err(message) => {
-            eprintln!("error: {}: {message}", args.problem.display());
+            output::tell(&format!("error: {}: {message}", args.problem.display()));
             return Ok(End::BadInput);
         }
     };
@@ -84,7 +84,10 @@ fn read(args: &SolveArgs) -> Result<(ContactFile, Problem, Option<Problem>), Str
     let text = std::fs::read_to_string(&args.problem).map_err(|error| error.to_string())?;
     let file = ContactFile::parse(&text).map_err(|error| error.to_string())?;
     for field in ContactFile::unknown_fields(&text) {
-        eprintln!("warning: {}: there is no field `{field}`: it is ignored", args.problem.display());
+        output::tell(&format!(
+            "warning: {}: there is no field `{field}`: it is ignored",
+            args.problem.display()
+        ));
     }
     let problem = file.problem().map_err(|error| error.to_string())?;
     let next = match &file.b_next {

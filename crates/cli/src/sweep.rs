@@ -147,19 +147,22 @@ fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     for SweepRun { value, result, error, warnings } in &sweep.runs {
         let at = format!("{} with {} = {}", scene.display(), sweep.field, table::number(*value));
         for warning in warnings.iter().filter(|warning| told.insert(warning.as_str())) {
-            eprintln!("warning: {at}: {warning}");
+            output::tell(&format!("warning: {at}: {warning}"));
         }
         for finding in result.iter().flat_map(|result| &result.findings) {
-            eprintln!("warning: {at}: {finding}");
+            output::tell(&format!("warning: {at}: {finding}"));
         }
         match (result, error) {
-            (Some(_), Some(error)) => eprintln!("error: {at}: stopped early: {error}"),
-            (None, Some(error)) => eprintln!("error: {at}: {error}"),
+            (Some(_), Some(error)) => output::tell(&format!("error: {at}: stopped early: {error}")),
+            (None, Some(error)) => output::tell(&format!("error: {at}: {error}")),
             (_, None) => {}
         }
     }
     if sweep.runs.len() < values {
-        eprintln!("error: interrupted: {} of {values} runs were not made", values - sweep.runs.len());
+        output::tell(&format!(
+            "error: interrupted: {} of {values} runs were not made",
+            values - sweep.runs.len()
+        ));
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 /// A scene of one disc that meets nothing.
-const FLIGHT: &str = r#"format = "halfgap-scene-1"
+pub(crate) const FLIGHT: &str = r#"format = "halfgap-scene-1"
 title = "Free flight"
 
 [run]
@@ -25,27 +25,27 @@ position = [2.0, 0.0]
 "#;
 
 /// A folder that one test has to itself, removed when the test is over.
-struct Folder(PathBuf);
+pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    fn new(test: &str) -> Self {
+    pub(crate) fn new(test: &str) -> Self {
         let path = std::env::temp_dir().join(format!("halfgap-{test}-{}", std::process::id()));
         std::fs::create_dir_all(&path).expect("a folder for the test");
         Self(path)
     }
 
-    fn write(&self, name: &str, text: &str) -> String {
+    pub(crate) fn write(&self, name: &str, text: &str) -> String {
         let path = self.0.join(name);
         std::fs::write(&path, text).expect("a test file");
         path.display().to_string()
     }
 
-    fn path(&self, name: &str) -> String {
+    pub(crate) fn path(&self, name: &str) -> String {
         self.0.join(name).display().to_string()
     }
 
     /// The text without the folder's name.
-    fn plain(&self, bytes: &[u8]) -> String {
+    pub(crate) fn plain(&self, bytes: &[u8]) -> String {
         String::from_utf8_lossy(bytes).replace(&format!("{}/", self.0.display()), "")
     }
 }
@@ -56,11 +56,11 @@ impl Drop for Folder {
     }
 }
 
-fn halfgap(arguments: &[&str]) -> Output {
+pub(crate) fn halfgap(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_halfgap")).args(arguments).output().expect("the command runs")
 }
 
-fn json(output: &Output) -> serde_json::Value {
+pub(crate) fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).expect("standard output is JSON")
 }
 
