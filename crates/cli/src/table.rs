@@ -1,19 +1,22 @@
 //! The table that `halfgap run` prints, and numbers in tables.
 
-use halfgap::{Difference, ErrorEstimate, Ledger, RunResult};
+use halfgap::{Difference, ErrorEstimate, Ledger, RunResult, short_names, short_text};
 use std::fmt::Write;
 use std::ops::Range;
 
 /// Largest number of bodies listed; `--json` and `--out` list all.
 const MOST_BODIES: usize = 60;
-/// Largest length of a name; longer ones are cut.
+/// Largest length of a name; longer ones are shortened.
 const LONGEST_NAME: usize = 24;
+/// Largest length of a title; longer ones lose their end.
+const LONGEST_TITLE: usize = 200;
 /// Sizes, in the unit of the column, that are written without an exponent.
 const PLAIN: Range<f64> = 1e-3..1e5;
 
 /// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate.
 pub(crate) fn of_result(result: &RunResult) -> String {
-    let mut text = format!("{}: {} at t = {} s\n\n", result.scene, result.status.name(), result.time);
+    let title = short_text(&result.scene, LONGEST_TITLE);
+    let mut text = format!("{}: {} at t = {} s\n\n", title, result.status.name(), result.time);
     push_states(&mut text, result);
     push_summary(&mut text, result);
     push_ledger(&mut text, &result.ledger);
@@ -34,16 +37,16 @@ pub(crate) fn of_estimate(result: &RunResult) -> String {
 
 fn push_states(text: &mut String, result: &RunResult) {
     let listed = &result.bodies[..result.bodies.len().min(MOST_BODIES)];
-    let width = listed.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0).clamp(4, LONGEST_NAME);
+    let names = short_names(listed.iter().map(|(name, _)| name.as_str()), LONGEST_NAME);
+    let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
     let heads = ["x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "w [rad/s]"];
     let _ = write!(text, "{:width$}", "body");
     for head in heads {
         let _ = write!(text, " {head:>16}");
     }
     text.push('\n');
-    for (name, state) in listed {
-        let short: String = name.chars().take(LONGEST_NAME).collect();
-        let _ = write!(text, "{short:width$}");
+    for (name, (_, state)) in names.iter().zip(listed) {
+        let _ = write!(text, "{name:width$}");
         let (position, velocity) = (state.position, state.velocity);
         for value in [position.x, position.y, state.angle, velocity.x, velocity.y, state.angular_velocity] {
             let _ = write!(text, " {:>16}", number(value));

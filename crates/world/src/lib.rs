@@ -44,6 +44,8 @@ mod finding;
 pub mod force;
 mod intervention;
 mod ledger;
+#[cfg(feature = "scene")]
+mod names;
 mod near;
 mod overlap;
 #[cfg(feature = "scene")]
@@ -82,6 +84,8 @@ pub use halfgap_contact::{ImpactLaw, ImpactOrder};
 pub use halfgap_geometry as geometry;
 pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
+#[cfg(feature = "scene")]
+pub use names::{short_names, short_text};
 #[cfg(feature = "scene")]
 pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};
 #[cfg(feature = "scene")]

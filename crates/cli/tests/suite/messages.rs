@@ -1,6 +1,6 @@
 //! Messages on standard error.
 
-use crate::command::{FLIGHT, Folder};
+use crate::command::{FLIGHT, Folder, halfgap};
 use std::fs::OpenOptions;
 use std::process::{Command, Output};
 
@@ -33,4 +33,20 @@ fn messages_that_cannot_be_written_cost_neither_the_result_nor_the_exit_code() {
     assert_eq!(ends(&["solve", &scene]), (Some(2), true));
     assert_eq!(ends(&["run", &bad]), (Some(2), true));
     assert_eq!(ends(&["run"]), (Some(2), true));
+}
+
+#[test]
+fn names_in_the_table_stay_on_their_line_and_can_be_told_apart() {
+    let folder = Folder::new("names");
+    let body = |number: u32| {
+        format!(
+            "[[body]]\nname = \"a body with quite a long\\nname, number {number}\"\nmass = 1.0\nposition = [{number}, 9]\n\
+             shape = {{ disc = {{ radius = 0.1 }} }}\n"
+        )
+    };
+    let bodies = [FLIGHT, &body(1), &body(2)].concat();
+    let text = folder.plain(&halfgap(&["run", &folder.write("names.toml", &bodies)]).stdout);
+    let rows: Vec<String> =
+        text.lines().skip(3).take(3).map(|line| line.chars().take(24).collect()).collect();
+    assert_eq!(rows, ["disc                    ", "a body with…me, number 1", "a body with…me, number 2"]);
 }

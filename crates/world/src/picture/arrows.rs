@@ -1,7 +1,7 @@
 //! Forces as arrows, from the point of each force, for every movable body that it acts on.
 
 use super::svg::{Svg, TextStyle, number};
-use super::ticks::{label, round_step};
+use super::ticks::RoundStep;
 use super::view::View;
 use crate::event::ContactForce;
 use crate::recording::{Frame, Recording};
@@ -24,6 +24,15 @@ struct Push {
     force: DVec2,
 }
 
+/// An arrow that is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrow {
+    /// The point of the world from which it goes [m].
+    pub(super) from: DVec2,
+    /// Its vector on the page [px], y up.
+    pub(super) along: DVec2,
+}
+
 /// Scale of the arrows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ForceScale {
@@ -42,47 +51,53 @@ impl ForceScale {
     /// Draws the forces of a frame.
     pub(super) fn draw(self, svg: &mut Svg, recording: &Recording, frame: &Frame, view: &View) {
         svg.open_group(&[("stroke", COLOR), ("stroke-width", "1.6"), ("fill", COLOR)]);
-        for push in pushes(frame) {
-            let [primary, normal] = push.contact.bodies;
-            for (body, force) in [(primary, push.force), (normal, -push.force)] {
-                if recording.place(body).is_some() {
-                    self.draw_arrow(svg, view.to_page(push.contact.point), force);
-                }
-            }
+        for arrow in self.arrows(recording, frame) {
+            draw_arrow(svg, view.to_page(arrow.from), arrow.along);
         }
         svg.close_group();
+    }
+
+    /// Returns the arrows that are drawn for a frame.
+    pub(super) fn arrows(self, recording: &Recording, frame: &Frame) -> impl Iterator<Item = Arrow> {
+        let arrows = pushes(frame).into_iter().flat_map(move |push| {
+            let [primary, normal] = push.contact.bodies;
+            [(primary, push.force), (normal, -push.force)].map(|(body, force)| {
+                let arrow = Arrow { from: push.contact.point, along: force * self.pixels_per_newton };
+                let drawn = (SHORTEST..=2.0 * LONGEST).contains(&arrow.along.length());
+                (drawn && recording.place(body).is_some()).then_some(arrow)
+            })
+        });
+        arrows.flatten()
     }
 
     /// Draws a key, an arrow of a round force, with its right end at a point of the page.
     pub(super) fn draw_key(self, svg: &mut Svg, (right, y): (f64, f64)) {
-        let force = round_step(LONGEST / self.pixels_per_newton, 1.5);
-        let text = format!("{} N", label(force, force));
-        let length = force * self.pixels_per_newton;
+        let force = RoundStep::of(LONGEST / self.pixels_per_newton, 1.5);
+        let text = format!("{} N", force.label());
+        let length = force.size() * self.pixels_per_newton;
         svg.open_group(&[("stroke", COLOR), ("stroke-width", "1.6"), ("fill", COLOR)]);
-        self.draw_arrow(svg, (right - length, y), DVec2::new(force, 0.0));
+        draw_arrow(svg, (right - length, y), DVec2::new(length, 0.0));
         svg.close_group();
         let style = TextStyle { size: 12.0, anchor: "end", color: "#6b7278" };
         svg.text((right - length - 8.0, y + 4.0), style, &text);
     }
+}
 
-    fn draw_arrow(self, svg: &mut Svg, from: (f64, f64), force: DVec2) {
-        // The page's y axis points down.
-        let along = DVec2::new(force.x, -force.y) * self.pixels_per_newton;
-        let length = along.length();
-        if !(SHORTEST..=2.0 * LONGEST).contains(&length) {
-            return;
-        }
-        let (head, half_width) = HEAD;
-        let size = (HEAD_SHARE * length / head).min(1.0);
-        let direction = along / length;
-        let tip = DVec2::new(from.0, from.1) + along;
-        let neck = tip - direction * (head * size);
-        let wing = direction.perp() * (half_width * size);
-        svg.line(from, (neck.x, neck.y), &[]);
-        let corner = |point: DVec2| format!("{} {}", number(point.x), number(point.y));
-        let data = format!("M{}L{}L{}Z", corner(tip), corner(neck + wing), corner(neck - wing));
-        svg.path(&data, &[("stroke", "none")]);
-    }
+/// Draws an arrow from a point of the page [px] along a vector [px, y up].
+fn draw_arrow(svg: &mut Svg, from: (f64, f64), along: DVec2) {
+    // The page's y axis points down.
+    let along = DVec2::new(along.x, -along.y);
+    let length = along.length();
+    let (head, half_width) = HEAD;
+    let size = (HEAD_SHARE * length / head).min(1.0);
+    let direction = along / length;
+    let tip = DVec2::new(from.0, from.1) + along;
+    let neck = tip - direction * (head * size);
+    let wing = direction.perp() * (half_width * size);
+    svg.line(from, (neck.x, neck.y), &[]);
+    let corner = |point: DVec2| format!("{} {}", number(point.x), number(point.y));
+    let data = format!("M{}L{}L{}Z", corner(tip), corner(neck + wing), corner(neck - wing));
+    svg.path(&data, &[("stroke", "none")]);
 }
 
 /// Returns the forces of a frame; the rows of one connector are one force.

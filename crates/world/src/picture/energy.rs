@@ -26,8 +26,8 @@ pub fn energy_picture(recording: &Recording) -> String {
     let values = range(frames.iter().flat_map(|frame| CURVES.map(|(.., value)| value(frame))));
     let axes = Axes::new(times, values, PLOT_HEIGHT);
     let mut svg = Svg::new(WIDTH, axes.page_height());
-    axes.draw(&mut svg, &recording.title, "energy");
-    axes.draw_values(&mut svg, "J");
+    let unit = axes.draw_values(&mut svg, "J");
+    axes.draw(&mut svg, &recording.title, &format!("energy [{unit}]"));
     let every = frames.len().div_ceil(MOST_POINTS).max(1);
     for (index, (name, color, width, value)) in CURVES.into_iter().enumerate() {
         let mut data = String::new();

@@ -1,9 +1,10 @@
 //! The impacts of a run on a time line: a lane for each movable body, a dot for each impact it takes part in,
 //! the larger the greater the impulse.
 
-use super::axes::{Axes, WIDTH};
+use super::axes::{Axes, LONGEST_NAME, WIDTH};
 use super::color;
 use super::svg::{Svg, TextStyle, number};
+use crate::names::short_names;
 use crate::recording::Recording;
 use std::collections::BTreeMap;
 
@@ -26,18 +27,26 @@ pub fn events_picture(recording: &Recording) -> String {
     let mut svg = Svg::new(WIDTH, axes.page_height());
     let what = format!("{} impacts; the area of a dot is its impulse", recording.impacts.len());
     axes.draw(&mut svg, &recording.title, &what);
-    for (lane, bodies) in recording.movable.chunks(per_lane).enumerate() {
-        let name = recording.name(bodies[0]);
-        let others = bodies.len() - 1;
-        let name = if others == 0 { name.to_owned() } else { format!("{name} + {others}") };
-        axes.draw_lane(&mut svg, lane, &name);
+    let first = recording.movable.chunks(per_lane).map(|bodies| recording.name(bodies[0]));
+    let others = per_lane - 1;
+    let longest = LONGEST_NAME - if others == 0 { 0 } else { more(others).chars().count() };
+    for (lane, name) in short_names(first, longest).iter().enumerate() {
+        let others = recording.movable.len().min((lane + 1) * per_lane) - lane * per_lane - 1;
+        let more = if others == 0 { String::new() } else { more(others) };
+        axes.draw_lane(&mut svg, lane, &format!("{name}{more}"));
     }
     draw_dots(&mut svg, &axes, &dots(recording, &axes, per_lane));
     if recording.impacts.is_empty() {
         let style = TextStyle { size: 12.0, anchor: "middle", color: "#6b7278" };
-        svg.text((0.5 * WIDTH, axes.y(0.2)), style, "no impacts");
+        // Between the frame and the line of the first lane.
+        svg.text((0.5 * WIDTH, axes.y(0.5) - 3.0), style, "no impacts");
     }
     svg.finish()
+}
+
+/// Tells how many bodies share a lane besides the one that is named.
+fn more(others: usize) -> String {
+    format!(" + {others}")
 }
 
 /// Returns the greatest impulse in each column of each lane, so that a million impacts still make a picture.

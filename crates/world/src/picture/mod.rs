@@ -1,8 +1,8 @@
 //! Pictures of runs as SVG: the scene, energy over time, and the impacts on a time line.
 //!
-//! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `view` maps
-//! the world to the page; `scene` (with forces as `arrows` and connectors as `ties`), `energy` and `events`
-//! are one picture each, the latter two on common `axes` with round `ticks`.
+//! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `shown` chooses
+//! the part of the world to show and `view` maps it to the page; `scene` (with forces as `arrows` and connectors as
+//! `ties`), `energy` and `events` are one picture each, the latter two on common `axes` with round `ticks`.
 
 mod arrows;
 mod axes;
@@ -10,6 +10,7 @@ mod energy;
 mod events;
 mod outline;
 mod scene;
+mod shown;
 mod svg;
 mod ticks;
 mod ties;

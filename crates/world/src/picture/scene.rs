@@ -3,28 +3,24 @@
 use super::arrows::ForceScale;
 use super::color;
 use super::outline::path_data;
+use super::shown::shown_box;
 use super::svg::{Svg, TextStyle, number};
-use super::ticks::{label, round_step};
-use super::ties::{draw_rails, draw_ties, fixed_boxes};
-use super::view::{FOOT, View};
+use super::ticks::{RoundStep, exponent_below, rounded};
+use super::ties::{draw_rails, draw_ties};
+use super::view::{FOOT, HEAD, View};
 use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
-use halfgap_geometry::{Aabb, Pose};
+use halfgap_geometry::Pose;
 use std::collections::BTreeMap;
 
-/// Distance beyond the moving bodies within which fixed bodies are shown whole, as a fraction of the size of the box
-/// that the moving bodies cover.
-const NEAR: f64 = 1.5;
-/// Distance beyond the moving bodies up to which larger fixed bodies are shown, as a fraction of that size.
-const SURROUNDINGS: f64 = 0.35;
 /// Largest number of points of a trail; more are thinned out.
 const LONGEST_TRAIL: usize = 4000;
 /// Largest number of points of all trails together; more are thinned out.
 const MOST_POINTS: usize = 200_000;
-/// Step to which the time in the title is rounded [s].
-const TITLE_TIME_STEP: f64 = 1e-3;
+/// Exponent of a thousandth.
+const MILLI: i32 = -3;
 
 /// Pictures of a recording with a common view of the world, common trails and a common scale of the forces.
 #[derive(Debug)]
@@ -41,9 +37,10 @@ impl<'a> ScenePictures<'a> {
     /// Prepares pictures of a world at times of its recording.
     #[must_use]
     pub fn new(world: &'a World, recording: &'a Recording) -> Self {
-        let view = View::of_box(shown_box(world, recording));
+        let forces = ForceScale::of(recording);
+        let view = View::of_box(shown_box(world, recording, forces));
         let trails = trails(recording, &view);
-        Self { world, recording, view, trails, forces: ForceScale::of(recording) }
+        Self { world, recording, view, trails, forces }
     }
 
     /// Draws the bodies in a frame, with the forces of contacts and connectors, and returns the SVG document.
@@ -51,7 +48,6 @@ impl<'a> ScenePictures<'a> {
     pub fn at(&self, frame: &Frame) -> String {
         let Self { world, recording, view, trails, forces } = self;
         let mut svg = Svg::new(view.page_width(), view.page_height());
-        draw_title(&mut svg, recording, frame);
         svg.open_group(&[
             ("stroke-linejoin", "round"),
             ("stroke-linecap", "round"),
@@ -78,6 +74,12 @@ impl<'a> ScenePictures<'a> {
         svg.close_group();
         if let Some(forces) = forces {
             forces.draw(&mut svg, recording, frame, view);
+        }
+        // Bodies and connectors go on beyond the part that is shown; title and scales stand on top of them.
+        svg.cover(0.0, HEAD);
+        svg.cover(view.page_height() - FOOT, FOOT);
+        draw_title(&mut svg, recording, frame, view);
+        if let Some(forces) = forces {
             forces.draw_key(&mut svg, (view.page_width() - 20.0, view.page_height() - 0.45 * FOOT));
         }
         draw_scale_bar(&mut svg, view);
@@ -95,33 +97,17 @@ fn pose(state: &BodyState) -> Pose {
     Pose::new(state.position, state.angle)
 }
 
-/// Returns the box of the moving bodies in all frames, and of the fixed bodies near it.
-fn shown_box(world: &World, recording: &Recording) -> Option<Aabb> {
-    let every = recording.frames.len().div_ceil(LONGEST_TRAIL).max(1);
-    let frames = recording.frames.iter().step_by(every).chain(recording.frames.last());
-    let posed = frames.flat_map(|frame| recording.movable.iter().zip(&frame.states));
-    let moving = posed.map(|(&body, state)| world.shape(body).bounds_at(&pose(state))).reduce(Aabb::union);
-    let fixed = world.bodies().filter(|&body| world.is_fixed(body));
-    let fixed =
-        fixed.map(|body| world.shape(body).bounds_at(&pose(&world.state(body)))).chain(fixed_boxes(world));
-    let Some(moving) = moving else { return fixed.reduce(Aabb::union) };
-    let size = moving.size().max_element();
-    let (around, near) = (moving.grown(SURROUNDINGS * size), moving.grown(NEAR * size));
-    let shown = fixed.filter(|bounds| bounds.overlaps(&around)).map(|bounds| {
-        if near.contains(&bounds) {
-            bounds
-        } else {
-            Aabb { min: bounds.min.max(around.min), max: bounds.max.min(around.max) }
-        }
-    });
-    Some(shown.fold(moving, Aabb::union))
+fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame, view: &View) {
+    svg.title(&recording.title, view.page_width());
+    let subtitle = TextStyle { size: 13.0, anchor: "start", color: "#6b7278" };
+    svg.text((20.0, 47.0), subtitle, &format!("t = {} s", rounded(frame.time, time_digit(recording))));
 }
 
-fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame) {
-    let title = TextStyle { size: 18.0, anchor: "start", color: "#22272b" };
-    svg.text((20.0, 28.0), title, &recording.title);
-    let subtitle = TextStyle { size: 13.0, anchor: "start", color: "#6b7278" };
-    svg.text((20.0, 47.0), subtitle, &format!("t = {} s", label(frame.time, TITLE_TIME_STEP)));
+/// Exponent of the last digit of the time in the title: milliseconds, or a thousandth of a shorter recording.
+fn time_digit(recording: &Recording) -> i32 {
+    let [first, last] = [recording.frames.first(), recording.frames.last()];
+    let duration = last.map_or(0.0, |frame| frame.time) - first.map_or(0.0, |frame| frame.time);
+    MILLI.min(exponent_below(duration) + MILLI)
 }
 
 /// Returns the paths of the centres of mass through output times and impacts, where trails have their corners.
@@ -176,8 +162,8 @@ fn draw_movable(svg: &mut Svg, world: &World, body: BodyId, drawn: (usize, &Body
 }
 
 fn draw_scale_bar(svg: &mut Svg, view: &View) {
-    let length = round_step(view.page_width() / view.scale(), 6.0);
-    let (left, right) = (20.0, 20.0 + length * view.scale());
+    let length = RoundStep::of(view.page_width() / view.scale(), 6.0);
+    let (left, right) = (20.0, 20.0 + length.size() * view.scale());
     let y = view.page_height() - 0.45 * FOOT;
     let data = format!(
         "M{l} {top}L{l} {bottom}M{l} {y}L{r} {y}M{r} {top}L{r} {bottom}",
@@ -189,5 +175,5 @@ fn draw_scale_bar(svg: &mut Svg, view: &View) {
     );
     svg.path(&data, &[("stroke", "#6b7278"), ("stroke-width", "1.5"), ("fill", "none")]);
     let style = TextStyle { size: 12.0, anchor: "start", color: "#6b7278" };
-    svg.text((right + 8.0, y + 4.0), style, &format!("{} m", label(length, length)));
+    svg.text((right + 8.0, y + 4.0), style, &format!("{} m", length.label()));
 }

@@ -1,6 +1,11 @@
 //! A small writer of SVG documents.
 
+use crate::names::short_text;
 use std::fmt::Write;
+
+const BACKGROUND: &str = "#fdfdfb";
+/// Width of a common character, as a fraction of the font size.
+const CHARACTER: f64 = 0.6;
 
 /// An SVG document in the making; coordinates are pixels, y down.
 #[derive(Debug)]
@@ -22,7 +27,7 @@ impl Svg {
         let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\">\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"#fdfdfb\"/>\n"
+             <rect width=\"100%\" height=\"100%\" fill=\"{BACKGROUND}\"/>\n"
         );
         Self { text }
     }
@@ -73,6 +78,19 @@ impl Svg {
         self.open("text", &attributes);
         self.text.truncate(self.text.len() - 1);
         let _ = writeln!(self.text, "{}</text>", escaped(text));
+    }
+
+    /// Adds the title at the top of a page; one that is wider than the page loses its end.
+    pub(super) fn title(&mut self, title: &str, page_width: f64) {
+        let style = TextStyle { size: 18.0, anchor: "start", color: "#22272b" };
+        let room = ((page_width - 40.0) / (CHARACTER * style.size)).max(1.0);
+        self.text((20.0, 28.0), style, &short_text(title, room as usize));
+    }
+
+    /// Covers a band across the page, from `top` down, in the colour of the page.
+    pub(super) fn cover(&mut self, top: f64, height: f64) {
+        let (top, height) = (number(top), number(height));
+        self.element("rect", &[("y", &top), ("width", "100%"), ("height", &height), ("fill", BACKGROUND)]);
     }
 
     /// Returns the whole document.

@@ -28,15 +28,18 @@ const STRAIGHT: f64 = 0.15;
 const BAR: f64 = 7.0;
 const LINE: [(&str, &str); 3] = [("fill", "none"), ("stroke", COLOR), ("stroke-width", "1.5")];
 
-/// Returns the boxes of rails, and of points of the background to which connectors or springs are tied.
-pub(super) fn fixed_boxes(world: &World) -> impl Iterator<Item = Aabb> + '_ {
+/// Returns the boxes of rails.
+pub(super) fn rail_boxes(world: &World) -> impl Iterator<Item = Aabb> + '_ {
+    world.connectors().iter().filter_map(|connector| Some(connector.path()?.bounds()))
+}
+
+/// Returns the points that connectors and springs tie.
+pub(super) fn tied_points(world: &World) -> impl Iterator<Item = Anchor> + '_ {
     let of_connectors = world.connectors().iter().flat_map(|connector| {
         let (a, b) = connector.anchors();
         [Some(a), b]
     });
-    let anchors = of_connectors.flatten().copied().chain(elastic_ties(world).flatten());
-    let points = anchors.filter(|end| end.body.is_world()).map(|end| Aabb::around(end.point));
-    points.chain(world.connectors().iter().filter_map(|connector| Some(connector.path()?.bounds())))
+    of_connectors.flatten().copied().chain(elastic_ties(world).flatten())
 }
 
 /// Returns the ends of springs and dashpots, once for laws that follow each other with the same ends.
@@ -83,7 +86,7 @@ fn polyline(points: impl Iterator<Item = (f64, f64)>) -> String {
 /// Draws the connectors and springs in a frame of a recording, but for rails and stops: ropes with dashes, rods
 /// without.
 pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, frame: &Frame, view: &View) {
-    let place_of = |anchor: &Anchor| view.to_page(place_of(world, recording, frame, anchor));
+    let place_of = |anchor: &Anchor| view.to_page(place_of(world, recording, Some(frame), anchor));
     for connector in world.connectors() {
         let (a, b) = connector.anchors();
         let [a, b] = [Some(a), b].map(|end| end.map(place_of));
@@ -132,12 +135,17 @@ fn slot_direction([a, b]: [&Anchor; 2], normal: DVec2, frame: SlotFrame) -> [Anc
     [carrier, Anchor { point: carrier.point + normal.perp(), ..carrier }]
 }
 
-/// Returns the world position of an anchor in a frame [m].
-fn place_of(world: &World, recording: &Recording, frame: &Frame, anchor: &Anchor) -> DVec2 {
+/// Returns the world position of an anchor in a frame [m]; without a frame, at the present state of the world.
+pub(super) fn place_of(
+    world: &World,
+    recording: &Recording,
+    frame: Option<&Frame>,
+    anchor: &Anchor,
+) -> DVec2 {
     if anchor.body.is_world() {
         return anchor.point;
     }
-    let place = recording.movable.iter().position(|&body| body == anchor.body);
-    let state = place.and_then(|place| frame.states.get(place).copied());
+    let recorded = recording.place(anchor.body).zip(frame);
+    let state = recorded.and_then(|(place, frame)| frame.states.get(place).copied());
     state.unwrap_or_else(|| world.state(anchor.body)).pose().point_to_world(anchor.point)
 }
