@@ -17,6 +17,10 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     if let Some(duration) = options.duration {
         scene.set_duration(duration, "--duration")?;
     }
+    let everything = options.out.is_some() || options.estimate_error;
+    if everything {
+        scene.check_recording().map_err(|error| source.locate(error))?;
+    }
     let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
     for warning in world.warnings() {
         output::tell(&format!("warning: {}: {warning}", options.scene.display()));
@@ -26,7 +30,6 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }
-    let everything = options.out.is_some() || options.estimate_error;
     let record = if everything { Record::Everything } else { Record::Ends };
     let plan = RunPlan::of_scene(&scene, record);
     let progress = Progress::new(!options.quiet && !options.json, &scene.title);

@@ -50,3 +50,30 @@ fn names_in_the_table_stay_on_their_line_and_can_be_told_apart() {
         text.lines().skip(3).take(3).map(|line| line.chars().take(24).collect()).collect();
     assert_eq!(rows, ["disc                    ", "a body with…me, number 1", "a body with…me, number 2"]);
 }
+
+#[test]
+fn a_recording_that_would_not_fit_into_memory_is_refused_before_the_run() {
+    let folder = Folder::new("states");
+    let body = |number: u32| {
+        format!(
+            "[[body]]\nname = \"{number}\"\nmass = 1.0\nposition = [{number}, 9]\nshape = {{ disc = {{ radius = 0.1 }} }}\n"
+        )
+    };
+    let fine = FLIGHT.replace("duration = 2.0", "duration = 2.0\noutput_step = 2e-6");
+    let bodies: String = (1..60).map(body).collect();
+    let scene = folder.write("many.toml", &[&fine, &*bodies].concat());
+    for option in [&["--out", &folder.path("out")][..], &["--estimate-error"]] {
+        let output = halfgap(&[&["run", &scene], option].concat());
+        assert_eq!(output.status.code(), Some(2));
+        insta::allow_duplicates! {
+            insta::assert_snapshot!(folder.plain(&output.stderr), @r"
+            error: many.toml:6: run.output_step: would record 60000060 states, of 60 bodies at 1000001 times; at most 50000000 are allowed, as with an `output_step` of 2.42e-6 s
+               |
+             6 | output_step = 2e-6
+               | ^
+            ");
+        }
+    }
+    assert!(!std::path::Path::new(&folder.path("out")).exists());
+    assert_eq!(halfgap(&["run", &scene]).status.code(), Some(0), "without a recording all is as before");
+}

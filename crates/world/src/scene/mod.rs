@@ -151,6 +151,14 @@ impl Scene {
         Ok(())
     }
 
+    /// Refuses a scene whose recording of everything, [`Record::Everything`](crate::Record), would not fit into memory.
+    ///
+    /// # Errors
+    /// [`SceneError`] for too many states: the number of output times times that of movable bodies.
+    pub fn check_recording(&self) -> Result<(), SceneError> {
+        validate::validate_recording(self)
+    }
+
     /// Refuses fields of the format that are not simulated yet.
     ///
     /// # Errors

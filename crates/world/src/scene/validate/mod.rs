@@ -37,6 +37,11 @@ pub(super) fn validate_run(run: &RunData) -> Result<(), SceneError> {
     run::validate(run, &At::Top.field("run"))
 }
 
+/// Refuses a recording of more states than fit into memory.
+pub(super) fn validate_recording(scene: &Scene) -> Result<(), SceneError> {
+    run::validate_recording(scene, &At::Top.field("run"))
+}
+
 /// Applies a check to each element of an array.
 fn each<T>(
     at: &At<'_>,
