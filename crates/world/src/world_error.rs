@@ -57,6 +57,22 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
+    /// A duration is so short that the speed that crosses the scene in it is no number to compute with.
+    #[error("duration must be at least {} s, got {duration:e} s", Rounded(*least))]
+    ShortDuration {
+        /// The duration [s].
+        duration: f64,
+        /// Least duration allowed [s].
+        least: f64,
+    },
+    /// An accuracy reaches down to gaps that are not positive.
+    #[error("accuracy must be less than the target gap of {} m, got {accuracy} m", Rounded(*target_gap))]
+    WideAccuracy {
+        /// The accuracy [m].
+        accuracy: f64,
+        /// The target gap, given or from the tolerance [m].
+        target_gap: f64,
+    },
     /// A given threshold is smaller than the rounding of the movable bodies' coordinates allows.
     #[error(
         "{setting} must be at least {} m for coordinates of {} m, got {value:e} m",
@@ -141,6 +157,16 @@ pub enum WorldError {
         law: String,
         /// Name of the body.
         body: String,
+    },
+    /// A force law accelerates a body, by its force and torque together, so much that the squares of its speeds overflow.
+    #[error("force \"{law}\" accelerates body \"{body}\" by more than {largest:e} m/s^2 at the start")]
+    StrongForce {
+        /// Name of the law.
+        law: String,
+        /// Name of the body.
+        body: String,
+        /// Largest acceleration allowed [m/s²].
+        largest: f64,
     },
     /// A force law acts at the start on a body that [`ForceLaw::bodies`](crate::force::ForceLaw::bodies) does not list:
     /// its force would be ignored.

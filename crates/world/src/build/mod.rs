@@ -8,7 +8,7 @@ pub(crate) mod settings;
 
 use self::bodies::Bodies;
 use crate::builder::{BodySpec, WorldBuilder};
-use crate::scene::{BodyData, EdgeData, FieldPath, PathData, Scene, SceneError, ShapeData};
+use crate::scene::{BodyData, EdgeData, FieldPath, ForceData, PathData, Scene, SceneError, ShapeData};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, BodyState};
@@ -118,13 +118,16 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
     };
     let place = match &error {
         WorldError::DoubleName { name } | WorldError::BadName { name } => body(name, &|_| "name"),
+        WorldError::TooLarge { quantity: "gravity", .. } => strongest_gravity(scene),
         WorldError::BadNumber { body: name, quantity, .. }
         | WorldError::TooLarge { body: name, quantity, .. } => body(name, &|body| field_of(body, quantity)),
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
             body(second, &|_| "position")
         }
         // The name of a law is the path of its field.
-        WorldError::BadForce { law, .. } | WorldError::UnnamedBody { law, .. } => law.parse().ok(),
+        WorldError::BadForce { law, .. }
+        | WorldError::StrongForce { law, .. }
+        | WorldError::UnnamedBody { law, .. } => law.parse().ok(),
         WorldError::StopsBackToBack { stops } => {
             let ConnectorName { index, kind, .. } = &stops[1];
             Some(top.field("connector").element(*index).field(*kind))
@@ -139,9 +142,22 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         WorldError::BadSetting { setting, .. } | WorldError::LostInRounding { setting, .. } => {
             Some(top.field("run").field(*setting))
         }
+        WorldError::ShortDuration { .. } => Some(top.field("run").field("duration")),
+        WorldError::WideAccuracy { .. } => Some(top.field("run").field("accuracy")),
         WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
     };
     SceneError::new(place.unwrap_or_else(|| top.field("run")), error.to_string())
+}
+
+/// Returns the place of the greatest of the scene's uniform accelerations.
+fn strongest_gravity(scene: &Scene) -> Option<FieldPath> {
+    let size = |force: &ForceData| match force {
+        ForceData::Gravity(gravity) => Some(gravity.acceleration.x.abs().max(gravity.acceleration.y.abs())),
+        _ => None,
+    };
+    let sizes = scene.forces.iter().enumerate().filter_map(|(index, force)| Some((index, size(force)?)));
+    let (index, _) = sizes.max_by(|p, q| p.1.total_cmp(&q.1))?;
+    Some(FieldPath::top().field("force").element(index).field("gravity").field("acceleration"))
 }
 
 /// Returns the name of the field of a body that determines a quantity.

@@ -11,7 +11,7 @@ use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Largest size of a coordinate [m] or velocity [m/s, rad/s]: areas, moments and distances take up to fourth powers of
+/// Largest size of a coordinate [m], velocity [m/s, rad/s] or acceleration [m/s²]: areas, moments and distances take up to fourth powers of
 /// sums of them, which must not overflow.
 pub(crate) const LARGEST: f64 = 1e60;
 
@@ -95,7 +95,7 @@ impl WorldBuilder {
     pub(super) fn check_zone(&self, tolerances: &Tolerances, scales: &Scales) -> Result<(), WorldError> {
         let ToleranceOverrides { target_gap, accuracy, .. } = self.settings.overrides;
         if let Some(value) = accuracy.filter(|&value| value >= tolerances.target_gap) {
-            return Err(WorldError::BadSetting { setting: "accuracy", rule: "below the target gap", value });
+            return Err(WorldError::WideAccuracy { accuracy: value, target_gap: tolerances.target_gap });
         }
         // Only movable bodies count: a floor may extend to where nothing moves.
         let movable = self.bodies.iter().filter(|body| body.inertia.is_some());
@@ -108,6 +108,13 @@ impl WorldBuilder {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a duration, but for none at all, in which the speed that crosses the scene would be too large.
+    pub(super) fn check_duration(&self, scales: &Scales) -> Result<(), WorldError> {
+        let least = scales.coordinate / LARGEST;
+        let short = self.settings.duration.filter(|&duration| duration > 0.0 && duration < least);
+        short.map_or(Ok(()), |duration| Err(WorldError::ShortDuration { duration, least }))
     }
 
     /// Refuses coordinates and radii so large that their rounding hides gaps as small as the smallest movable body.
@@ -179,6 +186,11 @@ fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
     if let Some(value) = law.acceleration.to_array().into_iter().find(|value| !value.is_finite()) {
         return bad("gravity", "finite", value);
     }
+    if let Some(value) =
+        law.acceleration.to_array().into_iter().find(|value| body.inertia.is_some() && !is_sound(*value))
+    {
+        return Err(too_large(body, "gravity", LARGEST, value));
+    }
     for (quantity, value) in [("damping by mass", law.linear_rate), ("damping by moment", law.angular_rate)] {
         if !(value >= 0.0 && value.is_finite()) {
             return bad(quantity, "finite, and not negative", value);
@@ -206,16 +218,6 @@ pub(super) fn world_bounds(connector: &Connector) -> Option<Aabb> {
 fn check_body(body: &BodySpec) -> Result<(), WorldError> {
     let bad =
         |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
-    if let Some(Inertia { mass, moment }) = body.inertia {
-        for (quantity, value) in [("mass", mass), ("moment", moment)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return bad(quantity, "positive and finite", value);
-            }
-            if !(1.0 / value).is_normal() {
-                return bad(quantity, "of a size whose inverse is a number", value);
-            }
-        }
-    }
     if !(0.0..=1.0).contains(&body.elasticity) {
         return bad("elasticity", "between 0 and 1", body.elasticity);
     }
@@ -238,10 +240,21 @@ fn check_body(body: &BodySpec) -> Result<(), WorldError> {
     let mut sizes = sizes
         .chain([center.x, center.y].map(|value| ("centre of mass", value)))
         .chain(corners.map(|value| ("coordinates of the shape", value)));
-    match sizes.find(|(_, value)| !is_sound(*value)) {
-        Some((quantity, value)) => Err(too_large(body, quantity, LARGEST, value)),
-        None => Ok(()),
+    if let Some((quantity, value)) = sizes.find(|(_, value)| !is_sound(*value)) {
+        return Err(too_large(body, quantity, LARGEST, value));
     }
+    // Last, as a bad shape or centre of mass makes a bad moment.
+    if let Some(Inertia { mass, moment }) = body.inertia {
+        for (quantity, value) in [("mass", mass), ("moment", moment)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return bad(quantity, "positive and finite", value);
+            }
+            if !(1.0 / value).is_normal() {
+                return bad(quantity, "of a size whose inverse is a number", value);
+            }
+        }
+    }
+    Ok(())
 }
 
 fn too_large(body: &BodySpec, quantity: &'static str, largest: f64, value: f64) -> WorldError {

@@ -182,6 +182,7 @@ impl WorldBuilder {
         let wrenches = self.wrenches()?;
         let scales = self.scales(&wrenches);
         self.check_resolution(&scales)?;
+        self.check_duration(&scales)?;
         let tolerances = tolerances(&self.settings, &scales);
         self.check_zone(&tolerances, &scales)?;
         let warnings =
@@ -324,6 +325,13 @@ impl WorldBuilder {
                     let body = self.bodies[body.index()].name.clone();
                     return Err(WorldError::BadForce { law: law.name().to_owned(), body });
                 }
+                let acceleration = self.bodies[body.index()].inertia.as_ref().map_or(0.0, |inertia| {
+                    acceleration(inertia, farthest_reach(&self.bodies[body.index()]), DVec2::ZERO, &sum)
+                });
+                if acceleration > LARGEST {
+                    let (law, body) = (law.name().to_owned(), self.bodies[body.index()].name.clone());
+                    return Err(WorldError::StrongForce { law, body, largest: LARGEST });
+                }
             }
         }
         // A wrench that is left acts on a body that its law does not list.
@@ -353,8 +361,7 @@ impl WorldBuilder {
             scales.smallest_radius = Some(scales.smallest_radius.map_or(reach, |least| least.min(reach)));
             let speed = body.state.velocity.length() + body.state.angular_velocity.abs() * reach;
             scales.speed = scales.speed.max(speed);
-            let acceleration = (law.acceleration + wrench.force / inertia.mass).length()
-                + wrench.torque.abs() / inertia.moment * reach;
+            let acceleration = acceleration(inertia, reach, law.acceleration, wrench);
             scales.acceleration = scales.acceleration.max(acceleration);
             let turning =
                 if shape.centered_disc().is_some() { 0.0 } else { body.state.angular_velocity.abs() * reach };
@@ -483,6 +490,16 @@ fn center_of_mass(body: &BodySpec) -> DVec2 {
         let rounding = CENTROID_ROUNDINGS * f64::EPSILON * body.shape.reach();
         if centroid.length() <= rounding { DVec2::ZERO } else { centroid }
     })
+}
+
+/// Acceleration [m/s²] of a body's fastest point, at a reach [m] from its centre of mass, by gravity, force and torque.
+fn acceleration(inertia: &Inertia, reach: f64, gravity: DVec2, wrench: &Wrench) -> f64 {
+    (gravity + wrench.force / inertia.mass).length() + wrench.torque.abs() / inertia.moment * reach
+}
+
+/// Bound [m] on the distance of a body's points from its centre of mass.
+fn farthest_reach(body: &BodySpec) -> f64 {
+    body.shape.reach() + center_of_mass(body).length()
 }
 
 /// Largest radius [m] of a shape's arcs.

@@ -15,6 +15,9 @@ const LARGEST_JSON: u64 = 64 << 20;
 /// up to fifty times as much memory.
 const LARGEST_TOML: u64 = 8 << 20;
 
+/// serde_json's message for a number beyond the doubles.
+const TOO_LARGE: &str = "number out of range";
+
 /// Text format of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneFormat {
@@ -150,6 +153,8 @@ impl SceneSource {
             // serde_json puts its own place behind the message.
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
             match inner.classify() {
+                // serde_json counts this among the mistakes of syntax.
+                _ if message == TOO_LARGE => self.data_error(field, "the number is too large"),
                 serde_json::error::Category::Data => self.data_error(field, message),
                 // serde_json reports this category where a string is expected and another type is there.
                 _ if serde_json::from_str::<IgnoredAny>(&self.text).is_ok() => {

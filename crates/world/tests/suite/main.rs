@@ -9,5 +9,7 @@ mod pictures;
 #[cfg(feature = "scene")]
 mod recordings;
 #[cfg(feature = "scene")]
+mod refusals;
+#[cfg(feature = "scene")]
 mod scene_files;
 mod start;

@@ -1,8 +1,16 @@
 //! Rules for values, each with its message, at a place in the scene.
 
+use crate::builder::LARGEST;
 use crate::scene::Vector;
 use crate::scene::error::SceneError;
 use crate::scene::field_path::{FieldPath, Step};
+use std::fmt::{self, Display, Formatter};
+use std::ops::Range;
+
+/// Smallest length of a shape [m]: moments take fourth powers of it, which must not underflow.
+const SMALLEST: f64 = 1e-60;
+/// Sizes of numbers that are written without a power of ten.
+const PLAIN: Range<f64> = 1e-9..1e16;
 
 /// A place in the scene, chained to the one around it so that a scene without errors allocates no paths.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +39,7 @@ impl<'a> At<'a> {
             return Err(self.error(format!("must be a finite number, got {value}")));
         }
         let space = if unit.is_empty() { "" } else { " " };
-        if holds { Ok(()) } else { Err(self.error(format!("{rule}, got {value}{space}{unit}"))) }
+        if holds { Ok(()) } else { Err(self.error(format!("{rule}, got {}{space}{unit}", Digits(value)))) }
     }
 
     pub(super) fn finite(&self, value: f64) -> Result<(), SceneError> {
@@ -40,6 +48,13 @@ impl<'a> At<'a> {
 
     pub(super) fn positive(&self, value: f64, unit: &str) -> Result<(), SceneError> {
         self.require(value > 0.0, "must be positive", value, unit)
+    }
+
+    /// Returns an error for a length that is not positive, or whose powers over- or underflow.
+    pub(super) fn length(&self, value: f64) -> Result<(), SceneError> {
+        self.positive(value, "m")?;
+        let rule = format!("must lie between {SMALLEST:e} and {LARGEST:e} m");
+        self.require((SMALLEST..=LARGEST).contains(&value), &rule, value, "m")
     }
 
     pub(super) fn not_negative(&self, value: f64, unit: &str) -> Result<(), SceneError> {
@@ -105,6 +120,16 @@ impl<'a> At<'a> {
             };
         }
         steps.into_iter().rev().collect()
+    }
+}
+
+/// A number with all its digits, and with a power of ten where it is very large or small.
+struct Digits(f64);
+
+impl Display for Digits {
+    fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
+        let is_plain = self.0 == 0.0 || PLAIN.contains(&self.0.abs());
+        if is_plain { write!(out, "{}", self.0) } else { write!(out, "{:e}", self.0) }
     }
 }
 

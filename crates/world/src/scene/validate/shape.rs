@@ -7,7 +7,7 @@ use crate::scene::{EdgeData, OutlineData, PathData, RingData, RoundedBlockData, 
 pub(super) fn validate(shape: &ShapeData, at: &At<'_>) -> Result<(), SceneError> {
     let at = at.field(shape.key());
     match shape {
-        ShapeData::Disc(disc) => at.field("radius").positive(disc.radius, "m"),
+        ShapeData::Disc(disc) => at.field("radius").length(disc.radius),
         ShapeData::Block(block) => validate_sides(block.width, block.height, &at),
         ShapeData::RoundedBlock(block) => validate_rounded_block(block, &at),
         ShapeData::Polygon(polygon) => validate_points(&polygon.vertices, 3, &at.field("vertices")),
@@ -17,20 +17,20 @@ pub(super) fn validate(shape: &ShapeData, at: &At<'_>) -> Result<(), SceneError>
 }
 
 fn validate_sides(width: f64, height: f64, at: &At<'_>) -> Result<(), SceneError> {
-    at.field("width").positive(width, "m")?;
-    at.field("height").positive(height, "m")
+    at.field("width").length(width)?;
+    at.field("height").length(height)
 }
 
 fn validate_rounded_block(block: &RoundedBlockData, at: &At<'_>) -> Result<(), SceneError> {
     validate_sides(block.width, block.height, at)?;
     let at = at.field("radius");
-    at.positive(block.radius, "m")?;
+    at.length(block.radius)?;
     at.at_most(block.radius, 0.5 * block.width.min(block.height), "half of the shorter side", "m")
 }
 
 fn validate_ring(ring: &RingData, at: &At<'_>) -> Result<(), SceneError> {
-    at.field("outer").positive(ring.outer, "m")?;
-    at.field("inner").positive(ring.inner, "m")?;
+    at.field("outer").length(ring.outer)?;
+    at.field("inner").length(ring.inner)?;
     at.field("inner").below(ring.inner, ring.outer, "outer", "m")
 }
 

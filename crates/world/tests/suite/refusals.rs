@@ -1,0 +1,59 @@
+//! Scenes that are refused, or built with a warning, with the field to blame.
+
+use halfgap::World;
+use halfgap::scene::{SceneFormat, SceneSource};
+
+const GOOD: &str = r#"format = "halfgap-scene-1"
+title = "Ball over a floor"
+[run]
+duration = 1.0
+[[body]]
+name = "floor"
+fixed = true
+shape = { block = { width = 10.0, height = 1.0 } }
+position = [0.0, -0.5]
+[[body]]
+name = "ball"
+shape = { disc = { radius = 0.5 } }
+position = [0.0, 2.0]
+mass = 1.0
+"#;
+
+/// Builds the world of the good scene with one thing replaced, or tells why not.
+fn built(from: &str, to: &str) -> Result<World, String> {
+    assert!(GOOD.contains(from), "{from:?} is part of the scene");
+    let source = SceneSource::new(GOOD.replacen(from, to, 1), SceneFormat::Toml);
+    let built = source.parse().and_then(|scene| World::from_scene(&scene));
+    built.map_err(|error| source.locate(error).to_string())
+}
+
+fn message(from: &str, to: &str) -> String {
+    built(from, to).expect_err("the scene is bad")
+}
+
+/// The message for the good scene with more at its end.
+fn message_with(more: &str) -> String {
+    message("mass = 1.0\n", &format!("mass = 1.0\n{more}\n"))
+}
+
+#[test]
+fn numbers_too_large_or_small_to_compute_with_are_named_with_their_field() {
+    insta::assert_snapshot!(message_with("[[force]]\ngravity = { acceleration = [0, -1e200] }"), @r#"line 16: force[0].gravity.acceleration: body "ball": gravity must be at most 1e60 in size, got -1e200"#);
+    insta::assert_snapshot!(message_with("[[force]]\nconstant = { body = \"ball\", point = [0, 0], force = [1e300, 0] }"), @r#"line 16: force[0].constant: force "force[0].constant" accelerates body "ball" by more than 1e60 m/s^2 at the start"#);
+    insta::assert_snapshot!(message("duration = 1.0", "duration = 1e-320"), @"line 4: run.duration: duration must be at least 5e-60 s, got 1e-320 s");
+    insta::assert_snapshot!(message("mass = 1.0", "mass = 1.0\ncenter_of_mass = [1e300, 0]"), @r#"line 15: body[1].center_of_mass: body "ball": centre of mass must be at most 1e60 in size, got 1e300"#);
+    insta::assert_snapshot!(message("radius = 0.5", "radius = 1e300"), @"line 12: body[1].shape.disc.radius: must lie between 1e-60 and 1e60 m, got 1e300 m");
+    insta::assert_snapshot!(message("radius = 0.5", "radius = 1e-300"), @"line 12: body[1].shape.disc.radius: must lie between 1e-60 and 1e60 m, got 1e-300 m");
+    insta::assert_snapshot!(message("mass = 1.0", "mass = -1e300"), @"line 14: body[1].mass: must be positive, got -1e300 kg");
+    insta::assert_snapshot!(message("duration = 1.0", "duration = 1.0\naccuracy = 1.0"), @"line 5: run.accuracy: accuracy must be less than the target gap of 5e-11 m, got 1 m");
+}
+
+#[test]
+fn numbers_of_json_beyond_the_doubles_are_too_large() {
+    let text = "{\"format\": \"halfgap-scene-1\", \"title\": \"t\",\n\"run\": {\"duration\": 1e400}}";
+    let error = SceneSource::new(text, SceneFormat::Json).parse().expect_err("no double is that large");
+    insta::assert_snapshot!(error.to_string(), @"line 2: run.duration: the number is too large");
+    let text = text.replace("1e400", "true").replace("\"t\"", "5");
+    let error = SceneSource::new(text, SceneFormat::Json).parse().expect_err("a title is a string");
+    insta::assert_snapshot!(error.to_string(), @"line 1: title: invalid type: integer `5`, expected a string");
+}
