@@ -1,6 +1,6 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
-//! `source` reads and parses a text, `validate` checks the values, `locate` finds the line of a field for
+//! `source` reads and parses a text (`tables` refuses arrays for tables), `validate` checks the values, `locate` finds the line of a field for
 //! messages, `varied` puts other numbers into one field, and `supported` refuses fields of the format that are
 //! not simulated yet. SI units, radians, counter-clockwise positive, y up.
 
@@ -16,6 +16,7 @@ mod run_data;
 mod shape;
 mod source;
 mod supported;
+mod tables;
 mod validate;
 mod varied;
 mod vector;

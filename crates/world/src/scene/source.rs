@@ -4,7 +4,7 @@ use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
 use super::locate::find_offset;
-use serde::de::IgnoredAny;
+use super::tables::Tables;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -138,7 +138,7 @@ impl SceneSource {
             self.syntax_error(&error.message().trim_end().replace('\n', "; "), offset)
         };
         let deserializer = toml::Deserializer::parse(&self.text).map_err(syntax)?;
-        serde_path_to_error::deserialize(deserializer).map_err(|error| {
+        serde_path_to_error::deserialize(Tables(deserializer)).map_err(|error| {
             let field = field_path(error.path());
             self.data_error(field, error.inner().message())
         })
@@ -146,7 +146,7 @@ impl SceneSource {
 
     fn parse_json(&self) -> Result<Scene, SceneError> {
         let mut deserializer = serde_json::Deserializer::from_str(&self.text);
-        let scene = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let scene = serde_path_to_error::deserialize(Tables(&mut deserializer)).map_err(|error| {
             let (field, inner) = (field_path(error.path()), error.inner());
             let offset = offset_of(&self.text, inner.line(), inner.column());
             let message = inner.to_string();
@@ -156,10 +156,6 @@ impl SceneSource {
                 // serde_json counts this among the mistakes of syntax.
                 _ if message == TOO_LARGE => self.data_error(field, "the number is too large"),
                 serde_json::error::Category::Data => self.data_error(field, message),
-                // serde_json reports this category where a string is expected and another type is there.
-                _ if serde_json::from_str::<IgnoredAny>(&self.text).is_ok() => {
-                    self.data_error(field, "expected a string")
-                }
                 _ => self.syntax_error(message, offset),
             }
         })?;
@@ -225,5 +221,4 @@ pub(super) fn plain(message: &str) -> String {
         .replace("expected a sequence", "expected an array")
         .replace("invalid type: map", "invalid type: table")
         .replace("invalid type: sequence", "invalid type: array")
-        .replace("expected struct ", "expected a table: ")
 }

@@ -6,6 +6,7 @@ use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
 use super::source::{SceneSource, field_path, plain};
+use super::tables::Tables;
 use serde_json::{Number, Value};
 
 /// Size below which whole numbers are exact as floating-point numbers, 2^53.
@@ -51,7 +52,7 @@ impl VariedScene {
         let number = number(value).ok_or_else(|| located(self.bad("must be finite")))?;
         put(&mut data, self.field.steps(), number)
             .ok_or_else(|| located(self.bad("there is no such field")))?;
-        let scene: Scene = serde_path_to_error::deserialize(data).map_err(|error| {
+        let scene: Scene = serde_path_to_error::deserialize(Tables(data)).map_err(|error| {
             located(SceneError::new(field_path(error.path()), plain(&error.inner().to_string())))
         })?;
         scene.validate().map_err(located)?;

@@ -57,3 +57,18 @@ fn numbers_of_json_beyond_the_doubles_are_too_large() {
     let error = SceneSource::new(text, SceneFormat::Json).parse().expect_err("a title is a string");
     insta::assert_snapshot!(error.to_string(), @"line 1: title: invalid type: integer `5`, expected a string");
 }
+
+#[test]
+fn arrays_are_no_tables_and_tables_no_names() {
+    insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", "{ disc = [0.5] }"), @"line 12: body[1].shape.disc: invalid type: array, expected a table");
+    insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", "{ disc = 3 }"), @"line 12: body[1].shape.disc: invalid type: integer `3`, expected a table");
+    insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", "[0.5]"), @"line 12: body[1].shape: invalid type: array, expected a table with one key that names the shape");
+    insta::assert_snapshot!(message_with("[[connector]]\npin = [[\"world\", [0, 3]], [\"ball\", [0, 1]], 0.5, false, false]"), @"line 16: connector[0].pin: invalid type: array, expected a table");
+    insta::assert_snapshot!(message_with("[[force]]\ngravity = [[0, -9.81]]"), @"line 16: force[0].gravity: invalid type: array, expected a table");
+    insta::assert_snapshot!(message_with("[[expected]]\ntime = 1.0\n[expected.bodies]\nball = 3"), @"line 18: expected[0].bodies.ball: invalid type: integer `3`, expected a table");
+    insta::assert_snapshot!(message("duration = 1.0", "duration = 1.0\nimpact_law = { hybrid = [] }"), @"line 5: run.impact_law: invalid type: table, expected a string");
+    insta::assert_snapshot!(message("duration = 1.0", "duration = 1.0\nimpact_law = 3"), @"line 5: run.impact_law: invalid type: integer `3`, expected a string");
+    insta::assert_snapshot!(message("[run]\nduration = 1.0", "run = [1.0]"), @"line 3: run: invalid type: array, expected a table");
+    let error = SceneSource::new("[]", SceneFormat::Json).parse().expect_err("an array");
+    insta::assert_snapshot!(error.to_string(), @"line 1: invalid type: array, expected a table");
+}

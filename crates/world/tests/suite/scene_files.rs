@@ -171,7 +171,7 @@ fn json_messages_have_lines_too() {
             "\u{feff}{{\"format\": \"halfgap-scene-1\", \"title\": \"t\",\n\"run\": {{\"duration\": 1, \"impact_law\": {law}}}}}"
         )
     };
-    insta::assert_snapshot!(bad(&of_law("1")), @"line 2: run.impact_law: expected a string");
+    insta::assert_snapshot!(bad(&of_law("1")), @"line 2: run.impact_law: invalid type: integer `1`, expected a string");
     assert!(
         Scene::parse(&of_law("\"hybrid\""), SceneFormat::Json).is_ok(),
         "a mark before the text is none of it"
