@@ -3,10 +3,11 @@
 
 mod checks;
 mod drift;
+mod warnings;
 
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
-use crate::rigid_settings::{method, rigid_settings, tolerances};
+use crate::rigid_settings::{rigid_settings, tolerances};
 use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::sentry::{EnergyScales, Sentry};
@@ -185,8 +186,14 @@ impl WorldBuilder {
         self.check_duration(&scales)?;
         let tolerances = tolerances(&self.settings, &scales);
         self.check_zone(&tolerances, &scales)?;
-        let warnings =
-            [self.gap_warning(&scales), self.step_warning(), self.fixed_warning(), self.stop_warning()];
+        let warnings = [
+            self.gap_warning(&scales),
+            self.wide_gap_warning(&scales),
+            self.step_warning(),
+            self.fixed_warning(),
+            self.law_warning(),
+            self.stop_warning(),
+        ];
         let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
@@ -227,60 +234,6 @@ impl WorldBuilder {
             start,
             sentry,
         }))
-    }
-
-    /// Warning if the coordinates do not allow a target gap as small as the tolerance asks for.
-    fn gap_warning(&self, scales: &Scales) -> Option<String> {
-        let tolerance = self.settings.tolerance;
-        let (wanted, smallest) = (scales.wanted_gap(tolerance), scales.smallest_gap());
-        let is_too_small = self.settings.overrides.target_gap.is_none() && wanted < smallest;
-        is_too_small.then(|| {
-            format!(
-                "tolerance {} asks for a target gap of {} m, but coordinates, at the end of the run too, or radii of {} m allow no less than {} m",
-                Rounded(tolerance),
-                Rounded(wanted),
-                Rounded(scales.coordinate),
-                Rounded(smallest)
-            )
-        })
-    }
-
-    /// Warning if a fixed step is too long for the damping of a body, whose motion then grows where it is integrated.
-    /// Free flight is in closed form and not affected.
-    fn step_warning(&self) -> Option<String> {
-        let settings = &self.settings;
-        let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
-        let bodies = self.bodies.iter().zip(&self.laws);
-        let rates = bodies.map(|(body, law)| (&body.name, law.linear_rate.max(law.angular_rate)));
-        let (name, rate) = rates.max_by(|p, q| p.1.total_cmp(&q.1))?;
-        let longest = method(settings.integrator).stability_limit()? / rate;
-        (step > longest).then(|| {
-            format!(
-                "a `time_step` of {} s is too long for body \"{name}\", damped at {} 1/s: while it is tied or in contact, its \
-                 motion grows instead of decaying in steps of more than {} s",
-                Rounded(step),
-                Rounded(rate),
-                Rounded(longest)
-            )
-        })
-    }
-
-    /// Warning if a fixed body is given a velocity.
-    fn fixed_warning(&self) -> Option<String> {
-        let moves = |state: &BodyState| state.velocity != DVec2::ZERO || state.angular_velocity != 0.0;
-        let body = self.bodies.iter().find(|body| body.inertia.is_none() && moves(&body.state))?;
-        Some(format!("body \"{}\" is fixed: its velocity is ignored", body.name))
-    }
-
-    /// Warning if a stop has no rail to end.
-    fn stop_warning(&self) -> Option<String> {
-        let connectors = || self.connectors.iter().map(|spec| &spec.connector);
-        let is_lone = |stop: &Connector| stop.is_stop() && !connectors().any(|rail| stop.is_stop_of(rail));
-        let index = connectors().position(is_lone)?;
-        let name = self.connector_name(index);
-        Some(format!(
-            "{name} ends no rail: no rail has the same point and path, so nothing keeps the point on the path"
-        ))
     }
 
     /// Sets to 0 the speeds whose squares would underflow.

@@ -72,3 +72,30 @@ fn arrays_are_no_tables_and_tables_no_names() {
     let error = SceneSource::new("[]", SceneFormat::Json).parse().expect_err("an array");
     insta::assert_snapshot!(error.to_string(), @"line 1: invalid type: array, expected a table");
 }
+
+#[test]
+fn parts_without_a_meaning_are_refused() {
+    let point = "{ body = \"ball\", point = [0, 0] }";
+    insta::assert_snapshot!(message_with(&format!("[[force]]\nspring = {{ a = {point}, b = {point}, rest_length = 1, stiffness = 1 }}")), @r#"line 16: force[0].spring: ties "ball" to itself; the two points must be on different bodies"#);
+    insta::assert_snapshot!(message_with("[[force]]\ngravity = { acceleration = [0, -9.81], bodies = [\"floor\"] }"), @"line 16: force[0].gravity.bodies: must name a body that is not fixed");
+    insta::assert_snapshot!(message_with("[[force]]\ndamping = { linear = 1, bodies = [\"floor\", \"floor\"] }"), @"line 16: force[0].damping.bodies: must name a body that is not fixed");
+    insta::assert_snapshot!(message_with("[[force]]\nmutual_gravity = { strength = 1, bodies = [\"ball\"] }"), @"line 16: force[0].mutual_gravity.bodies: must name two bodies, which attract each other");
+    insta::assert_snapshot!(message("mass = 1.0", "mass = 1.0\npasses_through = [\"floor\", \"ball\"]"), @"line 15: body[1].passes_through[1]: is the body itself, which it cannot meet");
+    insta::assert_snapshot!(message_with("[[expected]]\ntime = 1.0\nenergy_tolerance = 1e-9"), @"line 17: expected[0].energy_tolerance: needs an `energy_change`, of which it is the tolerance");
+    let all = built(
+        "mass = 1.0",
+        "mass = 1.0\n[[force]]\ngravity = { acceleration = [0, -9.81], bodies = [\"floor\", \"ball\"] }",
+    );
+    assert!(all.is_ok_and(|world| world.warnings().is_empty()), "a list of all bodies may have fixed ones");
+}
+
+#[test]
+fn forces_on_fixed_bodies_and_target_gaps_wider_than_bodies_are_warned_of() {
+    let warning = |from: &str, to: &str| built(from, to).expect("a fine scene").warnings().join("; ");
+    let push = "mass = 1.0\n[[force]]\nconstant = { body = \"floor\", point = [0, 0], force = [1, 0] }";
+    insta::assert_snapshot!(warning("mass = 1.0", push), @r#"force "force[0].constant" acts on fixed bodies only: it moves nothing"#);
+    let tied = "mass = 1.0\n[[force]]\nspring = { a = { body = \"world\", point = [0, 9] }, b = { body = \"floor\", point = [0, 0] }, rest_length = 1, stiffness = 1 }";
+    insta::assert_snapshot!(warning("mass = 1.0", tied), @r#"force "force[0].spring" acts on fixed bodies only: it moves nothing"#);
+    insta::assert_snapshot!(warning("duration = 1.0", "duration = 1.0\ntarget_gap = 10.0"), @"a `target_gap` of 10 m is larger than the smallest moving body, which reaches 0.5 m from its centre of mass: bodies meet at that distance, and those that are nearer at the start are moved apart");
+    assert_eq!(warning("duration = 1.0", "duration = 1.0\ntarget_gap = 0.4"), "");
+}

@@ -18,11 +18,11 @@ pub(super) fn collect_names<'a>(bodies: &'a [BodyData], at: &At<'_>) -> Result<N
         if body.name == WORLD {
             return Err(place.error("\"world\" is reserved for the immovable background"));
         }
-        if let Some(first) = first_with.insert(body.name.as_str(), index) {
+        if let Some((first, _)) = first_with.insert(body.name.as_str(), (index, body.fixed)) {
             return Err(place.error(format!("{:?} is already the name of body[{first}]", body.name)));
         }
     }
-    Ok(Names(first_with.into_keys().collect()))
+    Ok(Names(first_with.into_iter().map(|(name, (_, fixed))| (name, fixed)).collect()))
 }
 
 pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
@@ -43,7 +43,10 @@ pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Resul
     }
     at.field("elasticity").zero_to_one(body.elasticity)?;
     at.field("friction").not_negative(body.friction, "")?;
-    each(&at.field("passes_through"), &body.passes_through, |other, at| names.require(other, at))
+    each(&at.field("passes_through"), &body.passes_through, |other, at| {
+        names.require(other, at)?;
+        if *other == body.name { Err(at.error("is the body itself, which it cannot meet")) } else { Ok(()) }
+    })
 }
 
 fn validate_inertia(body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {

@@ -10,10 +10,7 @@ pub(super) fn validate(connector: &ConnectorData, names: &Names<'_>, at: &At<'_>
     names.require_point(a, &at.field("a"))?;
     if let Some(b) = b {
         names.require_point(b, &at.field("b"))?;
-        if a.body == b.body {
-            let message = format!("ties {:?} to itself; the two points must be on different bodies", a.body);
-            return Err(at.error(message));
-        }
+        names.require_apart(a, b, &at)?;
     }
     match connector {
         ConnectorData::Pin(_) => {}

@@ -22,6 +22,11 @@ pub(super) fn validate(
         at.field("energy_change").finite(value)?;
         require_tolerance(expected.energy_tolerance, "energy_tolerance", at)
     })?;
+    if let (Some(_), None) = (expected.energy_tolerance, expected.energy_change) {
+        return Err(at
+            .field("energy_tolerance")
+            .error("needs an `energy_change`, of which it is the tolerance"));
+    }
     let around = at.field("bodies");
     for (name, state) in &expected.bodies {
         let at = around.field(name);
