@@ -7,11 +7,16 @@ use std::time::Instant;
 use crate::failure::{End, Failure};
 use crate::output;
 use clap::{Args, ValueEnum};
+use halfgap::scene::SceneFormat;
 use halfgap_contact::{
     Auto, ContactFile, DualActiveSet, FileError, Lemke, Problem, ProximalNewton, Qp, Residuals, Settings,
     Solution, SolutionFile, SolveError, Solver, WarmStart,
 };
 
+/// Start of the formats of scenes.
+const SCENE: &str = "halfgap-scene-";
+/// Advice for a scene in the place of a contact problem.
+const IS_SCENE: &str = "if it is a scene, run it by `halfgap run`";
 /// Largest number of rows printed; of larger problems, those with the largest forces.
 const SHOWN_ROWS: usize = 40;
 /// Number of repetitions of a solve, of which the fastest counts.
@@ -82,7 +87,13 @@ pub(crate) fn run(args: &SolveArgs) -> Result<End, Failure> {
 /// Reads the file, its problem and, if it has `b_next`, that of the next step.
 fn read(args: &SolveArgs) -> Result<(ContactFile, Problem, Option<Problem>), String> {
     let text = std::fs::read_to_string(&args.problem).map_err(|error| error.to_string())?;
-    let file = ContactFile::parse(&text).map_err(|error| error.to_string())?;
+    let file = ContactFile::parse(&text).map_err(|error| match &error {
+        FileError::Format(format) if format.starts_with(SCENE) => format!("{error}: {IS_SCENE}"),
+        FileError::Json(_) if SceneFormat::of_file(&args.problem) == Some(SceneFormat::Toml) => {
+            format!("not JSON, as a contact problem is: {IS_SCENE}")
+        }
+        _ => error.to_string(),
+    })?;
     for field in ContactFile::unknown_fields(&text) {
         output::tell(&format!(
             "warning: {}: there is no field `{field}`: it is ignored",

@@ -1,5 +1,7 @@
 //! Problems and answers as JSON: the formats `halfgap-contact-1` and `halfgap-solution-1`.
 
+mod fault;
+
 use std::collections::BTreeMap;
 
 use serde::de::IgnoredAny;
@@ -34,7 +36,7 @@ const FIELDS: [&str; 13] = [
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// The text is not JSON, or a field has the wrong type; the message names line and column.
+    /// The text is not JSON; the message names line and column.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
     /// The text is not JSON and contains NaN or Infinity, which JSON does not have but some programs write.
@@ -43,6 +45,16 @@ pub enum FileError {
     /// The field `format` is not that of a contact problem.
     #[error("field `format` is \"{0}\", expected \"{PROBLEM_FORMAT}\"")]
     Format(String),
+    /// A value is of another type than its field wants; the path of the field is empty for the whole file.
+    #[error("{} must be {expected}, got {found}", place(field))]
+    WrongValue {
+        /// Path of the field, such as `A.triplets[2][0]`.
+        field: String,
+        /// Values that the field takes.
+        expected: &'static str,
+        /// The value, shortened.
+        found: String,
+    },
     /// A required field is missing.
     #[error("field `{0}` is missing")]
     Missing(&'static str),
@@ -146,16 +158,19 @@ impl ContactFile {
     ///
     /// # Errors
     ///
-    /// [`FileError::Json`], [`FileError::NotANumber`] or [`FileError::Format`]. The numbers are checked by
-    /// [`problem`](Self::problem).
+    /// [`FileError::Json`], [`FileError::NotANumber`], [`FileError::WrongValue`], [`FileError::Missing`] or
+    /// [`FileError::Format`]. The numbers are checked by [`problem`](Self::problem).
     pub fn parse(text: &str) -> Result<Self, FileError> {
         // Some editors put a byte order mark before the text.
-        let file: ContactFile =
-            serde_json::from_str(text.strip_prefix('\u{feff}').unwrap_or(text)).map_err(|error| {
-                let has_none =
-                    error.is_syntax() && ["NaN", "Infinity"].iter().any(|word| text.contains(word));
-                if has_none { FileError::NotANumber(error) } else { FileError::Json(error) }
-            })?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let file: ContactFile = serde_json::from_str(text).map_err(|error| {
+            let has_none = error.is_syntax() && ["NaN", "Infinity"].iter().any(|word| text.contains(word));
+            if has_none {
+                FileError::NotANumber(error)
+            } else {
+                fault::find_fault(text).unwrap_or(FileError::Json(error))
+            }
+        })?;
         if file.format == PROBLEM_FORMAT { Ok(file) } else { Err(FileError::Format(file.format)) }
     }
 
@@ -219,7 +234,24 @@ impl ContactFile {
         if let Some(bilateral) = &self.bilateral {
             problem.set_bilateral(bilateral)?;
         }
+        self.check_answers()?;
         Ok(problem)
+    }
+
+    /// Checks that known answers have a number for each row.
+    fn check_answers(&self) -> Result<(), FileError> {
+        let expected = self.expected.as_ref();
+        let answers = [
+            ("reference_force", self.reference_force.as_ref()),
+            ("expected.acceleration", expected.and_then(|expected| expected.acceleration.as_ref())),
+            ("expected.force", expected.and_then(|expected| expected.force.as_ref())),
+        ];
+        for (what, answer) in answers {
+            if let Some(found) = answer.map(Vec::len).filter(|&found| found != self.b.len()) {
+                return Err(ProblemError::BadLength { what, found, expected: self.b.len() }.into());
+            }
+        }
+        Ok(())
     }
 
     fn problem_of_rows(&self, j: &RowsField) -> Result<Problem, FileError> {
@@ -250,6 +282,11 @@ impl ContactFile {
         };
         Ok(problem)
     }
+}
+
+/// Returns the words of messages for a field, or for the whole file.
+fn place(field: &str) -> String {
+    if field.is_empty() { "the file".to_owned() } else { format!("field `{field}`") }
 }
 
 fn triplets(matrix: &SparseMatrix) -> Vec<(usize, usize, f64)> {

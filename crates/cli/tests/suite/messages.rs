@@ -77,3 +77,16 @@ fn a_recording_that_would_not_fit_into_memory_is_refused_before_the_run() {
     assert!(!std::path::Path::new(&folder.path("out")).exists());
     assert_eq!(halfgap(&["run", &scene]).status.code(), Some(0), "without a recording all is as before");
 }
+
+#[test]
+fn solve_tells_a_scene_from_a_contact_problem() {
+    let folder = Folder::new("no-problem");
+    let message = |name: &str, text: &str| {
+        let output = halfgap(&["solve", &folder.write(name, text)]);
+        assert_eq!(output.status.code(), Some(2));
+        folder.plain(&output.stderr)
+    };
+    let json = r#"{"format": "halfgap-scene-1", "title": "t", "run": {"duration": 1}}"#;
+    insta::assert_snapshot!(message("scene.json", json), @r#"error: scene.json: field `format` is "halfgap-scene-1", expected "halfgap-contact-1": if it is a scene, run it by `halfgap run`"#);
+    insta::assert_snapshot!(message("scene.toml", FLIGHT), @"error: scene.toml: not JSON, as a contact problem is: if it is a scene, run it by `halfgap run`");
+}
