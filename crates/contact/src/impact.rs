@@ -14,11 +14,12 @@
 //! |---|---|
 //! | `law` | the laws, the order of rows, errors |
 //! | `together`, `serial` | all rows in one problem, or one after another |
-//! | `patience` | the end of ricochets |
+//! | `patience`, `blows` | the end of ricochets, and the number of blows that are none |
 //! | `pair_problem`, `few_rows`, `many_rows` | up to two rows in closed form, up to eight directly, more by the active-set method |
 //! | `couplings` | the Delassus matrix |
 //! | `shuffle` | random orders |
 
+mod blows;
 mod couplings;
 mod few_rows;
 mod law;

@@ -139,10 +139,8 @@ impl ImpactLaw {
             ImpactOrder::Seeded(seed) => Some(Shuffle::new(seed, impact_index)),
         };
         let slow = impact.slow_speed();
-        let may_rebound = |row: &&CollisionRow| !row.bilateral && row.elasticity > 0.0;
-        let counts = [impact.rows.len(), impact.rows.iter().filter(may_rebound).count()];
         let quiet = QUIET * slow;
-        let mut patience = Patience::new(counts, impact.lightness(), small.max(quiet), slow);
+        let mut patience = Patience::new(impact.blows(), impact.rows.len(), small.max(quiet), slow);
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }
@@ -193,18 +191,6 @@ impl Impact {
         let outcome = self.resolve_inelastic();
         self.is_trial = false;
         outcome
-    }
-
-    /// Ratio [-] of the least to the greatest mass of a body, as seen along the rows that rebound; 1 if there are
-    /// connectors.
-    fn lightness(&self) -> f64 {
-        if self.has_connectors {
-            return 1.0;
-        }
-        let rebounding = || self.rows.iter().filter(|row| row.elasticity > 0.0);
-        let shares = || rebounding().flat_map(CollisionRow::shares).filter(|share| *share > 0.0);
-        let (least, most) = (shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max));
-        if most > 0.0 { least / most } else { 1.0 }
     }
 
     /// Speed [m/s] below which no row rebounds: the least `velocity_tol`.

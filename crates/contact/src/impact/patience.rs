@@ -7,14 +7,7 @@
 //! speed that counted. After the first rows only speeds at which elasticity acts count: one problem stops all slower
 //! rows, instead of one row after another.
 //!
-//! A light body of mass m between a heavy one of mass M and a wall turns the heavy one round by pi / atan(sqrt(m / M))
-//! small blows, which all count (G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003, 375-394); a
-//! line of n light ones takes about n times as many. The first stage lasts that many blows for each row, but not in
-//! impacts with connectors, which may pass impulses round for ever.
-//!
-//! A body between two walls at a small angle a is turned back by pi / a blows, whatever its mass: a die that jams in
-//! its slot. Impacts of a few contacts are given as many blows as an angle of a few degrees takes, with connectors or
-//! without.
+//! The first stage lasts as many blows for each row as `blows` tells.
 
 /// Fraction of the impact's fastest rate: rows with a violation up to it are done.
 pub(super) const RICOCHET: f64 = 1e-12;
@@ -24,15 +17,6 @@ pub(super) const QUIET: f64 = 1e-3;
 const FIRST_ROWS: usize = 20;
 /// Number of rows solved in one stage, per row of the impact; the first stage may take more.
 const ROWS_PER_STAGE: usize = 20;
-/// Largest number of blows by which a light body turns a heavy one round, times the root of the ratio of their masses:
-/// pi/atan(x) <= 4/x.
-const BLOWS: f64 = 4.0;
-/// Cap on the number of blows, however light a body is: that of a mass ratio of about 1e9.
-const MOST_BLOWS: f64 = 1e5;
-/// Largest number of rebounding contacts that count as few.
-const FEW_CONTACTS: usize = 4;
-/// Number of blows per row that an impact of few rebounding contacts may take in the first stage.
-const BLOWS_OF_FEW: usize = 200;
 /// Factor by which the speed that counts as closing grows from one stage to the next.
 const RAISE: f64 = 10.0;
 /// Number of stages: after the last, the speed that counts has grown to that of the impact itself.
@@ -53,12 +37,10 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// Patience for an impact of `rows` rows, `contacts` of which may rebound. Rates up to `small` [m/s] are done, and
-    /// no row slower than `slow` [m/s] rebounds. The lightest body has `lightness` times the mass of the heaviest.
-    pub(super) fn new([rows, contacts]: [usize; 2], lightness: f64, small: f64, slow: f64) -> Self {
-        let of_masses = (BLOWS / lightness.sqrt()).min(MOST_BLOWS) as usize;
-        let of_angles = if (1..=FEW_CONTACTS).contains(&contacts) { BLOWS_OF_FEW } else { 0 };
-        let blows = of_masses.max(of_angles).max(ROWS_PER_STAGE);
+    /// Patience for an impact of `rows` rows that takes a number of blows for each. Rates up to `small` [m/s] are done, and
+    /// no row slower than `slow` [m/s] rebounds.
+    pub(super) fn new(blows: usize, rows: usize, small: f64, slow: f64) -> Self {
+        let blows = blows.max(ROWS_PER_STAGE);
         let [first_stage, per_stage] = [blows, ROWS_PER_STAGE].map(|each| each * rows);
         Self { small, slow: Some(slow), first_stage, per_stage, left: FIRST_ROWS, stages: STAGES }
     }
@@ -92,7 +74,7 @@ mod tests {
 
     #[test]
     fn it_ends_after_so_many_rows_with_all_of_the_impact() {
-        let mut patience = Patience::new([3, 5], 1.0, RICOCHET, 0.0);
+        let mut patience = Patience::new(0, 3, RICOCHET, 0.0);
         let mut solved = 0;
         while patience.spend(1) {
             solved += 1;
@@ -103,7 +85,7 @@ mod tests {
 
     #[test]
     fn slow_rows_do_not_count_after_the_first() {
-        let mut patience = Patience::new([3, 3], 1.0, RICOCHET, 0.5);
+        let mut patience = Patience::new(0, 3, RICOCHET, 0.5);
         assert!(patience.spend(FIRST_ROWS - 1) && patience.small() == RICOCHET);
         assert!(patience.spend(1) && patience.small() == 0.5);
     }

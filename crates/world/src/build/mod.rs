@@ -237,6 +237,7 @@ mod tests {
         let sun = 100.0 * std::f64::consts::PI * 0.25;
         let found = potential("[[force]]\nmutual_gravity = { strength = 3.0 }");
         assert!((found + 3.0 * 2.0 * sun / 10.0).abs() < 1e-12, "{found}");
+        assert_eq!(potential("[[force]]\nmutual_gravity = { strength = 3.0, bodies = [\"plate\"] }"), 0.0);
         let error = world("[[force]]\nmutual_gravity = { strength = 3.0, bodies = [\"plate\", \"wall\"] }");
         let error = error.expect_err("the wall has no mass").to_string();
         assert_eq!(

@@ -18,11 +18,11 @@ pub(super) fn collect_names<'a>(bodies: &'a [BodyData], at: &At<'_>) -> Result<N
         if body.name == WORLD {
             return Err(place.error("\"world\" is reserved for the immovable background"));
         }
-        if let Some((first, _)) = first_with.insert(body.name.as_str(), (index, body.fixed)) {
+        if let Some(first) = first_with.insert(body.name.as_str(), index) {
             return Err(place.error(format!("{:?} is already the name of body[{first}]", body.name)));
         }
     }
-    Ok(Names(first_with.into_iter().map(|(name, (_, fixed))| (name, fixed)).collect()))
+    Ok(Names(first_with.into_keys().collect()))
 }
 
 pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {

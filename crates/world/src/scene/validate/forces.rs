@@ -17,23 +17,7 @@ pub(super) fn validate(force: &ForceData, names: &Names<'_>, at: &At<'_>) -> Res
         ForceData::Constant(constant) => validate_constant(constant, names, &at)?,
         ForceData::Rotating(rotating) => validate_rotating(rotating, names, &at)?,
     }
-    validate_bodies(force, names, &at.field("bodies"))
-}
-
-/// Checks the names of the bodies on which a law acts, if it is limited to some.
-fn validate_bodies(force: &ForceData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
-    let Some(bodies) = force.bodies() else { return Ok(()) };
-    each(at, bodies, |name, at| names.require(name, at))?;
-    if names.all_fixed(bodies) {
-        return Err(at.error("must name a body that is not fixed"));
-    }
-    let is_alone = bodies.first().is_some_and(|first| bodies.iter().all(|body| body == first));
-    match force {
-        ForceData::MutualGravity(_) if is_alone => {
-            Err(at.error("must name two bodies, which attract each other"))
-        }
-        _ => Ok(()),
-    }
+    each(&at.field("bodies"), force.bodies().unwrap_or_default(), |name, at| names.require(name, at))
 }
 
 fn validate_spring(spring: &SpringData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {

@@ -12,7 +12,7 @@ use super::body::WORLD;
 use super::error::SceneError;
 use super::{PointData, RunData, Scene};
 use check::{At, optional};
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 /// Checks every value of the scene.
 pub(super) fn validate(scene: &Scene) -> Result<(), SceneError> {
@@ -51,19 +51,15 @@ fn each<T>(
     items.iter().enumerate().try_for_each(|(index, item)| check(item, &at.element(index)))
 }
 
-/// The names of the scene's bodies, and which of them are fixed.
-struct Names<'a>(BTreeMap<&'a str, bool>);
+/// The names of the scene's bodies.
+struct Names<'a>(BTreeSet<&'a str>);
 
 impl Names<'_> {
     fn require(&self, name: &str, at: &At<'_>) -> Result<(), SceneError> {
         if name == WORLD {
             return Err(at.error(format!("must be a body, not the background {WORLD:?}")));
         }
-        if self.0.contains_key(name) {
-            Ok(())
-        } else {
-            Err(at.error(format!("there is no body named {name:?}")))
-        }
+        if self.0.contains(name) { Ok(()) } else { Err(at.error(format!("there is no body named {name:?}"))) }
     }
 
     fn require_or_world(&self, name: &str, at: &At<'_>) -> Result<(), SceneError> {
@@ -76,12 +72,6 @@ impl Names<'_> {
             return Ok(());
         }
         Err(at.error(format!("ties {:?} to itself; the two points must be on different bodies", a.body)))
-    }
-
-    /// True if there is a body among those with some names, and all of them are fixed.
-    fn all_fixed(&self, names: &[String]) -> bool {
-        let is_fixed = |name: &String| self.0.get(name.as_str()).copied().unwrap_or(false);
-        !names.is_empty() && names.iter().all(is_fixed)
     }
 
     fn require_point(&self, point: &PointData, at: &At<'_>) -> Result<(), SceneError> {
