@@ -67,7 +67,7 @@ pub struct WorldSettings {
 #[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Integrator {
     /// Dormand and Prince, order 8, adaptive. Between events that follow each other fast, and along rails through
-    /// points, where order 8 gains nothing, [`Integrator::DormandPrince5`] takes its place.
+    /// points, whose curvature has a kink at each, [`Integrator::DormandPrince5`] takes its place.
     #[default]
     Dop853,
     /// Dormand and Prince, order 5, adaptive.
@@ -92,6 +92,10 @@ impl Integrator {
 }
 
 /// Method that keeps contacts and connectors from drifting off their target gaps.
+///
+/// With the extra accelerations of the velocity policies, errors of rates decay with a time constant of one step, those of
+/// gaps as well, critically damped. So the motion depends on the step, and errors fall with a lower power of it than the
+/// order of the integrator: with [`Integrator::Rk4`] with the third power (velocity) or the second (velocity and distance).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Stabilization {
@@ -120,7 +124,8 @@ impl Stabilization {
 
 impl WorldSettings {
     /// Returns the length [s] of the steps if it is fixed: by the integrator, because contacts carry impulses only, or
-    /// because the stabilization depends on it.
+    /// because the stabilization depends on it. Integrators without fixed steps of their own take no longer ones, but shorter
+    /// ones where errors ask for it.
     #[must_use]
     pub fn fixed_step(&self) -> Option<f64> {
         let is_fixed =

@@ -1,6 +1,6 @@
 //! The method of a group's steps: the one asked for or, in place of the default one, the method of order 5, which has
-//! half as many stages. It serves where a higher order gains nothing: between events that follow each other fast (brief
-//! steps), and over the kinks of a spline. Implicit steps are in `stiff`.
+//! half as many stages. It serves where a higher order gains little: between events that follow each other fast (brief
+//! steps), and over the kinks of a spline with many points. Implicit steps are in `stiff`.
 
 use super::group::Group;
 use super::rows::RowSource;

@@ -109,7 +109,7 @@ pub(crate) struct Group {
     pub(crate) is_brief: bool,
     /// No event can end its segments early: dense output may be postponed until it is asked for.
     pub(crate) is_unwatched: bool,
-    /// A point follows a rail whose curvature has kinks, over which a method of high order gains nothing.
+    /// A point follows a rail whose curvature has kinks, over which a method of high order gains little.
     pub(crate) has_kinks: bool,
     pub(crate) stiffness: Stiffness,
     /// Change of each body's acceleration per displacement [1/s^2], as the last probe found it; empty where none was
