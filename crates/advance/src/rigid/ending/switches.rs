@@ -16,6 +16,8 @@ const MOST_TICKS: usize = 16;
 /// Times after the end of a segment at which a change of sign is looked for, in ticks of the clock. The last is longer than
 /// the shortest step.
 const TICKS_AFTER_END: [f64; 4] = [128.0, 512.0, 2048.0, 8192.0];
+/// Part of a segment's length by which its dense output may be read beyond its end.
+const LOOK_AHEAD: f64 = 1.0 / 1024.0;
 /// Fraction of the first segment of a group after which the sign of a switching function is read.
 const SIGN_AT: f64 = 1.0 / 1024.0;
 
@@ -112,7 +114,7 @@ impl Dynamics<'_> {
     /// Offset [s] just after the end of the segment at which one switching function has changed its sign.
     fn find_change_at_end(&mut self, law: usize, index: usize) -> Option<f64> {
         let (span, tick, sign) = (self.group.span, self.clock_ticks(1.0), self.sign_before(law, index));
-        let offsets = TICKS_AFTER_END.map(|ticks| span + ticks * tick);
+        let offsets = TICKS_AFTER_END.map(|ticks| span + (ticks * tick).min(LOOK_AHEAD * span));
         let is_changed = |dynamics: &mut Self, offset| sign * dynamics.switch_at(law, index, offset) < 0.0;
         let found = offsets.iter().position(|&offset| is_changed(self, offset))?;
         let mut after = offsets[found];

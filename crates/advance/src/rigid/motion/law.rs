@@ -109,8 +109,8 @@ pub trait ForceLaw: Debug + Send + Sync {
     }
 
     /// Length [m] over which the forces vary by their own size, |F| / |dF/dposition|; `None` if it is never less than
-    /// the size of the bodies. In one step the bodies of the law move by no more than it. Where a law names one body, its
-    /// motion counts as it is, else that relative to the mean of all bodies that share the step.
+    /// the size of the bodies. In one step bodies in contact move by no more than half of it, and so does a free body by no
+    /// more than all of it, if the law names no other body.
     fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
         None

@@ -97,6 +97,8 @@ pub(crate) struct Stage {
     pub(crate) asks_free_acceleration: bool,
     /// Length [m] over which the forces of laws vary, as last noted.
     pub(crate) force_length: f64,
+    /// The same length of the laws that name one body: such a law depends on where the body is.
+    pub(crate) field_length: f64,
     /// Rates of rows during a projection [m/s].
     pub(crate) rates: Vec<f64>,
     /// A state along the segment.
@@ -215,8 +217,14 @@ impl Stage {
     /// Notes the least length over which the forces of some laws vary.
     fn note_force_length(&mut self, physics: &Physics<'_>, laws: &[usize], time: f64) {
         let now = Snapshot::new(time, &self.movings);
-        let lengths = laws.iter().filter_map(|&law| physics.laws[law].length(&now));
-        self.force_length = lengths.fold(f64::INFINITY, f64::min);
+        (self.force_length, self.field_length) = (f64::INFINITY, f64::INFINITY);
+        for law in laws.iter().map(|&law| &physics.laws[law]) {
+            let Some(length) = law.length(&now) else { continue };
+            self.force_length = self.force_length.min(length);
+            if law.bodies().len() == 1 {
+                self.field_length = self.field_length.min(length);
+            }
+        }
     }
 
     /// Clears the noted ranges of forces, for a number of rows.
@@ -556,6 +564,7 @@ impl Dynamics<'_> {
         self.stage.asks_free_acceleration = false;
         self.group.free_acceleration = self.stage.free_acceleration;
         self.group.force_length = self.stage.force_length;
+        self.group.field_length = self.stage.field_length;
     }
 
     /// Largest error [m] of a connector, with the bodies in place; the rows of one connector follow each other.

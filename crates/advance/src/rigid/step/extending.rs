@@ -38,10 +38,11 @@ impl Dynamics<'_> {
     /// Extends the group by a step, and finds the event that ends it early.
     pub(crate) fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
         if !self.group.is_unwatched {
+            let proposed = self.group.next_step;
             let told = self.extend_on_rows(tools)?;
             self.note_stiffness(tools, told);
             self.find_event();
-            return self.end_before_switch(tools);
+            return self.end_before_switch(tools, proposed);
         }
         let told = self.extend_unwatched(tools)?;
         self.note_stiffness(tools, told);
@@ -55,8 +56,8 @@ impl Dynamics<'_> {
 
     /// Makes a step over a change of a law's branch anew, so that it ends just before the change. Stages beyond it have
     /// the forces of another branch: with them a step may err by any amount, unseen by its error estimate, and so may its
-    /// dense output, by which the change was found.
-    fn end_before_switch(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+    /// dense output, by which the change was found. The next step is then as long as this one was `proposed` [s] to be.
+    fn end_before_switch(&mut self, tools: &mut Tools<'_>, proposed: Option<f64>) -> Result<(), StepFailure> {
         if self.group.laws.is_empty() || !tools.stepper.method().is_adaptive() {
             return Ok(());
         }
@@ -69,6 +70,9 @@ impl Dynamics<'_> {
             self.group.next_step = Some(offset - before);
             self.extend_on_rows(tools)?;
             self.find_event();
+            if let (Some(next), Some(proposed)) = (&mut self.group.next_step, proposed) {
+                *next = next.max(proposed);
+            }
             before *= WIDER;
         }
         if self.group.event.is_none() {

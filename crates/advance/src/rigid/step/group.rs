@@ -125,6 +125,8 @@ pub(crate) struct Group {
     /// Length [m] over which the forces of laws vary, as last evaluated; infinite where they vary over no less than the
     /// size of the bodies.
     pub(crate) force_length: f64,
+    /// The same length of the laws that name one body.
+    pub(crate) field_length: f64,
     /// Energy [J] that the projection of the end has added.
     pub(crate) projected: f64,
     /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.

@@ -43,29 +43,26 @@ impl Dynamics<'_> {
         (2.0 * allowed / self.group.free_acceleration).sqrt().min(of_places)
     }
 
-    /// The longest step [s] in which the bodies of a group move by a share of the length over which forces of laws vary: a
-    /// longer one may pass over such a force unseen. In a group with contacts that share is less: of bodies that are held
-    /// still, no error tells that a force comes and goes. A motion that all bodies share does not count where the laws act
-    /// between them alone.
+    /// The longest step [s] over which forces of laws are not passed over unseen. Of bodies that contacts hold still, no
+    /// error tells that a force comes and goes: they move by no more than a fraction of the length over which forces vary.
+    /// Free bodies do so where a law names one body, and depends on its place; forces between bodies act from afar, and
+    /// errors tell of them. A motion that all bodies share does not count where the laws act between them alone.
     pub(super) fn longest_lawful_step(&self) -> f64 {
-        let Group { bodies, laws, rows, state, .. } = &*self.group;
-        if self.group.force_length.is_infinite() {
+        let Group { bodies, laws, rows, state, force_length, field_length, .. } = &*self.group;
+        let is_free = rows.iter().all(|row| row.bilateral);
+        let way = if is_free { FREE_APPROACH * field_length } else { APPROACH * force_length };
+        if way.is_infinite() {
             return f64::INFINITY;
         }
-        let is_free = rows.iter().all(|row| row.bilateral);
-        let approach = if is_free { FREE_APPROACH } else { APPROACH };
-        // A law that names one body depends on where that is.
-        let is_between = |law: &usize| {
-            let named = self.physics.laws[*law].bodies();
-            named.len() > 1 && named.iter().all(|body| bodies.binary_search(body).is_ok())
-        };
-        let common = if laws.iter().all(is_between) {
+        let mut named = laws.iter().flat_map(|&law| self.physics.laws[law].bodies());
+        let is_between = field_length.is_infinite() && named.all(|body| bodies.binary_search(body).is_ok());
+        let common = if is_between {
             let velocities = (0..bodies.len()).map(|place| body_state(state, bodies.len(), place).velocity);
             velocities.sum::<DVec2>() / bodies.len() as f64
         } else {
             DVec2::ZERO
         };
-        approach * self.group.force_length / self.speeds(state, common).fold(0.0, f64::max)
+        way / self.speeds(state, common).fold(0.0, f64::max)
     }
 
     /// Distance [m] from a body's centre of mass to its farthest point.
