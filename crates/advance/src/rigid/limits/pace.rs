@@ -7,7 +7,7 @@
 //!
 //! A group may also be hasty, making short steps because contacts that count as resting take turns: holding one stops
 //! its slow opening, and another, which is moved along, pulls or closes. In a hasty group contacts that open are let
-//! go, even if they open much more slowly than counts as rest elsewhere.
+//! go, even if they open much more slowly than counts as rest elsewhere, or would come back at once in a low hop.
 
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::region::Region;
