@@ -186,7 +186,8 @@ impl Motion for Flight {
         let start = &self.start;
         if t == 0.0 || self.is_at_rest() {
             let pose = Pose { position: start.position, rotation: self.start_rotation };
-            return Moving { pose, velocity: start.velocity, angular_velocity: start.angular_velocity };
+            let BodyState { angle, velocity, angular_velocity, .. } = *start;
+            return Moving { pose, angle, velocity, angular_velocity };
         }
         let linear = if self.linear_rate == 0.0 { None } else { Some(Decay::new(self.linear_rate * t)) };
         let (position, velocity) = match &linear {
@@ -195,7 +196,8 @@ impl Motion for Flight {
         };
         if start.angular_velocity == 0.0 {
             let pose = Pose { position, rotation: self.start_rotation };
-            return Moving { pose, velocity, angular_velocity: start.angular_velocity };
+            let BodyState { angle, angular_velocity, .. } = *start;
+            return Moving { pose, angle, velocity, angular_velocity };
         }
         // Mostly both velocities are damped alike.
         let shared = linear.filter(|_| self.angular_rate == self.linear_rate);
@@ -203,6 +205,7 @@ impl Motion for Flight {
         let angle = start.angle + start.angular_velocity * t * angular.p1;
         Moving {
             pose: Pose { position, rotation: Rotation::from_angle(angle) },
+            angle,
             velocity,
             angular_velocity: start.angular_velocity * angular.left,
         }

@@ -30,6 +30,8 @@ impl BodyState {
 pub struct Moving {
     /// Pose of the body, its origin at the centre of mass.
     pub pose: Pose,
+    /// Angle [rad] of the pose, which may include whole turns.
+    pub angle: f64,
     /// Velocity of the centre of mass [m/s].
     pub velocity: DVec2,
     /// Angular velocity [rad/s].
@@ -39,7 +41,7 @@ pub struct Moving {
 impl Moving {
     /// The immovable background, at rest at the origin.
     pub const BACKGROUND: Moving =
-        Moving { pose: Pose::IDENTITY, velocity: DVec2::ZERO, angular_velocity: 0.0 };
+        Moving { pose: Pose::IDENTITY, angle: 0.0, velocity: DVec2::ZERO, angular_velocity: 0.0 };
 
     /// Velocity [m/s] of the material point with the given arm from the centre of mass [m].
     #[must_use]
@@ -52,7 +54,8 @@ impl Moving {
 impl From<&BodyState> for Moving {
     #[inline]
     fn from(state: &BodyState) -> Self {
-        Self { pose: state.pose(), velocity: state.velocity, angular_velocity: state.angular_velocity }
+        let BodyState { angle, velocity, angular_velocity, .. } = *state;
+        Self { pose: state.pose(), angle, velocity, angular_velocity }
     }
 }
 
@@ -159,7 +162,7 @@ impl<M: Motion> Motion for Center<'_, M> {
     fn moving_at(&self, offset: f64) -> Moving {
         let (position, velocity) = self.0.center_at(offset);
         let pose = Pose { position, ..Pose::IDENTITY };
-        Moving { pose, velocity, angular_velocity: 0.0 }
+        Moving { pose, velocity, ..Moving::BACKGROUND }
     }
 
     fn center_at(&self, offset: f64) -> (DVec2, DVec2) {

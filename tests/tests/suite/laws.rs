@@ -1,9 +1,9 @@
-//! Force laws of one's own that change branch, and that act over a short way.
+//! Force laws of one's own that change branch, that act over a short way, and that count turns.
 
 use halfgap::force::{ForceLaw, Snapshot, Wrenches};
 use halfgap::geometry::DVec2;
-use halfgap::{BodyId, BodySpec, BodyState, World, WorldBuilder, WorldSettings};
-use halfgap_tests::mechanism::{advance, disc, thrown};
+use halfgap::{BodyId, BodySpec, BodyState, Intervention, World, WorldBuilder, WorldSettings};
+use halfgap_tests::mechanism::{Workshop, advance, at_rest, disc, thrown};
 use std::sync::Arc;
 
 /// A force along x between two places, or two times; it jumps at both.
@@ -75,6 +75,32 @@ impl ForceLaw for Kick {
     }
 }
 
+/// A spiral spring of 1 N m/rad between the background and a body.
+#[derive(Debug)]
+struct SpiralSpring {
+    body: [BodyId; 1],
+    has_potential: bool,
+}
+
+impl ForceLaw for SpiralSpring {
+    fn name(&self) -> &'static str {
+        "spiral spring"
+    }
+
+    fn bodies(&self) -> &[BodyId] {
+        &self.body
+    }
+
+    fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
+        wrenches.add_torque(self.body[0], -now.body(self.body[0]).angle);
+    }
+
+    fn potential(&self, now: &Snapshot<'_>) -> Option<f64> {
+        let angle = now.body(self.body[0]).angle;
+        self.has_potential.then_some(0.5 * angle * angle)
+    }
+}
+
 /// A disc of 1 kg that moves along x at 1 m/s under a law.
 fn under(tolerance: f64, law: impl FnOnce([BodyId; 1]) -> Arc<dyn ForceLaw>) -> (World, BodyId) {
     let mut builder = WorldBuilder::new(WorldSettings { tolerance, ..WorldSettings::default() });
@@ -121,6 +147,35 @@ fn a_free_body_does_not_step_over_a_force_whose_length_is_told() {
             advance(&mut world, 2.0);
             let off = (world.state(body).velocity.x - 3f64.sqrt()).abs();
             assert!(off < 10.0 * tolerance, "from {from}, at {tolerance:e}: off by {off} m/s");
+        }
+    }
+}
+
+#[test]
+fn a_spiral_spring_is_wound_up_by_turns() {
+    /// Spin of the wheel [rad/s] as its spring is relaxed: it turns by three turns to either side.
+    const SPIN: f64 = 20.0;
+    const TOLERANCE: f64 = 1e-9;
+    for (is_pinned, has_potential) in [(false, true), (false, false), (true, true), (true, false)] {
+        let mut workshop = Workshop::weightless(TOLERANCE);
+        let state = BodyState { angular_velocity: SPIN, ..at_rest(0.0, 0.0) };
+        let wheel = workshop.inert("wheel", disc(0.5), [1.0, 1.0], state);
+        if is_pinned {
+            workshop.pin(BodyId::WORLD, wheel, DVec2::ZERO);
+        }
+        workshop.builder.add_force(Arc::new(SpiralSpring { body: [wheel], has_potential }));
+        let mut world = workshop.build();
+        for step in 1..=40 {
+            let time = 0.25 * f64::from(step);
+            advance(&mut world, time);
+            let state = world.state(wheel);
+            let off = (state.angle - SPIN * time.sin()).abs();
+            assert!(off < 100.0 * SPIN * TOLERANCE, "pinned: {is_pinned}, at {time} s: off by {off} rad");
+            // A touch that changes nothing starts the motion anew, with the turns taken out of its angle.
+            let touch = Intervention::Impulse { body: wheel, impulse: DVec2::ZERO, point: DVec2::ZERO };
+            world.intervene(&[touch], &mut |_| ()).expect("it may be touched");
+            let drift = world.ledger().integration_error();
+            assert!(drift.abs() < 1e-6, "pinned: {is_pinned}, potential: {has_potential}: {drift} J");
         }
     }
 }

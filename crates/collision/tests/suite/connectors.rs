@@ -15,7 +15,7 @@ fn anchor(body: u32, x: f64, y: f64) -> Anchor {
 }
 
 fn still(x: f64, y: f64, angle: f64) -> Moving {
-    Moving { pose: Pose::new(DVec2::new(x, y), angle), ..Moving::BACKGROUND }
+    Moving { pose: Pose::new(DVec2::new(x, y), angle), angle, ..Moving::BACKGROUND }
 }
 
 fn fine(kind: ConnectorKind) -> Connector {

@@ -17,11 +17,11 @@ pub(crate) struct Path {
 
 impl Path {
     pub(crate) fn at(&self, t: f64) -> Moving {
+        let angle = self.angle + self.spin * t + 0.5 * self.push.angular * t * t;
+        let position = self.position + self.velocity * t + self.push.linear * (0.5 * t * t);
         Moving {
-            pose: Pose::new(
-                self.position + self.velocity * t + self.push.linear * (0.5 * t * t),
-                self.angle + self.spin * t + 0.5 * self.push.angular * t * t,
-            ),
+            pose: Pose::new(position, angle),
+            angle,
             velocity: self.velocity + self.push.linear * t,
             angular_velocity: self.spin + self.push.angular * t,
         }

@@ -2,7 +2,6 @@
 
 use super::crossing::{NODES, between_nodes, first_fall, node};
 use super::earliest::Earliest;
-use crate::rigid::motion::law::Snapshot;
 use crate::rigid::step::dynamics::Dynamics;
 use crate::rigid::step::group::{Group, SegmentEnd, Stop};
 use crate::rigid::step::rows::moving_of;
@@ -80,7 +79,7 @@ impl Dynamics<'_> {
 
     fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {
         self.place_at(offset);
-        let now = Snapshot::new(self.start.seconds() + offset, &self.stage.movings);
+        let now = self.physics.snapshot(self.start.seconds() + offset, &self.stage.movings);
         self.physics.laws[law].switch(index, &now)
     }
 

@@ -319,7 +319,7 @@ impl RigidSystem {
         }
         let mut laws = std::mem::take(&mut self.ticks.laws);
         self.laws.list(&region.bodies, &mut laws);
-        let now = Snapshot::new(self.now.seconds(), &self.stage.movings);
+        let now = Snapshot::of_unwound(self.now.seconds(), &self.stage.movings, &self.flyers);
         let of_laws = laws.iter().filter_map(|&law| self.laws.all[law].potential(&now)).sum::<f64>();
         self.ticks.laws = laws;
         energy + of_laws

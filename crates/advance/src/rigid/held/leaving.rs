@@ -40,9 +40,10 @@ impl RigidSystem {
 
 /// The motion of a body after a time `wait` [s], at constant velocities.
 fn after(moving: &Moving, wait: f64) -> Moving {
-    let Moving { pose, velocity, angular_velocity } = *moving;
+    let Moving { pose, angle, velocity, angular_velocity } = *moving;
     let turn = Rotation::from_angle(angular_velocity * wait);
     let direction = turn.apply(DVec2::new(pose.rotation.cos, pose.rotation.sin));
     let rotation = Rotation { cos: direction.x, sin: direction.y };
-    Moving { pose: Pose { position: pose.position + velocity * wait, rotation }, velocity, angular_velocity }
+    let pose = Pose { position: pose.position + velocity * wait, rotation };
+    Moving { pose, angle: angle + angular_velocity * wait, velocity, angular_velocity }
 }

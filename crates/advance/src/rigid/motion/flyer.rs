@@ -77,7 +77,12 @@ impl Flyer {
     #[must_use]
     pub fn state_at(&self, time: Time) -> BodyState {
         let state = self.unwound_at(time);
-        BodyState { angle: state.angle + (self.turns * TAU + self.turns * TAU_REST), ..state }
+        BodyState { angle: self.with_turns(state.angle), ..state }
+    }
+
+    /// An angle [rad] of the present motion, with the whole turns that were taken out of it.
+    pub(crate) fn with_turns(&self, angle: f64) -> f64 {
+        angle + (self.turns * TAU + self.turns * TAU_REST)
     }
 
     /// State at a time of the present segment, with an angle that lacks the whole turns made before: motions start from

@@ -5,6 +5,7 @@
 //!
 //! [`FlightLaw`]: crate::rigid::FlightLaw
 
+use super::flyer::Flyer;
 use glam::DVec2;
 use halfgap_collision::{Anchor, BodyId, Moving};
 use std::fmt::Debug;
@@ -16,23 +17,38 @@ pub struct Snapshot<'a> {
     pub time: f64,
     /// Motions of all bodies of the system; only those that the law names are sure to be up to date.
     bodies: &'a [Moving],
+    /// The same bodies, which know the whole turns that the angles of the motions lack; empty if they lack none.
+    flyers: &'a [Flyer],
 }
 
 impl<'a> Snapshot<'a> {
     /// Makes a snapshot of all bodies, in the order of their ids, at a time [s].
     #[must_use]
     pub fn new(time: f64, bodies: &'a [Moving]) -> Self {
-        Self { time, bodies }
+        Self { time, bodies, flyers: &[] }
     }
 
-    /// Returns the pose and the velocities of a body; the background rests at the origin.
+    /// Makes a snapshot of all bodies of a system, whose motions lack the turns that were taken out of their angles.
+    pub(crate) fn of_unwound(time: f64, bodies: &'a [Moving], flyers: &'a [Flyer]) -> Self {
+        Self { time, bodies, flyers }
+    }
+
+    /// Returns the pose and the velocities of a body; the background rests at the origin. The angle includes all whole
+    /// turns since the start, so that a law may wind up a spring.
     ///
     /// # Panics
     /// If there is no such body. A law reads only bodies that it names, and these are checked when the law is added.
     #[must_use]
     #[inline]
     pub fn body(&self, body: BodyId) -> Moving {
-        if body.is_world() { Moving::BACKGROUND } else { self.bodies[body.index()] }
+        if body.is_world() {
+            return Moving::BACKGROUND;
+        }
+        let moving = self.bodies[body.index()];
+        match self.flyers.get(body.index()) {
+            Some(flyer) => Moving { angle: flyer.with_turns(moving.angle), ..moving },
+            None => moving,
+        }
     }
 }
 

@@ -57,6 +57,11 @@ impl<'a> Physics<'a> {
         let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
         Self { mechanism, laws, extra: settings.extra, steps: &settings.steps, projects: settings.projection }
     }
+
+    /// What the laws see of bodies that move like this at a time [s].
+    pub(crate) fn snapshot(&self, time: f64, movings: &'a [Moving]) -> Snapshot<'a> {
+        Snapshot::of_unwound(time, movings, self.mechanism.flyers)
+    }
 }
 
 /// Buffers for the evaluation of one moment, one set for the whole system.
@@ -156,7 +161,7 @@ impl Stage {
             // Works are in the order of their laws.
             let does_work = works.get(next) == Some(&Work::Law(law));
             let power = does_work.then(|| &mut powers[next]);
-            self.add_law(&*physics.laws[law], time, power);
+            self.add_law(physics, law, time, power);
             next += usize::from(does_work);
         }
         let damping = works.iter().position(|&work| work == Work::Damping);
@@ -216,7 +221,7 @@ impl Stage {
 
     /// Notes the least length over which the forces of some laws vary.
     fn note_force_length(&mut self, physics: &Physics<'_>, laws: &[usize], time: f64) {
-        let now = Snapshot::new(time, &self.movings);
+        let now = physics.snapshot(time, &self.movings);
         (self.force_length, self.field_length) = (f64::INFINITY, f64::INFINITY);
         for law in laws.iter().map(|&law| &physics.laws[law]) {
             let Some(length) = law.length(&now) else { continue };
@@ -239,8 +244,9 @@ impl Stage {
         }
     }
 
-    fn add_law(&mut self, law: &dyn ForceLaw, time: f64, power: Option<&mut f64>) {
-        let now = Snapshot::new(time, &self.movings);
+    fn add_law(&mut self, physics: &Physics<'_>, law: usize, time: f64, power: Option<&mut f64>) {
+        let now = physics.snapshot(time, &self.movings);
+        let law = &physics.laws[law];
         let Some(power) = power else {
             law.apply(&now, &mut Wrenches::new(&mut self.wrenches));
             return;

@@ -5,7 +5,6 @@ use super::extending::Tools;
 use super::group::Group;
 use super::segment::StepControl;
 use crate::rigid::event::impacts::ImpactReport;
-use crate::rigid::motion::law::Snapshot;
 use crate::rigid::system::RigidSystem;
 use halfgap_collision::{BodyId, BodyState};
 
@@ -116,7 +115,7 @@ impl Dynamics<'_> {
             return Energy { total, kinetic };
         }
         self.stage.load(&self.group.bodies, state);
-        let now = Snapshot::new(self.start.seconds(), &self.stage.movings);
+        let now = self.physics.snapshot(self.start.seconds(), &self.stage.movings);
         let laws = self.group.laws.iter().map(|&law| &self.physics.laws[law]);
         total += laws.filter_map(|law| law.potential(&now)).sum::<f64>();
         Energy { total, kinetic }

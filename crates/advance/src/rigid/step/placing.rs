@@ -72,7 +72,9 @@ impl Dynamics<'_> {
         let [x, y, angle] = &self.group.paths[place];
         let position = DVec2::new(x.value_at(offset), y.value_at(offset));
         let body = self.group.bodies[place];
-        self.stage.movings[body.index()].pose = Pose::new(position, angle.value_at(offset));
+        let angle = angle.value_at(offset);
+        let moving = &mut self.stage.movings[body.index()];
+        (moving.pose, moving.angle) = (Pose::new(position, angle), angle);
     }
 }
 

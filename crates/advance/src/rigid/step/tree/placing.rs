@@ -35,6 +35,7 @@ impl JointTree {
             self.stances[index] = Stance { own, of_parent, spin_square: angular_velocity * angular_velocity };
             movings[bodies[link.place].index()] = Moving {
                 pose: Pose { position: pin - own, rotation },
+                angle,
                 velocity: velocity - own.perp() * angular_velocity,
                 angular_velocity,
             };
