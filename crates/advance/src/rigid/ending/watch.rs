@@ -101,7 +101,8 @@ impl Dynamics<'_> {
     /// Earliest event that is found without the forces of contacts.
     fn find_geometric_event(&mut self) -> Option<(f64, SegmentEnd)> {
         let mut earliest = Earliest::default();
-        let samples = self.sample_rows();
+        let mut samples = self.sample_rows();
+        self.lower_sunk(&mut samples);
         if !self.are_still(&samples.heights) {
             self.group.steady_step = None;
         }
@@ -198,6 +199,23 @@ impl Dynamics<'_> {
             }
         }
         samples
+    }
+
+    /// Lowers the least gap of a contact without force that is below it by rounding as the segment starts, and corrects
+    /// its samples: it would not be seen to sink any more.
+    fn lower_sunk(&mut self, samples: &mut Samples) {
+        let Samples { heights, early, .. } = samples;
+        for (row, (heights, early)) in heights.iter_mut().zip(early).enumerate() {
+            if heights[0] >= 0.0 {
+                continue;
+            }
+            self.put_idle_at(row, 0.0);
+            if self.is_within(row) {
+                let way = self.physics.mechanism.tolerances.sink() - heights[0];
+                self.group.idle[row].gap -= way;
+                heights.iter_mut().chain(early).for_each(|height| *height += way);
+            }
+        }
     }
 
     /// Makes room for samples of how far rows are from running off their features: for none, if bounds tell that all of
@@ -387,5 +405,42 @@ impl Dynamics<'_> {
     fn idle_way(&self, row: usize) -> f64 {
         let row = &self.group.idle[row];
         self.physics.mechanism.way_to_end(row, &self.stage.movings).unwrap_or(f64::INFINITY)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::step::group::SegmentEnd;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn a_contact_below_its_least_gap_by_rounding_is_seen_to_sink_farther() {
+        /// Rounding [m] of gaps.
+        const ROUNDING: f64 = 1e-17;
+        for below in [0.0, ROUNDING, 0.5e-9] {
+            // A disc that falls, its contact with the floor touched without force.
+            let mut system = resting_discs(&[0.0]);
+            let sink = system.settings.tolerances.sink();
+            let mut group = system.groups.take(BodyId(1)).expect("it is held");
+            group.idle = std::mem::take(&mut group.rows);
+            group.idle[0].gap += below - sink;
+            group.state[1] -= sink;
+            (group.forces, group.end_forces) = (Vec::new(), Vec::new());
+            group.find_sides();
+            group.next_step = Some(1e-3);
+            group.held.set_structure(&[], &group.sides);
+            system.with_group(&mut group, |dynamics, tools| {
+                dynamics.set_out();
+                dynamics.extend(tools).expect("it falls");
+                dynamics.make_dense(tools.stepper);
+                dynamics.find_event();
+            });
+            let Some((offset, SegmentEnd::Sink(0))) = group.event else {
+                panic!("{below} m below: {:?}", group.event)
+            };
+            let way = 0.5 * 9.81 * offset * offset;
+            assert!(way < 1.01 * sink, "{below} m below: sinks by {way} m of {sink} m");
+        }
     }
 }
