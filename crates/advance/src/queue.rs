@@ -99,7 +99,8 @@ impl EventQueue {
         Some(self.time(self.key(self.place_of(source)?)))
     }
 
-    /// Sets the source's event to `time`, in place of any earlier prediction.
+    /// Sets the source's event to `time`, in place of any earlier prediction. An event at [`Time::NEVER`] is an event, the
+    /// last of all: [`clear`](Self::clear) a source for which none is predicted.
     pub fn set(&mut self, source: SourceId, time: Time) {
         let index = source.0 as usize;
         if index >= self.sources.len() {

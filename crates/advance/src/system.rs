@@ -25,7 +25,7 @@ pub trait EventDriven {
 }
 
 /// Handles all events up to and including `until`, in order, and calls `on_report` with the report of each. A NaN makes
-/// [`Time::NEVER`], with which the loop ends only when no event is left.
+/// [`Time::NEVER`], with which the loop ends only when no event is left, not even one at that time.
 ///
 /// # Errors
 /// The first event that cannot be handled; events reported before it stay handled.

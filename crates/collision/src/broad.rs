@@ -133,8 +133,10 @@ impl BroadPhase {
         self.leaves.get(body.index())?.as_ref().map(|leaf| &leaf.bounds)
     }
 
-    /// Sets the box [m] of a body, in place of the one it had, if any.
+    /// Sets the box [m] of a body, in place of the one it had, if any. A side that is not a number counts as infinitely
+    /// far out.
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
+        let bounds = without_nan(bounds);
         if self.leaves.len() <= body.index() {
             self.leaves.resize(body.index() + 1, None);
         }
@@ -356,6 +358,14 @@ fn number(index: usize) -> u32 {
     index as u32
 }
 
+/// A box [m] whose unknown sides lie infinitely far out: the boxes around it would hold nothing.
+fn without_nan(bounds: Aabb) -> Aabb {
+    let known = |side: f64, outside: f64| if side.is_nan() { outside } else { side };
+    let [min, max] = [(bounds.min, f64::NEG_INFINITY), (bounds.max, f64::INFINITY)]
+        .map(|(corner, outside)| DVec2::new(known(corner.x, outside), known(corner.y, outside)));
+    Aabb { min, max }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -392,6 +402,20 @@ mod tests {
                     (0..300).filter(|&other| boxes[other as usize].overlaps(query)).collect();
                 assert_eq!(found(&mut broad, query), expected, "box {index} in round {round}");
             }
+        }
+    }
+
+    #[test]
+    fn a_box_that_is_no_number_hides_no_other() {
+        let mut broad = BroadPhase::new();
+        let boxes: Vec<Aabb> = (0..40).map(|index| Aabb::around_disc(place(index), 20.0)).collect();
+        for (index, bounds) in boxes.iter().enumerate() {
+            broad.set(BodyId(index as u32), *bounds);
+        }
+        broad.set(BodyId(40), Aabb::around(DVec2::NAN));
+        for query in &boxes {
+            let expected: Vec<u32> = (0..40).filter(|&other| boxes[other as usize].overlaps(query)).collect();
+            assert_eq!(found(&mut broad, query), [expected, vec![40]].concat());
         }
     }
 

@@ -39,11 +39,14 @@ impl<M: Motion> MovingShape<'_, M> {
         if self.shape.centered_disc().is_some() { 0.0 } else { self.shape.reach() }
     }
 
-    /// True if position, angle and velocities are finite at a time [s] of the search.
-    fn is_finite(&self, time: f64) -> bool {
-        let BodyState { position, angle, velocity, angular_velocity } =
-            self.motion.state_at(self.offset + time);
-        position.is_finite() && angle.is_finite() && velocity.is_finite() && angular_velocity.is_finite()
+    /// True if the states at two times [s] of the search are finite, and bounded between them.
+    fn is_known(&self, from: f64, to: f64) -> bool {
+        let [from, to] = [from, to].map(|time| self.offset + time);
+        let is_finite = |time: f64| {
+            let BodyState { position, angle, velocity, angular_velocity } = self.motion.state_at(time);
+            position.is_finite() && angle.is_finite() && velocity.is_finite() && angular_velocity.is_finite()
+        };
+        is_finite(from) && is_finite(to) && self.motion.bounds(from, to).are_finite()
     }
 }
 
@@ -103,8 +106,9 @@ pub enum Search {
 /// below its target gap and closes.
 ///
 /// Pairs that start at their target and open do not count until they close again. The result is a contact or
-/// `NoneBefore(span)`; if a threshold, or a motion at either end, is not finite, nothing is proven, and the result is
-/// `NoneBefore(0.0)`.
+/// `NoneBefore(span)`. If a threshold, a motion at either end, or one of its bounds is not finite, nothing is proven, and
+/// the result is `NoneBefore(0.0)`. Target gaps must exceed the rounding of coordinates
+/// ([`Tolerances::target_gap`]), and the time a search takes grows with the bounds of the motions.
 #[must_use]
 pub fn first_contact<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
@@ -114,22 +118,33 @@ pub fn first_contact<A: Motion, B: Motion>(
     settings: &SearchSettings,
 ) -> Search {
     let mut from = 0.0;
-    let are_known =
-        tolerances.are_finite() && [0.0, span].iter().all(|&at| a.is_finite(at) && b.is_finite(at));
-    if !are_known {
+    if !are_known(a, b, from, span, tolerances) {
         return Search::NoneBefore(from);
     }
+    let search = PairSearch { a, b, tolerances, settings, rules: &[] };
     loop {
-        match search_step(a, b, from, span, tolerances, settings) {
+        match search.step(from, span) {
             Search::NoneBefore(time) if time < span => from = time,
             end => return end,
         }
     }
 }
 
+/// True if all numbers of a search are finite: else comparisons prove nothing.
+fn are_known<A: Motion, B: Motion>(
+    a: &MovingShape<'_, A>,
+    b: &MovingShape<'_, B>,
+    from: f64,
+    span: f64,
+    tolerances: &Tolerances,
+) -> bool {
+    tolerances.are_finite() && a.is_known(from, span) && b.is_known(from, span)
+}
+
 /// Continues a search from a time `from` [s], before which there must be no contact, up to `span` [s].
 ///
-/// It may pause early, with proof for the part it has searched. Every call makes progress.
+/// It may pause early, with proof for the part it has searched. Every call makes progress, but for one with a number that
+/// is not finite (see [`first_contact`]): it returns `NoneBefore(from)`.
 #[must_use]
 pub fn search_step<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
@@ -139,6 +154,9 @@ pub fn search_step<A: Motion, B: Motion>(
     tolerances: &Tolerances,
     settings: &SearchSettings,
 ) -> Search {
+    if !are_known(a, b, from, span, tolerances) {
+        return Search::NoneBefore(from);
+    }
     PairSearch { a, b, tolerances, settings, rules: &[] }.step(from, span)
 }
 

@@ -38,6 +38,7 @@ pub struct Flight {
 impl Flight {
     /// The flight from a state with the given acceleration [m/s^2] and the rates [1/s] at which damping reduces the
     /// linear and the angular velocity. A rate that is negative or not a number counts as 0: damping never adds energy.
+    /// An infinite one makes bounds that are not finite, with which nothing can be proven.
     #[must_use]
     pub fn new(start: BodyState, acceleration: DVec2, linear_rate: f64, angular_rate: f64) -> Self {
         let [linear_rate, angular_rate] = [linear_rate, angular_rate].map(|rate| rate.max(0.0));

@@ -111,6 +111,16 @@ pub struct MotionBounds {
     pub angular_acceleration: f64,
 }
 
+impl MotionBounds {
+    /// True if all numbers are finite.
+    pub(crate) fn are_finite(&self) -> bool {
+        let balls = [self.velocity, self.acceleration];
+        balls.iter().all(|ball| ball.center.is_finite() && ball.radius.is_finite())
+            && self.angular_speed.is_finite()
+            && self.angular_acceleration.is_finite()
+    }
+}
+
 /// A motion in which the centre of mass follows a parabola: position + velocity t + acceleration t^2/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polynomial {

@@ -452,6 +452,11 @@ impl Solver for ProximalNewton {
         start: &WarmStart,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        self.run(problem, Some(start), Begin::Guess, solution)
+        let outcome = self.run(problem, Some(start), Begin::Guess, solution);
+        let Err(SolveError::Unsolved { iterations, .. }) = outcome else { return outcome };
+        // An earlier answer, or a guess, that is far off may lead nowhere.
+        let outcome = self.run(problem, None, Begin::Guess, solution);
+        solution.iterations += iterations;
+        outcome
     }
 }

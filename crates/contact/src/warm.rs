@@ -76,12 +76,13 @@ impl WarmStart {
     }
 
     /// Stores a guess of the forces \[N\] (or impulses [N·s]) in place of all that was stored before: one per row, in
-    /// the order of rows; `None` for a row of which nothing is known. Rows with a positive force count as closed. A
-    /// problem all of whose rows have keys ignores the guess.
+    /// the order of rows; `None` for a row of which nothing is known, as a number that is not finite. Rows with a positive
+    /// force count as closed. A problem all of whose rows have keys ignores the guess.
     pub fn guess_forces(&mut self, forces: impl IntoIterator<Item = Option<f64>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, true);
         self.entries.clear();
         self.entries.extend(forces.into_iter().map(|guess| {
+            let guess = guess.filter(|force| force.is_finite());
             let force = guess.unwrap_or(0.0);
             Entry { id: 0, force, closed: force > 0.0, known: guess.is_some() }
         }));

@@ -2,7 +2,7 @@
 
 use crate::edge_spec::EdgeSpec;
 use crate::error::ShapeError;
-use crate::path::PathSpec;
+use crate::path::{PathSpec, coincidence_tol};
 use crate::shape::Shape;
 use glam::DVec2;
 
@@ -32,16 +32,19 @@ impl Shape {
     /// the given radius [m].
     ///
     /// # Errors
-    /// A side or radius [m] that is not positive and finite, or a radius of more than half a side.
+    /// A side or radius [m] that is not positive and finite, or a radius of more than half a side. Half a side but for
+    /// rounding counts as half, and leaves no straight part of that side.
     pub fn rounded_block(width: f64, height: f64, radius: f64) -> Result<Self, ShapeError> {
         check_length("width", width)?;
         check_length("height", height)?;
         check_length("radius", radius)?;
         let half = DVec2::new(width / 2.0, height / 2.0);
-        if radius > half.min_element() {
-            let (name, rule, limit) = ("radius", "at most", half.min_element());
+        let (largest, rounding) = (half.min_element(), coincidence_tol(2.0 * half.max_element()));
+        if radius > largest + rounding {
+            let (name, rule, limit) = ("radius", "at most", largest);
             return Err(ShapeError::OutOfRange { name, value: radius, rule, limit });
         }
+        let radius = if radius < largest - rounding { radius } else { largest };
         let inner = half - DVec2::splat(radius);
         let mut path = PathSpec { start: DVec2::new(-inner.x, -half.y), edges: Vec::new() };
         let corners = [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
@@ -119,5 +122,11 @@ mod tests {
         assert!((shape.mass_properties().area - expected).abs() < 1e-14);
         let stadium = Shape::rounded_block(3.0, 2.0, 1.0).expect("a fine stadium");
         assert_eq!(stadium.features().len(), 6, "a side without a straight part has none");
+        // Sums and products are rounded to either side of the half.
+        for (side, radius) in [(0.1 + 0.2, 0.15), (0.3, 3.0 * 0.05)] {
+            assert!(side / 2.0 != radius);
+            let rounded = Shape::rounded_block(1.0, side, radius).expect("a stadium");
+            assert_eq!(rounded.features().len(), 6);
+        }
     }
 }

@@ -39,7 +39,9 @@ pub enum EdgeSpec {
 
 impl EdgeSpec {
     /// Largest error of end points and arc radii that outlines and rails accept, as a fraction of their size [-]; within it
-    /// the numbers are made exact.
+    /// the numbers are made exact. It is less for long arcs between near ends ([`Shape::from_paths`]).
+    ///
+    /// [`Shape::from_paths`]: crate::Shape::from_paths
     pub const FIT: f64 = 1e-6;
 
     /// End point of the edge [m].

@@ -44,7 +44,9 @@ impl Shape {
     /// Builds the shape that the given closed paths outline: points that an odd number of paths surround are solid,
     /// whichever way the paths run.
     ///
-    /// End points and arc radii may be off by 1e-6 of the shape's size, and are then made exact.
+    /// End points and arc radii may be off by 1e-6 of the shape's size, and are then made exact. The ends of an arc of more
+    /// than half a turn must be better by as much as their distance is less than its radius: an error of either turns
+    /// the arc about the other end.
     ///
     /// # Errors
     /// No paths; open, empty, crossing or degenerate paths: the error names path and edge. Shapes so small or so large

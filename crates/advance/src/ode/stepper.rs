@@ -11,7 +11,8 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StiffnessEstimate {
     /// Product [-] of the fastest rate, in size, and the step. When it comes to [`Method::stability_limit`], the fast
-    /// part rather than the error limits the steps of an explicit method.
+    /// part rather than the error limits the steps of an explicit method. Always 0 for Euler's method, whose one stage
+    /// does not tell it.
     pub fastest: f64,
     /// Error of the motion along the step by this part, in the units of [`Stepper::error_norm`], which does not include
     /// it; 0 where nothing is that fast. The end of the step may be right all the same. Always 0 for implicit methods,
@@ -80,7 +81,7 @@ impl Stepper {
     /// The first error of the system; then nothing is known about the step.
     ///
     /// # Panics
-    /// If the states and rates differ in length.
+    /// If the states differ in length, or the rates are fewer; for explicit methods also if the rates are more.
     pub fn step<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
@@ -177,6 +178,9 @@ impl Stepper {
 
     /// Estimates the fastest part of the system, and its effect on the motion along the last step. `end` is the state
     /// at the end of that step with its rates, `scales` are as in [`error_norm`](Self::error_norm).
+    ///
+    /// # Panics
+    /// If there are more scales than components, for an explicit method.
     #[must_use]
     pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {
         match &mut self.kind {

@@ -265,6 +265,9 @@ fn a_step_to_where_there_are_no_rates_is_none() {
         }
         let Ok(()) = stepper.step(&mut Tank, start, 1e-3, &mut end);
         assert!(is_kept(stepper.error_norm(&[1e-9])), "{method:?}");
+        // A step of no length is exact.
+        let Ok(()) = stepper.step(&mut Tank, start, 0.0, &mut end);
+        assert_eq!((end, stepper.error_norm(&[1e-9])), ([1.0], 0.0), "{method:?}");
     }
 }
 

@@ -97,8 +97,10 @@ pub struct SplineJoint {
 impl RailPath {
     /// Builds the path of lines and arcs that starts at a point [m]; it is closed if it ends there.
     ///
-    /// End points and arc radii may be off by 1e-6 of the path's size and are then made exact. An arc that
-    /// ends where it starts is a full circle.
+    /// End points and arc radii may be off by 1e-6 of the path's size and are then made exact, as those of shapes
+    /// ([`Shape::from_paths`]). An arc that ends where it starts is a full circle.
+    ///
+    /// [`Shape::from_paths`]: halfgap_geometry::Shape::from_paths
     ///
     /// # Errors
     /// No edges, numbers that are not finite, or an edge that cannot be built.

@@ -36,7 +36,7 @@ pub enum RopeSearch {
 /// given as a motion and the offset [s] in it at time 0 of the search.
 ///
 /// A rope at its length that slackens does not count until it comes back. May pause before `span`, with proof
-/// for the part it has searched; every call makes progress.
+/// for the part it has searched; every call makes progress. All numbers must be finite, which is not checked.
 #[must_use]
 pub fn rope_contact<A: Motion, B: Motion>(
     rope: &Rope,

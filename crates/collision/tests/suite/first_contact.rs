@@ -279,18 +279,24 @@ fn nothing_is_proven_of_what_is_no_number() {
     let disc = Shape::disc(0.5).expect("a fine radius");
     let sound = Tolerances { target_gap: 1e-6, accuracy: 0.6e-6, velocity_tol: 1e-9 };
     let rest = Flight::fixed(DVec2::ZERO, 0.0);
-    let search = |position: DVec2, spin: f64, tolerances: &Tolerances| {
+    let damped = |position: DVec2, spin: f64, rate: f64, tolerances: &Tolerances| {
         let velocity = DVec2::new(-1.0, 0.0);
         let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
-        let flight = Flight::new(state, DVec2::ZERO, 0.0, 0.0);
-        let sides = [&rest, &flight].map(|motion| MovingShape { shape: &disc, motion, offset: 0.0 });
-        first_contact(&sides[0], &sides[1], 5.0, tolerances, &SearchSettings::default())
+        let flight = Flight::new(state, DVec2::ZERO, 0.0, rate);
+        let [a, b] = [&rest, &flight].map(|motion| MovingShape { shape: &disc, motion, offset: 0.0 });
+        let settings = SearchSettings::default();
+        let found = first_contact(&a, &b, 5.0, tolerances, &settings);
+        assert_eq!(search_step(&a, &b, 0.0, 5.0, tolerances, &settings), found, "a search of one step");
+        found
     };
+    let search = |position, spin, tolerances: &Tolerances| damped(position, spin, 0.0, tolerances);
     let place = DVec2::new(3.0, 0.0);
     assert!(matches!(search(place, 0.0, &sound), Search::Contact(_)));
     let nothing = Search::NoneBefore(0.0);
     assert_eq!(search(DVec2::new(f64::NAN, 0.0), 0.0, &sound), nothing);
     assert_eq!(search(place, f64::INFINITY, &sound), nothing);
+    // The states are finite, but no bound on the angular acceleration is.
+    assert_eq!(damped(place, 1.0, f64::INFINITY, &sound), nothing);
     assert_eq!(search(place, 0.0, &Tolerances { target_gap: f64::NAN, ..sound }), nothing);
 }
 

@@ -94,6 +94,10 @@ impl Radau {
         end: &mut [f64],
     ) -> Result<(), S::Error> {
         self.open(from, step);
+        if step == 0.0 {
+            self.stay(end);
+            return Ok(());
+        }
         self.differentiate(system, from)?;
         self.solved = self.factorize();
         self.find_rounding();
@@ -162,6 +166,14 @@ impl Radau {
                 from.state.iter().zip(from.rates).map(|(state, rate)| state.abs() + (step * rate).abs());
             self.scales.extend(sizes.map(|size| if size > 0.0 { UNTOLD * size } else { f64::INFINITY }));
         }
+    }
+
+    /// A step of no length, whose equations divide by it.
+    fn stay(&mut self, end: &mut [f64]) {
+        self.stages.iter_mut().for_each(|way| way.fill(0.0));
+        self.error.fill(0.0);
+        (self.stiffness, self.solved) = (0.0, true);
+        end.copy_from_slice(&self.start);
     }
 
     /// Finds the derivatives of the rates by differences.

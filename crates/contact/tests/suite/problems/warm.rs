@@ -1,7 +1,8 @@
 //! Warm starts: the same answer, whatever has changed about the contacts in between.
 
 use halfgap_contact::{
-    Auto, ContactKey, DualActiveSet, InverseInertia, Problem, Row, Solution, Solver, WarmStart,
+    Auto, ContactKey, DualActiveSet, InverseInertia, Problem, ProximalNewton, Row, Solution, Solver,
+    WarmStart,
 };
 
 use super::data::{Case, collection, judge};
@@ -109,4 +110,23 @@ fn a_right_guess_needs_no_pivots() {
     warm.guess((0..case.problem.len()).map(|_| None));
     solver.solve_from(&case.problem, &warm, &mut solution).unwrap();
     assert_eq!(solution.iterations, cold.iterations);
+}
+
+#[test]
+fn a_guess_that_is_far_off_or_no_number_does_no_harm() {
+    let (mut cold, mut solution, mut warm) = (Solution::new(), Solution::new(), WarmStart::new());
+    let mut solver = ProximalNewton::default();
+    let mut solved = 0;
+    for case in collection().iter().filter(|case| case.problem.has_bodies() && case.problem.len() < 100) {
+        if solver.solve(&case.problem, &mut cold).is_err() {
+            continue;
+        }
+        solved += 1;
+        for guess in [1e300, f64::INFINITY, f64::NAN] {
+            warm.guess_forces((0..case.problem.len()).map(|_| Some(guess)));
+            let outcome = solver.solve_from(&case.problem, &warm, &mut solution);
+            assert_eq!(outcome, Ok(()), "{}, {guess}", case.name);
+        }
+    }
+    assert!(solved > 20, "{solved} problems");
 }
