@@ -20,3 +20,4 @@ mod spline_rails;
 mod stacks;
 mod start;
 mod tolerance_slope;
+mod walls;

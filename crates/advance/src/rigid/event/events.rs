@@ -286,15 +286,14 @@ impl RigidSystem {
         self.told.last_impact = report;
         outcome?;
         // A row that comes to rest without having closed is a contact that begins, not an impact.
-        let (rest, at_joint) = (self.rest_speed(), work.region.cause == Cause::SmoothJoint);
-        let mut rows = self.told.last_impact.rows.iter();
-        let is_hit = rows.any(|row| match row.collision.parties.bilateral {
-            true => !at_joint && row.rate_before.abs() > rest,
-            false => row.rate_before < -rest,
-        });
-        if is_hit {
+        let at_joint = work.region.cause == Cause::SmoothJoint;
+        let fastest = fastest_row(&self.told.last_impact, !at_joint);
+        if fastest > self.rest_speed() {
             self.told.has_hit = true;
             self.counts.impacts += 1;
+        }
+        // Slower impacts may be of contacts that take turns.
+        if fastest > self.settings.tolerances.velocity_tol {
             self.forget_paces(&work.region.bodies);
         }
         self.remeasure(&mut work.region, self.now);
@@ -465,16 +464,23 @@ impl RigidSystem {
 
     /// Books the change of energy of an impact in the ledger.
     pub(crate) fn book_impact(&mut self, report: &ImpactReport, booking: Booking) {
-        // Connectors are stopped whichever way they move: a corner of a rail that turns to either side is an impact.
-        let closing = report.rows.iter().map(|row| {
-            if row.collision.parties.bilateral { row.rate_before.abs() } else { -row.rate_before }
-        });
-        let fastest = closing.fold(0.0, f64::max);
+        let fastest = fastest_row(report, true);
         let is_capture = booking == Booking::Capture || fastest <= self.settings.tolerances.velocity_tol;
         let booked = if is_capture { &mut self.ledger.captures } else { &mut self.ledger.impacts };
         *booked += report.energy_change;
         self.note_kinetic_energy_before(report);
     }
+}
+
+/// Largest rate [m/s] that an impact has stopped: of rows that closed and, `with_connectors`, of connectors, whichever
+/// way they moved. A corner of a rail that turns to either side is an impact.
+fn fastest_row(report: &ImpactReport, with_connectors: bool) -> f64 {
+    let stopped = report.rows.iter().map(|row| match row.collision.parties.bilateral {
+        true if with_connectors => row.rate_before.abs(),
+        true => 0.0,
+        false => -row.rate_before,
+    });
+    stopped.fold(0.0, f64::max)
 }
 
 /// Removes the marks as bilateral from the contacts of a region.
