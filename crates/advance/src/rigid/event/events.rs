@@ -134,6 +134,11 @@ impl RigidSystem {
                 (touch, RowSource::Contact(_)) => {
                     let left = touch.filter(|&touch| self.leaves(touch));
                     work.region.cause = left.map_or(Cause::Other, Cause::RunOff);
+                    if let Some(pair) =
+                        left.and_then(|left| self.pairs.between(left.bodies[0], left.bodies[1]))
+                    {
+                        work.repeats = self.note_repeat(pair)?.saturating_sub(CALM_REPEATS);
+                    }
                     self.handle_change(work)
                 }
             },
@@ -189,8 +194,12 @@ impl RigidSystem {
             self.collect_again(work);
         }
         self.hand_over(work);
-        // Beside a seam a corner may be as near to the next corner, and pass over it.
         let region = &mut work.region;
+        if work.repeats > 0 {
+            // Two corners that pass each other may hand over to each other without end.
+            self.retain_staying(region);
+        }
+        // Beside a seam a corner may be as near to the next corner, and pass over it.
         region.records.retain(|record| !(closes_fast(record) && self.passes_by(record)));
         let rest = self.rest_speed();
         if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
@@ -312,11 +321,12 @@ impl RigidSystem {
         while self.leave_loose_corner(work)? {
             self.settle_and_still(work)?;
         }
-        self.note_begins(&work.region, &work.settling);
         self.measure_touches(&mut work.region);
         self.note_gaps(&work.region);
         self.note_seen(&work.region, work.fired_open);
-        self.regroup(&work.region, &work.settling)?;
+        let outcome = self.regroup_soundly(work);
+        self.note_begins(&work.region, &work.settling);
+        outcome?;
         self.set_rules(work);
         if self.limits.last_insistent.is_some_and(|last| is_same_time(last, self.now)) {
             self.lower_insistent(&work.region);
@@ -328,6 +338,21 @@ impl RigidSystem {
         self.note_held_connectors(&work.region, &work.settling);
         self.predict_ropes(&work.region);
         Ok(())
+    }
+
+    /// Makes groups. If one of them cannot make a step, contacts that nearly depend on others are spared: as equations
+    /// such rows may have immense forces.
+    fn regroup_soundly(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        let outcome = self.regroup(&work.region, &work.settling);
+        if !matches!(outcome, Err(AdvanceError::StepCollapsed { .. })) {
+            return outcome;
+        }
+        self.undo_groups(&work.region);
+        self.remeasure(&mut work.region, self.now);
+        work.region.is_unsound = true;
+        self.settle_and_still(work)?;
+        self.measure_touches(&mut work.region);
+        self.regroup(&work.region, &work.settling)
     }
 
     /// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.

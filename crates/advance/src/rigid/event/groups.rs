@@ -162,6 +162,21 @@ impl RigidSystem {
         outcome
     }
 
+    /// Forgets the groups of a region that have just been made: their bodies are in flight again.
+    pub(crate) fn undo_groups(&mut self, region: &Region) {
+        self.complete_dense();
+        for &body in &region.bodies {
+            let Some(leader) = self.groups.leader_of[body.index()] else { continue };
+            let Some(group) = self.groups.take(leader) else { continue };
+            for &body in &group.bodies {
+                let state = self.flyer(body).unwound_at(self.now);
+                self.flyers[body.index()].fly_from(self.now, state);
+                self.groups.leader_of[body.index()] = None;
+            }
+            self.queue.clear(self.source_id(Source::Group(leader)));
+        }
+    }
+
     /// Forgets a group that was never started: its bodies are in flight.
     fn drop_group(&mut self, leader: BodyId) {
         let Some(group) = self.groups.take(leader) else { return };

@@ -40,6 +40,8 @@ pub(crate) struct Region {
     pub(crate) in_storm: bool,
     /// True if steps have become so short that contacts that count as resting seem to take turns.
     pub(crate) is_hasty: bool,
+    /// True if the rows that would be held were found to be unsound: contacts that nearly depend on others are spared.
+    pub(crate) is_unsound: bool,
     fresh: Vec<Collision>,
     /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].
     pub(crate) changes: Vec<[f64; 3]>,
@@ -59,6 +61,7 @@ impl Region {
         self.touches.clear();
         self.motions.clear();
         self.groups.clear();
+        self.is_unsound = false;
         self.places.resize(body_count, (0, 0));
         self.stamp = self.stamp.wrapping_add(1);
         if self.stamp == 0 {
