@@ -13,8 +13,8 @@ use crate::row::CollisionRow;
 pub enum ImpactLaw {
     /// All rows that close or rest in one problem, with all connectors; repeated while rows still close.
     Simultaneous,
-    /// One group of rows after another: the row that closes fastest with the others that close on its movable bodies,
-    /// and all connectors that these reach through movable bodies.
+    /// One group of rows after another: the row that closes fastest with the others on its movable bodies that close at a
+    /// comparable speed, at least a 32nd of its own, and all connectors that these reach through movable bodies.
     #[default]
     Hybrid,
     /// One row at a time, connectors too. The only law in which the elasticity of a connector acts. A pin is two rows

@@ -173,12 +173,14 @@ proptest! {
     }
 
     #[test]
-    fn two_closing_rows_on_the_same_two_bodies_are_simultaneous_in_the_hybrid_law(
+    fn two_rows_that_close_alike_on_the_same_two_bodies_are_simultaneous_in_the_hybrid_law(
         movers in prop::array::uniform2(any_mover()), a in any_touch([0, 1]), b in any_touch([0, 1]),
     ) {
         // A contact that opens is one that closes, seen from its other side.
         let facing = |touch: Touch| if touch.row(&movers).rate < 0.0 { touch } else { touch.turned() };
         let touches = [facing(a), facing(b)];
+        let [p, q] = touches.map(|touch| touch.row(&movers).rate.abs());
+        prop_assume!(p.min(q) > p.max(q) / 32.0);
         let (hybrid, _) = resolve(ImpactLaw::Hybrid, ImpactOrder::Fastest, &movers, &touches).expect("two rows");
         let (together, impact) = resolve(ImpactLaw::Simultaneous, ImpactOrder::Fastest, &movers, &touches).expect("two rows");
         let largest = impact.impulses().iter().fold(1.0f64, |most, j| most.max(*j));
@@ -241,6 +243,28 @@ fn held_rows_at_rest_take_part_in_a_simultaneous_impact() {
     assert!(near(speeds(ImpactLaw::Simultaneous), [-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0]));
     assert!(near(speeds(ImpactLaw::SerialSeparate), [0.0, 0.0, 1.0]));
     assert!(near(speeds(ImpactLaw::Hybrid), [0.0, 0.0, 1.0]));
+}
+
+#[test]
+fn a_line_of_nearly_elastic_discs_does_nearly_as_elastic_ones_do() {
+    // Two discs strike three at rest: two leave. The impulses that run through the line leave small closing rates.
+    let mover = |velocity: f64| Mover { inverse: [1.0, 1.0, 2.0], velocity: [velocity, 0.0, 0.0] };
+    let movers = [1.0, 1.0, 0.0, 0.0, 0.0].map(mover);
+    for elasticity in [0.9, 0.99, 0.999, 0.9999, 1.0] {
+        let touches = [0, 1, 2, 3].map(|first: usize| Touch {
+            bodies: [first, first + 1],
+            angle: std::f64::consts::PI,
+            moments: [0.0; 2],
+            elasticity,
+        });
+        for law in [ImpactLaw::Hybrid, ImpactLaw::SerialSeparate] {
+            let (after, _) = resolve(law, ImpactOrder::Fastest, &movers, &touches).expect("four rows");
+            for (mover, expected) in after.iter().zip([0.0, 0.0, 0.0, 1.0, 1.0]) {
+                let off = (mover.velocity[0] - expected).abs();
+                assert!(off <= 2.0 * (1.0 - elasticity) + 1e-14, "{law:?}, {elasticity}: {after:?}");
+            }
+        }
+    }
 }
 
 #[test]
