@@ -6,8 +6,9 @@ use super::error::RailError;
 use super::path::{Foot, RailHint, RailKnot, RailPlace};
 use glam::DVec2;
 use halfgap_geometry::{Aabb, Arc, Edge, EdgeError, EdgeSpec};
+use std::f64::consts::PI;
 
-/// Turn of a joint [rad] below which it is smooth.
+/// Turn of a joint [rad] below which it is smooth; one that falls short of half a turn by less is a cusp.
 const SMOOTH_TURN: f64 = 1e-6;
 
 /// Distance of a point, as a fraction of the path's length [-]: off the path, up to which its place as followed from a
@@ -49,6 +50,10 @@ impl EdgePath {
         let boxes: Vec<Aabb> = edges.iter().map(Edge::bounds).collect();
         let tree = BoxTree::new(&boxes).ok_or(RailError::NoEdges)?;
         let knots = find_knots(&pieces, &edges, closed);
+        if let Some(cusp) = knots.iter().find(|knot| knot.turn.abs() > PI - SMOOTH_TURN) {
+            // An open path has a piece before its first edge.
+            return Err(RailError::TurnsBack(cusp.after as usize - usize::from(!closed)));
+        }
         Ok(Self { pieces, closed, length, tree, knots })
     }
 
@@ -66,6 +71,13 @@ impl EdgePath {
 
     pub(super) fn knots(&self) -> &[RailKnot] {
         &self.knots
+    }
+
+    /// The joint at an end of a piece, forward or backward. Joints are in the order of pieces; the first piece of an open
+    /// path has none before it.
+    pub(super) fn knot_at_end(&self, piece: usize, forward: bool) -> Option<&RailKnot> {
+        let after = if forward { self.neighbor(piece, true) } else { piece };
+        self.knots.get(if self.closed { after } else { after.checked_sub(1)? })
     }
 
     /// Place [m] at which a piece is entered: its first one if it is entered forward, else its last one.
@@ -212,8 +224,7 @@ impl EdgePath {
 
     /// True if a piece ends in a corner, forward or backward.
     fn is_corner(&self, piece: usize, forward: bool) -> bool {
-        let ends = |knot: &RailKnot| piece == if forward { knot.before } else { knot.after } as usize;
-        self.knots.iter().any(|knot| knot.turn != 0.0 && ends(knot))
+        self.knot_at_end(piece, forward).is_some_and(|knot| knot.turn != 0.0)
     }
 
     fn hinted_piece(&self, hint: &RailHint) -> usize {

@@ -57,6 +57,11 @@ pub enum RailError {
         /// Reason why the arc could not be built.
         source: ArcError,
     },
+    /// An edge, of the given index, sets out straight back along the edge before it.
+    #[error(
+        "edge {0} of the rail turns straight back where it begins; no point can follow a rail through a cusp"
+    )]
+    TurnsBack(usize),
     /// There are not enough points for a spline.
     #[error("the spline of a rail needs at least {least} different points, got {got}")]
     TooFewPoints {

@@ -162,6 +162,15 @@ impl RailPath {
         }
     }
 
+    /// The joint at an end of a piece of lines and arcs, forward or backward; `None` at an open end, and for a spline.
+    #[must_use]
+    pub fn knot_at_end(&self, piece: u32, forward: bool) -> Option<&RailKnot> {
+        match &self.curve {
+            Curve::Edges(path) => path.knot_at_end(piece as usize, forward),
+            Curve::Spline(_) => None,
+        }
+    }
+
     /// The next joint of a spline along a velocity [m/s], from the place of a hint. A joint that is all but
     /// reached counts as passed. `None` if there is no joint before an open end, and on a path of edges.
     #[must_use]
@@ -209,8 +218,7 @@ impl RailPath {
             let way = way.min(if self.is_closed() { (self.length() - way).abs() } else { way });
             way <= SAME_PLACE * self.length()
         };
-        let ends = |knot: &RailKnot| hint.piece == if forward { knot.before } else { knot.after };
-        self.knots().iter().any(|knot| knot.turn != 0.0 && ends(knot) && is_there(knot))
+        self.knot_at_end(hint.piece, forward).is_some_and(|knot| knot.turn != 0.0 && is_there(knot))
     }
 
     /// The place nearest to a point [m]: on the whole path without a hint, else the first one found along the path from

@@ -504,6 +504,12 @@ fn bad_rails_are_refused() {
     assert!(matches!(edges(&[EdgeSpec::Line { to: DVec2::ZERO }]), RailError::Line { edge: 0, .. }));
     let misfit = EdgeSpec::Arc { to: at(2.0, 0.0), center: at(1.3, 0.0), clockwise: true };
     assert!(matches!(edges(&[misfit]), RailError::Arc { edge: 0, .. }));
+    // There and back again, with two more edges before, and as a closed path.
+    let line = |x: f64, y: f64| EdgeSpec::Line { to: at(x, y) };
+    let there = [line(0.0, 1.0), line(1.0, 1.0), line(3.0, 1.0)];
+    assert_eq!(edges(&[&there[..], &[line(2.0, 1.0)]].concat()), RailError::TurnsBack(3));
+    assert_eq!(edges(&[line(1.0, 0.0), line(0.0, 0.0)]), RailError::TurnsBack(0));
+    assert!(RailPath::from_edges(DVec2::ZERO, &[&there[..], &[line(2.0, 1.001)]].concat()).is_ok());
 }
 
 #[test]

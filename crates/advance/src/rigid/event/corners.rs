@@ -13,10 +13,10 @@ use super::events::Booking;
 use super::impacts::Manner;
 use super::region::Region;
 use crate::rigid::error::AdvanceError;
-use crate::rigid::step::rows::RowSource;
+use crate::rigid::step::rows::{RowSource, end_rooms};
 use crate::rigid::system::RigidSystem;
 use glam::DVec2;
-use halfgap_collision::{Collision, ConnectorId, ConnectorKind, Detector};
+use halfgap_collision::{BodyId, Collision, ConnectorId, ConnectorKind, Detector};
 
 /// Number of times that a stop in a corner is met without time going by.
 const MOST_AGAIN: u32 = 2;
@@ -58,9 +58,40 @@ impl RigidSystem {
         {
             return self.meet_stop(work, stop);
         }
-        let is_corner = self.pass_knot(id, self.now);
+        self.collect_region(&mut work.region, &work.seeds, self.now);
+        let is_corner = self.pass_knot(id, self.now) | self.pass_joints_beside(&work.region.bodies, id);
         work.region.cause = if is_corner { Cause::Other } else { Cause::SmoothJoint };
         self.handle_impact(work)
+    }
+
+    /// Takes the points of other rails of some bodies along, too, if they come to their joints within `accuracy`: what
+    /// happens at one time is one event. True if any comes to a corner.
+    fn pass_joints_beside(&mut self, bodies: &[BodyId], passed: ConnectorId) -> bool {
+        let mut any = false;
+        for &body in bodies {
+            for index in 0..self.connectors.of(body).len() {
+                let id = self.connectors.of(body)[index];
+                if id != passed && self.comes_to_joint(id) {
+                    any |= self.pass_knot(id, self.now);
+                }
+            }
+        }
+        any
+    }
+
+    /// True if the point of a rail that is in no corner comes to the end of its piece within `accuracy`.
+    fn comes_to_joint(&self, id: ConnectorId) -> bool {
+        let ConnectorKind::Rail { a, path } = &self.connector(id).kind else { return false };
+        let state = &self.connectors.states[id.index()];
+        if state.corner.is_some() {
+            return false;
+        }
+        let moving = self.moving_at(a.body, self.now);
+        let arm = moving.pose.vector_to_world(a.point);
+        let place = path.nearest(moving.pose.position + arm, state.hint.as_ref());
+        let along = moving.velocity_at(arm).dot(place.tangent());
+        let ahead = end_rooms(path, &place).into_iter().flatten().find(|end| end.is_forward == (along > 0.0));
+        along != 0.0 && ahead.is_some_and(|end| end.room <= self.settings.tolerances.accuracy)
     }
 
     /// Handles a rope that goes taut, or a point that comes to the stop of its rail.

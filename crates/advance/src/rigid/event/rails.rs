@@ -7,7 +7,7 @@
 use super::region::Region;
 use crate::rigid::step::dynamics::body_state;
 use crate::rigid::step::group::Group;
-use crate::rigid::step::rows::{HeldRow, RowSource, knot_rooms};
+use crate::rigid::step::rows::{HeldRow, RailEnd, RowSource, end_rooms};
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
@@ -144,13 +144,10 @@ impl RigidSystem {
         let Some(path) = self.connector(id).path() else { return false };
         let place =
             path.nearest(self.point_on_rail(id, time), self.connectors.states[id.index()].hint.as_ref());
-        let ends = path.knots().iter().flat_map(|knot| {
-            let [before, after] = knot_rooms(path, knot, &place);
-            [before.map(|room| (room.abs(), knot, true)), after.map(|room| (room.abs(), knot, false))]
-        });
-        let nearest = ends.flatten().min_by(|p, q| p.0.total_cmp(&q.0));
-        let Some((_, knot, forward)) = nearest else { return false };
-        let hint = path.hint_past(knot, forward).staying();
+        let ends = end_rooms(path, &place).into_iter().flatten();
+        let nearest = ends.min_by(|p, q| p.room.abs().total_cmp(&q.room.abs()));
+        let Some(RailEnd { knot, is_forward, .. }) = nearest else { return false };
+        let hint = path.hint_past(knot, is_forward).staying();
         let corner = (knot.turn != 0.0).then(|| path.corner_sides(knot));
         self.set_hint(id, hint);
         self.connectors.states[id.index()].corner = corner;

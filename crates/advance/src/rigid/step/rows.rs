@@ -334,18 +334,30 @@ fn is_full(feature: &Feature) -> bool {
 /// time.
 fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
     let place = path.nearest(point, hint);
-    let rooms = path.knots().iter().flat_map(|knot| knot_rooms(path, knot, &place));
-    rooms.flatten().reduce(|room, other| room * other / (room + other))
+    let rooms = end_rooms(path, &place).into_iter().flatten().map(|end| end.room);
+    rooms.reduce(|room, other| room * other / (room + other))
 }
 
-/// Distances [m] along a rail from a place to a joint, as the joint at the end of its piece and as the one at its
-/// start; `None` where it is not.
-pub(crate) fn knot_rooms(path: &RailPath, knot: &RailKnot, place: &RailPlace) -> [Option<f64>; 2] {
-    // On a closed path the joint at its start is at both of its ends.
-    let end = if path.is_closed() && knot.arc_length == 0.0 { path.length() } else { knot.arc_length };
-    let before = (knot.before == place.piece()).then_some(end - place.arc_length);
-    let after = (knot.after == place.piece()).then_some(place.arc_length - knot.arc_length);
-    [before, after]
+/// The joint at an end of a rail's piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RailEnd<'a> {
+    pub(crate) knot: &'a RailKnot,
+    /// True for the end at which the piece is left forward.
+    pub(crate) is_forward: bool,
+    /// Distance [m] along the rail from a place to the joint; negative beyond it.
+    pub(crate) room: f64,
+}
+
+/// The ends of the piece of a rail's place, forward and backward; `None` where the rail goes on without end.
+pub(crate) fn end_rooms<'a>(path: &'a RailPath, place: &RailPlace) -> [Option<RailEnd<'a>>; 2] {
+    [true, false].map(|is_forward| {
+        let knot = path.knot_at_end(place.piece(), is_forward)?;
+        // On a closed path the joint at its start is at both of its ends.
+        let wraps = is_forward && path.is_closed() && knot.arc_length == 0.0;
+        let end = if wraps { path.length() } else { knot.arc_length };
+        let room = if is_forward { end - place.arc_length } else { place.arc_length - end };
+        Some(RailEnd { knot, is_forward, room })
+    })
 }
 
 #[cfg(test)]
