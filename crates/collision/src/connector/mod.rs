@@ -111,7 +111,9 @@ pub enum ConnectorKind {
         /// Length [m].
         length: f64,
     },
-    /// Keeps a point on a path that is fixed in the world.
+    /// Keeps a point on a path that is fixed in the world. An open path goes on straight beyond its ends, unless a stop ends
+    /// it. At a corner of the path the point loses the velocity across the piece that it goes on along, whatever the
+    /// elasticity of the connector, and stays there if that piece leads back.
     Rail {
         /// Point of body a.
         a: Anchor,

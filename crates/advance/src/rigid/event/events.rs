@@ -316,7 +316,8 @@ impl RigidSystem {
             self.flyers[body.index()].unwind();
         }
         self.note_rails(&work.region, self.now);
-        work.region.is_hasty = self.take_haste(&work.region);
+        // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
+        work.region.is_hasty = self.take_haste(&work.region) || self.has_pulled(self.now);
         self.settle_and_still(work)?;
         while self.leave_loose_corner(work)? {
             self.settle_and_still(work)?;
