@@ -4,6 +4,7 @@ use super::cause::{Cause, EventWork};
 use super::impacts::{ImpactReport, Manner};
 use super::region::{Region, Touch, sorted};
 use crate::rigid::error::AdvanceError;
+use crate::rigid::held::settle::HASTY_SHARE;
 use crate::rigid::limits::bounces::closes_fast;
 use crate::rigid::limits::repeats::{CALM_REPEATS, is_same_time};
 use crate::rigid::search::pairs::PairId;
@@ -341,19 +342,39 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// Makes groups. If one of them cannot make a step, contacts that nearly depend on others are spared: as equations
-    /// such rows may have immense forces.
+    /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, contacts
+    /// that nearly depend on others are spared: as equations such rows may have immense forces. If they drive other
+    /// contacts together, contacts that open slowly are let go.
     fn regroup_soundly(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+        work.before.clear();
+        work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(self.now)));
+        let projections = self.ledger.projections;
         let outcome = self.regroup(&work.region, &work.settling);
-        if !matches!(outcome, Err(AdvanceError::StepCollapsed { .. })) {
+        let collapses = matches!(outcome, Err(AdvanceError::StepCollapsed { .. }));
+        let drives = outcome.is_ok() && !work.region.is_hasty && self.drives_together(work);
+        if !collapses && !drives {
             return outcome;
         }
-        self.undo_groups(&work.region);
+        self.undo_groups(&work.region, &work.before);
+        self.ledger.projections = projections;
         self.remeasure(&mut work.region, self.now);
-        work.region.is_unsound = true;
+        (work.region.is_unsound, work.region.is_hasty) = (collapses, work.region.is_hasty || drives);
         self.settle_and_still(work)?;
         self.measure_touches(&mut work.region);
         self.regroup(&work.region, &work.settling)
+    }
+
+    /// True if stopping the slow opening of held contacts has driven other contacts together, faster than they opened:
+    /// where a body is held by two corners that are next to each other, a slow rate between them is a fast turn.
+    fn drives_together(&self, EventWork { region, settling, .. }: &EventWork) -> bool {
+        let held = settling.held.iter().filter(|(_, row)| !row.bilateral);
+        let rates = held.map(|(index, _)| region.records[*index].motion.normal_velocity);
+        let opening = rates.fold(0.0, f64::max);
+        if opening <= HASTY_SHARE * self.rest_speed() {
+            return false;
+        }
+        let mut touches = region.touches.iter().zip(&region.motions);
+        touches.any(|(touch, (_, before))| self.gap_at(*touch, self.now).1 < before.min(0.0) - opening)
     }
 
     /// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.

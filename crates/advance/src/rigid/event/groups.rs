@@ -16,7 +16,7 @@ use crate::rigid::step::group::{Group, Work};
 use crate::rigid::step::rows::{HeldRow, RowSource};
 use crate::rigid::system::RigidSystem;
 
-use halfgap_collision::{BodyId, ConnectorId};
+use halfgap_collision::{BodyId, BodyState, ConnectorId};
 use halfgap_contact::InverseInertia;
 
 /// Depth of other contacts of two bodies as a multiple of that to which one has sunk.
@@ -162,22 +162,19 @@ impl RigidSystem {
         outcome
     }
 
-    /// Forgets the groups of a region that have just been made: their bodies are in flight again.
-    pub(crate) fn undo_groups(&mut self, region: &Region) {
+    /// Forgets the groups of a region that have just been made: its bodies are in flight again, in the states before.
+    pub(crate) fn undo_groups(&mut self, region: &Region, before: &[BodyState]) {
         self.complete_dense();
-        for &body in &region.bodies {
-            let Some(leader) = self.groups.leader_of[body.index()] else { continue };
-            let Some(group) = self.groups.take(leader) else { continue };
-            for &body in &group.bodies {
-                let state = self.flyer(body).unwound_at(self.now);
-                self.flyers[body.index()].fly_from(self.now, state);
-                self.groups.leader_of[body.index()] = None;
+        for (&body, &state) in region.bodies.iter().zip(before) {
+            if let Some(leader) = self.groups.leader_of[body.index()] {
+                self.queue.clear(self.source_id(Source::Group(leader)));
+                self.drop_group(leader);
             }
-            self.queue.clear(self.source_id(Source::Group(leader)));
+            self.flyers[body.index()].fly_from(self.now, state);
         }
     }
 
-    /// Forgets a group that was never started: its bodies are in flight.
+    /// Forgets a group that was never started, or is made anew: its bodies are in flight.
     fn drop_group(&mut self, leader: BodyId) {
         let Some(group) = self.groups.take(leader) else { return };
         for &body in &group.bodies {

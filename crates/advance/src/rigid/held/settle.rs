@@ -40,7 +40,7 @@ const RELEASED_SHARE: f64 = 1e-3;
 const IDLE_SHARE: f64 = 1e-13;
 
 /// Largest opening rate of a held contact in a hasty group, as a fraction of the rate at rest.
-const HASTY_SHARE: f64 = 1e-3;
+pub(crate) const HASTY_SHARE: f64 = 1e-3;
 
 /// Outcome of the solve for the forces of the candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
