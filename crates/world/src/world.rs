@@ -44,13 +44,14 @@ impl Energy {
 /// Counters of a run, its smallest gap and its largest connector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
-    /// Number of segments of motion started, over all movable bodies.
+    /// Number of segments of motion started: one for each flight of a body, and for each step of a group of bodies that
+    /// step together.
     pub steps: u64,
     /// Number of evaluations of the accelerations of a group of bodies by integrators; closed forms need none.
     pub evaluations: u64,
     /// Number of impacts.
     pub impacts: u64,
-    /// Number of segments cut short by an event.
+    /// Number of times that an event cut the motion of a body short, in flight or in a group.
     pub backups: u64,
     /// Number of contact problems solved, and of solves for the forces of held contacts and connectors.
     pub contact_solves: u64,

@@ -71,13 +71,13 @@ pub struct RigidSettings {
 /// Counts and extremes of a system since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// Segments started by movable bodies.
+    /// Segments started: flights of bodies, and steps of groups.
     pub segments: u64,
     /// Events handled, of all kinds.
     pub events: u64,
     /// Impacts resolved.
     pub impacts: u64,
-    /// Segments cut short by an event.
+    /// Times that an event cut the motion of a body short, in flight or in a group.
     pub backups: u64,
     /// Complementarity problems solved, and solves for the forces of held rows.
     pub contact_solves: u64,
