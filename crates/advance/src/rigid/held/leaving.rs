@@ -24,25 +24,24 @@ impl RigidSystem {
         let before = settling.candidates.len();
         settling.candidates.retain(|&index| {
             let record = &region.records[index];
-            !self.leaves_at_once(record, record.bodies().map(|body| stage.movings[body.index()]))
+            !self.leaves_at_once(record, |body| stage.movings[body.index()])
         });
         settling.candidates.len() < before
     }
 
     /// Leaves out the records of a region that run off their features while they slide by `accuracy`.
     pub(crate) fn retain_staying(&self, region: &mut Region) {
-        let moving = |body: BodyId| self.moving_at(body, self.now);
-        region.records.retain(|record| !self.leaves_at_once(record, record.bodies().map(moving)));
+        region.records.retain(|record| !self.leaves_at_once(record, |body| self.moving_at(body, self.now)));
     }
 
-    fn leaves_at_once(&self, record: &Collision, movings: [Moving; 2]) -> bool {
+    fn leaves_at_once(&self, record: &Collision, moving: impl Fn(BodyId) -> Moving) -> bool {
         let Some(RowSource::Contact(features)) = self.source_of(record) else { return false };
         let bodies = record.bodies();
         let wait = self.settings.tolerances.accuracy / record.motion.lateral_velocity.abs();
         if wait.is_nan() || wait > SOON * self.settings.resolution_time {
             return false;
         }
-        let moved = movings.map(|moving| after(&moving, wait));
+        let moved = bodies.map(|body| after(&moving(body), wait));
         self.mechanism().has_left(bodies, features, [&moved[0], &moved[1]])
     }
 }
