@@ -50,6 +50,29 @@ fn a_carriage_on_two_rails_that_bend_alike_loses_what_a_bead_would() {
 }
 
 #[test]
+fn a_carriage_meets_the_stop_in_the_corner_of_one_of_its_rails() {
+    // Both points come to their corners at one time; the stop, wholly elastic, ends the rail of the front one there.
+    let bent = |x: f64| rail([-2.5, 0.0], &[line(x, 0.0), line(x + 2.0, 1.0)]);
+    for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let mut shop = Workshop::weightless(1e-8);
+        let body = shop.body("carriage", block(0.7, 0.2), 1.0, thrown(-1.0, 0.0, DVec2::X));
+        let [back, front] = [0.0, 0.5].map(|at| shop.anchor(body, DVec2::new(at - 1.0, 0.0)));
+        for which in order {
+            let (kind, elasticity) = match which {
+                0 => (ConnectorKind::Rail { a: back, path: bent(0.0) }, 0.0),
+                1 => (ConnectorKind::Rail { a: front, path: bent(0.5) }, 0.0),
+                _ => (ConnectorKind::RailStop { a: front, path: bent(0.5), at: 3.0, upper: true }, 1.0),
+            };
+            shop.connect(kind, elasticity);
+        }
+        let mut world = shop.build();
+        advance(&mut world, 1.5);
+        let off = (motion(&world).1[0] + DVec2::X).length();
+        assert!(off < ROUNDING, "{order:?}: {:?}", motion(&world));
+    }
+}
+
+#[test]
 fn two_beads_on_a_rod_turn_into_like_rails_at_one_time() {
     // The rod stands at these angles to the level rails, which bend up by 1 in 2; nothing turns.
     for angle in [0.3, 0.8, 1.2, std::f64::consts::FRAC_PI_2] {

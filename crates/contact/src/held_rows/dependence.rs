@@ -94,17 +94,20 @@ impl HeldRows {
 
     /// True if the rest of a row, just found by [`measure_rest`](Self::measure_rest), moves some body by more than
     /// rounding: its squared motion exceeds `dependence` times the sum of those that the rows of the combination give
-    /// the body.
+    /// the body. Rows whose squared share in it is no more than `dependence` carry next to no force, and do not count: a
+    /// body that only they move is let go with them.
     pub(super) fn moves_by_itself(&mut self, place: usize) -> bool {
         self.gross.clear();
         self.gross.resize(self.motion.len(), 0.0);
         self.add_gross(place, 1.0);
         for k in 0..place {
-            self.add_gross(k, self.work[k]);
+            if self.work[k] * self.work[k] > self.dependence {
+                self.add_gross(k, self.work[k]);
+            }
         }
         let square = |[x, y, turn]: &[f64; 3]| x * x + y * y + turn * turn;
         let mut bodies = self.motion.iter().zip(&self.gross);
-        bodies.any(|(motion, gross)| square(motion) > self.dependence * gross)
+        bodies.any(|(motion, &gross)| gross > 0.0 && square(motion) > self.dependence * gross)
     }
 
     /// Adds the squared motion of each body by a multiple of a row of Ĵ to `gross`.

@@ -14,7 +14,7 @@ use super::impacts::Manner;
 use super::region::Region;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::step::rows::{RowSource, end_rooms};
-use crate::rigid::system::RigidSystem;
+use crate::rigid::system::{RigidSettings, RigidSystem};
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, ConnectorKind, Detector};
 
@@ -64,14 +64,14 @@ impl RigidSystem {
         self.handle_impact(work)
     }
 
-    /// Takes the points of other rails of some bodies along, too, if they come to their joints within `accuracy`: what
-    /// happens at one time is one event. True if any comes to a corner.
+    /// Takes the points of other rails of some bodies along, too, if they come to their joints now: what happens at one
+    /// time is one event. True if any comes to a corner. A point with a stop in its corner meets that.
     fn pass_joints_beside(&mut self, bodies: &[BodyId], passed: ConnectorId) -> bool {
         let mut any = false;
         for &body in bodies {
             for index in 0..self.connectors.of(body).len() {
                 let id = self.connectors.of(body)[index];
-                if id != passed && self.comes_to_joint(id) {
+                if id != passed && self.comes_to_joint(id) && self.stop_in_corner(id).is_none() {
                     any |= self.pass_knot(id, self.now);
                 }
             }
@@ -79,7 +79,7 @@ impl RigidSystem {
         any
     }
 
-    /// True if the point of a rail that is in no corner comes to the end of its piece within `accuracy`.
+    /// True if the point of a rail that is in no corner comes to the end of its piece, but for the error of a step.
     fn comes_to_joint(&self, id: ConnectorId) -> bool {
         let ConnectorKind::Rail { a, path } = &self.connector(id).kind else { return false };
         let state = &self.connectors.states[id.index()];
@@ -91,7 +91,9 @@ impl RigidSystem {
         let place = path.nearest(moving.pose.position + arm, state.hint.as_ref());
         let along = moving.velocity_at(arm).dot(place.tangent());
         let ahead = end_rooms(path, &place).into_iter().flatten().find(|end| end.is_forward == (along > 0.0));
-        along != 0.0 && ahead.is_some_and(|end| end.room <= self.settings.tolerances.accuracy)
+        let RigidSettings { steps, tolerances, .. } = &self.settings;
+        let error = tolerances.accuracy.min(steps.local_error * steps.length);
+        along != 0.0 && ahead.is_some_and(|end| end.room <= error)
     }
 
     /// Handles a rope that goes taut, or a point that comes to the stop of its rail.

@@ -102,7 +102,7 @@ impl RigidSystem {
         while self.drop_idle(region, settling, stage) {
             self.solve_candidates(region, settling, stage, (time, rest))?;
         }
-        if region.is_unsound || (!is_start && settling.is_shared()) {
+        if region.is_unsound || (!is_start && (settling.is_shared() || self.has_pulled(time))) {
             self.spare_nearly_redundant(region, settling);
         }
         if is_start || self.has_pulled(time) {
