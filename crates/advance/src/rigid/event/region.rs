@@ -40,7 +40,8 @@ pub(crate) struct Region {
     pub(crate) in_storm: bool,
     /// True if steps have become so short that contacts that count as resting seem to take turns.
     pub(crate) is_hasty: bool,
-    /// True if the rows that would be held were found to be unsound: contacts that nearly depend on others are spared.
+    /// True if the rows that would be held were found to be unsound: contacts that nearly depend on others are spared,
+    /// and all are held where they are.
     pub(crate) is_unsound: bool,
     fresh: Vec<Collision>,
     /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].

@@ -307,7 +307,7 @@ impl RigidSystem {
             let is_released = Touch::of(&record).is_some_and(|touch| region.cause == Cause::Released(touch));
             let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
             let least = share * loads.fold(f64::INFINITY, f64::min);
-            let lies_deep = self.lifted(&record).is_some();
+            let lies_deep = !region.is_unsound && self.lifted(&record).is_some();
             let stays = record.parties.bilateral || force > least || lies_deep;
             region.records[index].response.force = Some(if stays { force } else { 0.0 });
             any |= !stays && force > 0.0;
@@ -319,7 +319,9 @@ impl RigidSystem {
     /// Makes held rows of the remaining candidates.
     fn choose_rows(&self, region: &Region, settling: &mut Settling, time: Time) {
         for &index in &settling.candidates {
-            settling.held.extend(self.held_row(&region.records[index], time).map(|row| (index, row)));
+            let record = &region.records[index];
+            let lifted = if region.is_unsound { None } else { self.lifted(record) };
+            settling.held.extend(self.held_row(record, lifted, time).map(|row| (index, row)));
         }
         settling.list_touches();
     }
@@ -330,7 +332,8 @@ impl RigidSystem {
         HeldRow { leans: self.mechanism().leans(&row, [&movings[0], &movings[1]]), ..row }
     }
 
-    fn held_row(&self, record: &Collision, time: Time) -> Option<HeldRow> {
+    /// The row of a record, held at its present gap or at the one [m] to which it is `lifted`.
+    fn held_row(&self, record: &Collision, lifted: Option<f64>, time: Time) -> Option<HeldRow> {
         let source = self.source_of(record)?;
         let bodies = record.bodies();
         let hint = match source {
@@ -340,7 +343,6 @@ impl RigidSystem {
         // Bilateral rows are kept at gap 0, the others where they are, unless they have sunk too deep: moving a rope to
         // its length would move a body that hangs on it by a long arm by much more.
         let bilateral = record.parties.bilateral;
-        let lifted = self.lifted(record);
         let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
         let is_lifted = lifted.is_some() && self.is_seen(record);
         let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted };
