@@ -359,7 +359,8 @@ impl RigidSystem {
             };
             // Each remedy is tried once.
             let Region { is_unsound, is_hasty, .. } = &mut work.region;
-            if !(displaces && !*is_unsound || drives && !*is_hasty) {
+            let has_remedy = (displaces && !*is_unsound) || (drives && !*is_hasty);
+            if !has_remedy {
                 return outcome;
             }
             (*is_unsound, *is_hasty) = (*is_unsound || displaces, *is_hasty || drives);
