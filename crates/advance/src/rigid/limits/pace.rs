@@ -3,7 +3,8 @@
 //!
 //! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres pass each
 //! other closely. So only steps without an impact between them count, in long series, and only if the time to be
-//! simulated would take a hopeless number of them.
+//! simulated would take a hopeless number of them. Impacts no faster than `velocity_tol` do not interrupt a series: they may
+//! be of contacts that take turns.
 //!
 //! A group may also be hasty, making short steps because contacts that count as resting take turns: holding one stops
 //! its slow opening, and another, which is moved along, pulls or closes. In a hasty group contacts that open are let
