@@ -4,7 +4,6 @@ use super::cause::{Cause, EventWork};
 use super::impacts::{ImpactReport, Manner};
 use super::region::{Region, Touch, sorted};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::held::settle::HASTY_SHARE;
 use crate::rigid::limits::bounces::closes_fast;
 use crate::rigid::limits::repeats::{CALM_REPEATS, is_same_time};
 use crate::rigid::search::pairs::PairId;
@@ -342,62 +341,8 @@ impl RigidSystem {
         Ok(())
     }
 
-    /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
-    /// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
-    /// equations such rows may have immense forces, and none is lifted. If the groups drive other contacts together,
-    /// contacts that open slowly are let go.
-    fn regroup_soundly(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
-        loop {
-            work.before.clear();
-            work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(self.now)));
-            let projections = self.ledger.projections;
-            let outcome = self.regroup(&work.region, &work.settling);
-            let [displaces, drives] = match outcome {
-                Ok(()) => self.harm_done(work),
-                Err(AdvanceError::StepCollapsed { .. }) => [true, false],
-                Err(_) => [false; 2],
-            };
-            // Each remedy is tried once.
-            let Region { is_unsound, is_hasty, .. } = &mut work.region;
-            let has_remedy = (displaces && !*is_unsound) || (drives && !*is_hasty);
-            if !has_remedy {
-                return outcome;
-            }
-            (*is_unsound, *is_hasty) = (*is_unsound || displaces, *is_hasty || drives);
-            self.undo_groups(&work.region, &work.before);
-            self.ledger.projections = projections;
-            self.remeasure(&mut work.region, self.now);
-            self.settle_and_still(work)?;
-            self.measure_touches(&mut work.region);
-        }
-    }
-
-    /// Tells whether moving held contacts to their gaps has brought touching features nearer by more than their zone, and
-    /// whether stopping the slow opening of held contacts has driven others together, faster than they opened. Where a
-    /// body is held by two corners that are next to each other, a small way between them is a large turn, and so is a
-    /// slow rate.
-    fn harm_done(&self, EventWork { region, settling, .. }: &EventWork) -> [bool; 2] {
-        let held = settling.held.iter().filter(|(_, row)| !row.bilateral);
-        let (mut is_moved, mut opening) = (false, 0.0f64);
-        for (index, row) in held {
-            let record = &region.records[*index];
-            is_moved |= row.gap != record.geometry.distance;
-            opening = opening.max(record.motion.normal_velocity);
-        }
-        let is_stopped = opening > HASTY_SHARE * self.rest_speed();
-        let mut harm = [false; 2];
-        if is_moved || is_stopped {
-            for (touch, &(gap_before, rate_before)) in region.touches.iter().zip(&region.motions) {
-                let (gap, rate) = self.gap_at(*touch, self.now);
-                harm[0] |= is_moved && gap < gap_before - self.settings.tolerances.accuracy;
-                harm[1] |= is_stopped && rate < rate_before.min(0.0) - opening;
-            }
-        }
-        harm
-    }
-
     /// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.
-    fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
+    pub(super) fn settle_and_still(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
         let EventWork { region, settling, .. } = &mut *work;
         settling.set_likely(region.records.iter().map(|record| self.is_likely(record)));
         settling.expect_forces(region, &self.told.changes.end);

@@ -1,6 +1,7 @@
 //! Handling of an event. `events` is its order: `region` collects the bodies that touch, `cutting` takes them to the
 //! event's time, `impacts` applies impulses (`jams`: large impulses of contacts that cancel each other and can be
-//! avoided), `groups` merges and splits groups of bodies (`members`: the bodies, rows and touches of each).
+//! avoided), `groups` merges and splits groups of bodies (`members`: the bodies, rows and touches of each; `harm`: groups
+//! whose rows move bodies into others are made anew).
 //! `connectors` predicts when a rope goes taut, `rails` finds where on its rail a point is, `corners` takes it through
 //! a corner; `ticks` stands in for forces where contacts carry impulses only. `cause` is the reason of an event, with
 //! its buffers. The rows held afterwards are found in `held`.
@@ -11,6 +12,7 @@ pub(super) mod corners;
 pub(super) mod cutting;
 pub(super) mod events;
 pub(super) mod groups;
+pub(super) mod harm;
 pub(super) mod impacts;
 pub(super) mod jams;
 pub(super) mod members;
