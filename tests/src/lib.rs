@@ -4,6 +4,7 @@
 //! (`touching` their contacts), `mirror` mirrors them, `shrink` makes failing scenes smaller, `random` makes the random
 //! numbers.
 
+pub mod blows;
 pub mod generate;
 pub mod invariants;
 pub mod mechanism;

@@ -16,6 +16,8 @@
 //! | `together`, `serial` | all rows in one problem, or one after another |
 //! | `patience`, `blows` | the end of ricochets, and the number of blows that are none |
 //! | `pair_problem`, `few_rows`, `many_rows` | up to two rows in closed form, up to eight directly, more by the active-set method |
+//! | `locked` | rows at rest that no motion can open |
+//! | `near_rows` | rows that nearly depend on each other |
 //! | `couplings` | the Delassus matrix |
 //! | `shuffle` | random orders |
 
@@ -23,7 +25,9 @@ mod blows;
 mod couplings;
 mod few_rows;
 mod law;
+mod locked;
 mod many_rows;
+mod near_rows;
 mod pair_problem;
 mod patience;
 mod serial;
@@ -34,7 +38,9 @@ pub use law::{ImpactError, ImpactLaw, ImpactOrder};
 
 use crate::row::CollisionRow;
 use couplings::Couplings;
+use locked::Locked;
 use many_rows::ManyRows;
+use near_rows::NearRows;
 
 /// Rounding of rates, as a fraction of the largest change of a rate by one impulse so far.
 const NOISE: f64 = 64.0 * f64::EPSILON;
@@ -78,11 +84,16 @@ struct Scratch {
     /// Rates [m/s] and impulses [N s] before a round, to which a failed round goes back.
     rates: Vec<f64>,
     impulses: Vec<f64>,
+    /// Rates [m/s] and impulses [N s] before rows were solved one after another.
+    start_rates: Vec<f64>,
+    start_impulses: Vec<f64>,
     /// Impulse [N s] that each row was unloaded by, until a problem without elasticity starts from it; empty if none
     /// was.
     carried: Vec<f64>,
+    locked: Locked,
     /// Made when first needed, as most impacts have one row or two.
     many: Option<Box<ManyRows>>,
+    near: Option<Box<NearRows>>,
 }
 
 impl Impact {
@@ -109,6 +120,7 @@ impl Impact {
         self.at_last = false;
         self.solves = 0;
         self.scratch.carried.clear();
+        self.scratch.locked.clear();
     }
 
     /// Subtracts from each row an impulse [N s] that it carries anyway, such as the force of a contact times a

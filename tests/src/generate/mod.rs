@@ -5,10 +5,14 @@
 //! made smaller. `shapes` makes the shapes, `ties` the connectors and forces; `variations` changes the reference
 //! scenes instead.
 
+mod fits;
+mod seams;
 mod shapes;
 mod ties;
 mod variations;
 
+pub use fits::struck_fit_of_seed;
+pub use seams::{Drop, drop_of_seed};
 pub use variations::variation_of_seed;
 
 use crate::random::Random;
@@ -44,6 +48,13 @@ const LAWS: [&str; 8] = [
 ];
 /// Index in [`LAWS`] from which on every law comes once.
 const ONCE_FROM: usize = 2;
+
+/// The names of all impact laws.
+#[must_use]
+pub fn all_laws() -> &'static [&'static str] {
+    &LAWS[ONCE_FROM..]
+}
+
 /// Number of tries to find a free place for a body.
 const TRIES: usize = 60;
 

@@ -4,6 +4,7 @@
 //! are.
 
 use crate::row::CollisionRow;
+use halfgap_collision::BodyId;
 
 /// In place of an immovable body.
 const NONE: u32 = u32::MAX;
@@ -55,6 +56,11 @@ impl Couplings {
         }
         self.of_bodies.sort_unstable();
         self.of_bodies.dedup();
+    }
+
+    /// The rows of a body, ascending.
+    pub(super) fn rows_of_body(&self, body: BodyId) -> impl Iterator<Item = usize> + '_ {
+        rows_of(&self.of_bodies, body.0).iter().map(|&(_, row)| row as usize)
     }
 
     /// The rows whose rates an impulse along `row` changes, with the change per impulse [1/kg].

@@ -144,13 +144,21 @@ impl ImpactLaw {
         if !matches!(self, ImpactLaw::SerialSeparate | ImpactLaw::SerialSeparateLastpass) {
             impact.settle_connectors(small)?;
         }
+        // Rows at rest were brought to rest by earlier solves, which leave them rates up to this.
+        let rest = small.max(quiet.min(NEARLY * impact.fastest));
         match self.grouping() {
-            None => {
-                // Rows at rest were brought to rest by earlier solves, which leave them rates up to this.
-                let rest = small.max(quiet.min(NEARLY * impact.fastest));
-                impact.solve_all(rest, &mut patience)?;
+            None => impact.solve_all(rest, &mut patience)?,
+            Some(grouping) => {
+                impact.find_locked(rest);
+                impact.keep_start();
+                impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?;
+                if impact.still_rebounds(rest.max(NEARLY * impact.fastest)) {
+                    // The ricochet has no end. Together the rows rebound and keep their energy.
+                    impact.start_again();
+                    impact.solve_all(rest, &mut Patience::short(impact.rows.len(), small.max(quiet)))?;
+                }
+                impact.relieve_locked()?;
             }
-            Some(grouping) => impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?,
         }
         if matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass) {
             impact.solve_all_inelastic(small)?;
@@ -229,6 +237,27 @@ impl Impact {
             }
         };
         self.rows.iter().enumerate().find_map(|(index, row)| Some((index, rule(row)?)))
+    }
+
+    /// Keeps the rates and impulses with which the rows begin.
+    fn keep_start(&mut self) {
+        self.scratch.start_rates.clone_from(&self.rates);
+        self.scratch.start_impulses.clone_from(&self.impulses);
+    }
+
+    /// Goes back to the rates and impulses that were kept.
+    fn start_again(&mut self) {
+        self.rates.clone_from(&self.scratch.start_rates);
+        self.impulses.clone_from(&self.scratch.start_impulses);
+    }
+
+    /// Whether a contact closes faster than `slow` [m/s] and would rebound.
+    fn still_rebounds(&self, slow: f64) -> bool {
+        let rebounds = |row: usize| {
+            let CollisionRow { bilateral, elasticity, .. } = self.rows[row];
+            !bilateral && elasticity > 0.0 && self.rows[row].rebounds_at(-self.rates[row])
+        };
+        (0..self.rows.len()).any(|row| self.is_violated(row, slow) && rebounds(row))
     }
 
     /// Solves an impact of one row: a contact rebounds, a connector comes to rest.

@@ -162,7 +162,7 @@ impl ManyRows {
 impl Impact {
     /// Solves the rows of an ascending set of any length, each to reach its target rate, and applies the impulses.
     pub(super) fn solve_many(&mut self, set: &[usize], begin: Beginning<'_>) -> Result<(), ImpactError> {
-        if set.len() <= FEW && self.solve_few(set) {
+        if set.len() <= FEW && (self.solve_few(set) || self.solve_near(set)) {
             return Ok(());
         }
         let mut many = self.scratch.many.take().unwrap_or_default();

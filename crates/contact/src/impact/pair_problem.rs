@@ -4,17 +4,20 @@
 //! positive semidefinite A one of them fits; a bilateral row always carries one. Of two dependent rows (a seam between
 //! two blocks) one carries the force for both.
 
-/// Fraction of the product of the diagonal of a 2 x 2 matrix: a determinant below it is rounding, and the two rows are
-/// dependent.
-const DEPENDENT: f64 = 64.0 * f64::EPSILON;
+/// Square of the angle [rad] between two rows below which they count as one: the rounding of their entries, and of the
+/// rates, would move a body by more across both than the angle does.
+pub(super) const DEPENDENT: f64 = 64.0 * f64::EPSILON;
+
+/// The same of rows that are solved in doubles, which know the determinant to 1e-16 and so the impulses to 1e-12.
+const WELL: f64 = 1e-4;
 
 /// The force f of one row with a f + b = 0; 0 if the row is unilateral and b is not negative.
 pub(super) fn solve_one(a: f64, b: f64, bilateral: bool) -> f64 {
     if b < 0.0 || (bilateral && b != 0.0) { -b / a } else { 0.0 }
 }
 
-/// The forces of two rows with the symmetric matrix [a00, a01, a11] and offsets [b0, b1]. `None` if the rows depend on
-/// each other and may contradict each other.
+/// The forces of two rows with the symmetric matrix [a00, a01, a11] and offsets [b0, b1]. `None` if the rows nearly
+/// depend on each other, or depend and may contradict each other.
 pub(super) fn solve_two(
     [a00, a01, a11]: [f64; 3],
     [b0, b1]: [f64; 2],
@@ -26,7 +29,7 @@ pub(super) fn solve_two(
         return Some([0.0; 2]);
     }
     let determinant = a00 * a11 - a01 * a01;
-    if determinant > DEPENDENT * a00 * a11 {
+    if determinant > WELL * a00 * a11 {
         let both = [(a01 * b1 - a11 * b0) / determinant, (a01 * b0 - a00 * b1) / determinant];
         let [first_pushes, second_pushes] = [0, 1].map(|row| bilateral[row] || both[row] >= 0.0);
         if first_pushes && second_pushes {
@@ -37,7 +40,7 @@ pub(super) fn solve_two(
         let first_alone = bilateral[0] || (!bilateral[1] && second_after >= 0.0 && only_first > 0.0);
         return Some(if first_alone { [only_first, 0.0] } else { [0.0, only_second] });
     }
-    if a01 < 0.0 || bilateral[0] || bilateral[1] {
+    if determinant > DEPENDENT * a00 * a11 || a01 < 0.0 || bilateral[0] || bilateral[1] {
         return None;
     }
     // Dependent rows: the one with the larger scaled force decides for both.

@@ -17,6 +17,8 @@ pub(super) const QUIET: f64 = 1e-3;
 const FIRST_ROWS: usize = 20;
 /// Number of rows solved in one stage, per row of the impact; the first stage may take more.
 const ROWS_PER_STAGE: usize = 20;
+/// Number of rows solved together after a ricochet without end, per row of the impact: all of them twice.
+const ROWS_AT_LAST: usize = 2;
 /// Factor by which the speed that counts as closing grows from one stage to the next.
 const RAISE: f64 = 10.0;
 /// Number of stages: after the last, the speed that counts has grown to that of the impact itself.
@@ -43,6 +45,11 @@ impl Patience {
         let blows = blows.max(ROWS_PER_STAGE);
         let [first_stage, per_stage] = [blows, ROWS_PER_STAGE].map(|each| each * rows);
         Self { small, slow: Some(slow), first_stage, per_stage, left: FIRST_ROWS, stages: STAGES }
+    }
+
+    /// Patience for rows that are solved together after a ricochet without end.
+    pub(super) fn short(rows: usize, small: f64) -> Self {
+        Self { small, slow: None, first_stage: 0, per_stage: 0, left: ROWS_AT_LAST * rows, stages: 0 }
     }
 
     /// Rate [m/s] up to which a row is done.

@@ -38,7 +38,7 @@ impl Impact {
         patience: &mut Patience,
     ) -> Result<(), ImpactError> {
         while let Some(focus) = self.focus(shuffle.as_deref_mut(), patience.small()) {
-            let solved = if grouping == Grouping::One {
+            let solved = if grouping == Grouping::One && !self.has_locked() {
                 self.solve_alone(focus, self.rebound_alone(focus));
                 1
             } else {
@@ -95,32 +95,42 @@ impl Impact {
             };
             set.extend(self.couplings.row(focus).map(|(row, _)| row).filter(joins));
         }
-        self.add_connectors(&mut set);
+        self.add_tied(&mut set, grouping);
         set.sort_unstable();
-        let outcome = self.rebound_together(&set);
+        let outcome = match set[..] {
+            [row] if grouping == Grouping::One => {
+                self.solve_alone(row, self.rebound_alone(row));
+                Ok(())
+            }
+            _ => self.rebound_together(&set),
+        };
         let count = set.len();
         self.scratch.set = set;
         outcome.map(|()| count)
     }
 
-    /// Adds the bilateral rows that a set reaches through movable bodies, directly or through other bilateral rows.
-    fn add_connectors(&mut self, set: &mut Vec<usize>) {
-        if !self.has_connectors {
+    /// Adds the locked rows, and if connectors join, the bilateral rows that a set reaches through movable bodies,
+    /// directly or through other such rows.
+    fn add_tied(&mut self, set: &mut Vec<usize>, grouping: Grouping) {
+        let joins_connectors = self.has_connectors && grouping != Grouping::One;
+        if !joins_connectors && !self.has_locked() {
             return;
         }
-        let listed = &mut self.scratch.listed;
+        let mut listed = std::mem::take(&mut self.scratch.listed);
         listed.clear();
         listed.resize(self.rows.len(), false);
         set.iter().for_each(|&row| listed[row] = true);
         let mut next = 0;
         while next < set.len() {
             for (other, _) in self.couplings.row(set[next]) {
-                if self.rows[other].bilateral && !listed[other] {
+                let is_tied = self.is_locked(other) || (joins_connectors && self.rows[other].bilateral);
+                if is_tied && !listed[other] {
                     listed[other] = true;
                     set.push(other);
                 }
             }
             next += 1;
         }
+        self.scratch.listed = listed;
     }
 }

@@ -140,7 +140,7 @@ impl Impact {
 
     /// Lists the bilateral rows, the rows that close or open no faster than `rest` [m/s], and the rows that were held
     /// before the impact and open no faster than their `velocity_tol`.
-    fn list_held(&self, set: &mut Vec<usize>, rest: f64) {
+    pub(super) fn list_held(&self, set: &mut Vec<usize>, rest: f64) {
         let limit = self.rest(rest);
         let is_slow =
             |row: &CollisionRow, rate| rate <= if row.held { limit.max(row.velocity_tol) } else { limit };

@@ -1,0 +1,172 @@
+//! Rows at rest that no motion can open: those of a body that fits exactly between others.
+//!
+//! Rows at rest are locked if they can press on each other without moving a body: y >= 0, J^T y = 0, on the rows with
+//! y > 0. By Stiemke's lemma these are the rows whose rate is 0 in each motion in which none closes: they act as
+//! connectors do. If such a row rebounded from an impulse that goes through it, those that face it would close in turn,
+//! without end. So locked rows are solved with each row that reaches them, by every law.
+//!
+//! To find them, all rows in question are pressed at once, and the least impulses of all rows at rest are found that keep
+//! the bodies from going into each other. If all pressed rows then rest, pressing and answer are such a y, and all of
+//! them are locked. If not, those that open are none, and the others are tried again: each round drops one at least.
+
+use super::Impact;
+use super::law::ImpactError;
+use super::pair_problem::DEPENDENT;
+use crate::row::CollisionRow;
+use halfgap_collision::BodyId;
+
+/// Part of a row in the search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Part {
+    /// It moves, or can be opened.
+    #[default]
+    None,
+    /// It rests, and may be locked.
+    Pressed,
+    /// It is a connector, which opposes both ways.
+    Connector,
+}
+
+/// The search for locked rows, and its buffers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Locked {
+    /// One flag per row: true if it is locked. Empty if none is.
+    rows: Vec<bool>,
+    parts: Vec<Part>,
+    /// The rows at rest, with all connectors.
+    at_rest: Vec<usize>,
+    /// Rates [m/s] and impulses [N s] of the impact, kept while it serves for the search.
+    rates: Vec<f64>,
+    impulses: Vec<f64>,
+}
+
+impl Locked {
+    /// Forgets the rows of the last impact.
+    pub(super) fn clear(&mut self) {
+        self.rows.clear();
+    }
+}
+
+impl Impact {
+    /// Whether a row was found to be locked.
+    pub(super) fn is_locked(&self, row: usize) -> bool {
+        self.scratch.locked.rows.get(row).is_some_and(|&is_locked| is_locked)
+    }
+
+    /// Whether any row was.
+    pub(super) fn has_locked(&self) -> bool {
+        !self.scratch.locked.rows.is_empty()
+    }
+
+    /// Flags the locked rows among those whose rate is at most `rest` [m/s].
+    pub(super) fn find_locked(&mut self, rest: f64) {
+        let mut locked = std::mem::take(&mut self.scratch.locked);
+        locked.rows.clear();
+        self.list_at_rest(&mut locked, rest);
+        while self.drop_unopposed(&mut locked.parts) {
+            if self.comes_to_rest_pressed(&mut locked) {
+                locked.rows.extend(locked.parts.iter().map(|&part| part == Part::Pressed));
+                break;
+            }
+        }
+        self.scratch.locked = locked;
+    }
+
+    /// Takes the impulses of locked rows that press on each other without moving a body out of them: blow after blow may
+    /// have left some, in one direction and in the other.
+    pub(super) fn relieve_locked(&mut self) -> Result<(), ImpactError> {
+        if !self.has_locked() {
+            return Ok(());
+        }
+        let mut set = std::mem::take(&mut self.scratch.set);
+        set.clear();
+        set.extend((0..self.rows.len()).filter(|&row| self.is_locked(row)));
+        for &row in &set {
+            self.apply(row, -self.impulses[row]);
+        }
+        self.aim_at_rest();
+        let outcome = self.solve_together(&set);
+        self.scratch.set = set;
+        outcome
+    }
+
+    fn list_at_rest(&self, locked: &mut Locked, rest: f64) {
+        let Locked { at_rest, parts, .. } = locked;
+        self.list_held(at_rest, rest);
+        at_rest.retain(|&row| self.rows[row].bilateral || !self.is_violated(row, rest));
+        parts.clear();
+        parts.resize(self.rows.len(), Part::None);
+        for &row in &*at_rest {
+            parts[row] = if self.rows[row].bilateral { Part::Connector } else { Part::Pressed };
+        }
+    }
+
+    /// Drops the pressed rows that no other one and no connector opposes on one of the bodies that they move, until all
+    /// are opposed: forces that balance need an opposed one on each body. False if no pressed row is left.
+    fn drop_unopposed(&self, parts: &mut [Part]) -> bool {
+        loop {
+            let mut is_any_dropped = false;
+            for row in 0..parts.len() {
+                let is_opposed = |body: &Option<BodyId>| body.is_none_or(|body| self.is_opposed(row, body, parts));
+                if parts[row] == Part::Pressed && !self.rows[row].movable_bodies().iter().all(is_opposed) {
+                    parts[row] = Part::None;
+                    is_any_dropped = true;
+                }
+            }
+            if !is_any_dropped {
+                return parts.contains(&Part::Pressed);
+            }
+        }
+    }
+
+    fn is_opposed(&self, row: usize, body: BodyId, parts: &[Part]) -> bool {
+        self.couplings.rows_of_body(body).any(|other| {
+            let product = product_on(&self.rows[row], &self.rows[other], body);
+            match parts[other] {
+                Part::None => false,
+                Part::Pressed => product < 0.0,
+                Part::Connector => product != 0.0,
+            }
+        })
+    }
+
+    /// Presses the pressed rows and finds the impulses of all rows at rest. True if the pressed rows are at rest then;
+    /// else those that open are dropped. The impact stays as it is.
+    fn comes_to_rest_pressed(&mut self, locked: &mut Locked) -> bool {
+        locked.rates.clone_from(&self.rates);
+        locked.impulses.clone_from(&self.impulses);
+        let kept = (self.noise, self.largest_change, self.solves);
+        self.rates.fill(0.0);
+        for (row, _) in locked.parts.iter().enumerate().filter(|&(_, &part)| part == Part::Pressed) {
+            self.apply(row, 1.0 / self.length(row));
+        }
+        let scaled = |impact: &Self, row: usize| impact.rates[row] / impact.length(row);
+        let fastest = locked.at_rest.iter().fold(0.0f64, |most, &row| most.max(scaled(self, row).abs()));
+        self.aim_at_rest();
+        let is_solved = self.solve_together(&locked.at_rest).is_ok();
+        let limit = DEPENDENT.sqrt() * fastest;
+        let mut is_any_dropped = false;
+        for (row, part) in locked.parts.iter_mut().enumerate().filter(|(_, part)| **part == Part::Pressed) {
+            if !is_solved || scaled(self, row) > limit {
+                *part = Part::None;
+                is_any_dropped = true;
+            }
+        }
+        self.rates.clone_from(&locked.rates);
+        self.impulses.clone_from(&locked.impulses);
+        (self.noise, self.largest_change, self.solves) = kept;
+        !is_any_dropped
+    }
+}
+
+/// Change of the rate of a row by an impulse along another, through one body alone [1/kg].
+fn product_on(row: &CollisionRow, other: &CollisionRow, body: BodyId) -> f64 {
+    let mut sum = 0.0;
+    for side in (0..2).filter(|&side| row.bodies[side] == body) {
+        for other_side in (0..2).filter(|&side| other.bodies[side] == body) {
+            let (own, theirs) = (&row.jacobian[3 * side..], &other.response[3 * other_side..]);
+            sum += own[0] * theirs[0] + own[1] * theirs[1] + own[2] * theirs[2];
+        }
+    }
+    sum
+}

@@ -1,0 +1,351 @@
+//! Rows that nearly depend on each other, solved with twice as many digits.
+//!
+//! Let two rows of one body have directions (J M^-1/2) that differ by an angle x. The Delassus matrix knows their
+//! difference by its square: of x = 1e-7 the entries 1 - x^2/2 of doubles keep one digit, and impulses computed from them
+//! lose or gain energy. Here the matrix is made from J itself, in numbers of 31 digits, so that only the rounding of the
+//! rates is left. It moves a body by its share 1e-16/x of the speed, across the two directions. Rows closer than
+//! [`DEPENDENT`] count as one: told apart, rounding would move bodies by more than the angle between them does.
+//!
+//! The method is that of Goldfarb and Idnani (see `dual_active_set`), with the factor made anew at each pivot.
+
+use super::Impact;
+use super::pair_problem::DEPENDENT;
+use crate::row::CollisionRow;
+use crate::twofold::{Number, Twofold};
+
+/// Largest number of rows. A pivot takes about n^3/3 products of twice as many digits: 0.1 ms with 24 rows.
+pub(super) const MOST: usize = 24;
+
+/// Rounding of a scaled rate, as a fraction of the largest: that of the products it was made from.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Cap on pivots, per row.
+const PIVOTS: usize = 8;
+
+/// A small problem A f + b >= 0, f >= 0, f.(A f + b) = 0, with A f + b = 0 on bilateral rows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NearRows {
+    /// Number of rows, n.
+    count: usize,
+    /// J M^-1/2 of each row [1/sqrt(kg)], with its two bodies.
+    directions: Vec<([u32; 2], [f64; 6])>,
+    /// A (n, n) [1/kg], by rows.
+    matrix: Vec<Twofold>,
+    /// sqrt(A_ii) [1/sqrt(kg)].
+    length: Vec<f64>,
+    /// b [m/s], and the rates A f + b.
+    offset: Vec<f64>,
+    rate: Vec<Twofold>,
+    bilateral: Vec<bool>,
+    /// f [N s].
+    force: Vec<Twofold>,
+    /// The closed rows, whose rates are held at 0.
+    closed: Vec<usize>,
+    /// The connectors in the order in which they are closed, the most independent ones first: forces through a bad lever
+    /// would be large.
+    connectors: Vec<usize>,
+    /// Whether a row counts as one with closed ones, which may contradict it by as little as they are told apart.
+    is_same: Vec<bool>,
+    /// What each listed connector left of its square, while they are listed.
+    pivot: Vec<Twofold>,
+    /// The largest violation of such a row, as a scaled rate [sqrt(kg) m/s].
+    left: f64,
+    /// The factor L D L^T of A on the closed rows, by rows, with D on the diagonal.
+    factor: Vec<Twofold>,
+    /// Change of the closed forces per force on the entering row, with its sign reversed.
+    shares: Vec<Twofold>,
+}
+
+/// J M^-1/2 of a row: of coefficient and response, J and J/m, the geometric mean with the sign of J.
+fn direction(row: &CollisionRow) -> [f64; 6] {
+    std::array::from_fn(|k| (row.jacobian[k] * row.response[k]).max(0.0).sqrt().copysign(row.jacobian[k]))
+}
+
+/// Entry of A of two rows.
+fn product(p: &([u32; 2], [f64; 6]), q: &([u32; 2], [f64; 6])) -> Twofold {
+    let mut sum = Twofold::default();
+    for (side, body) in p.0.iter().enumerate() {
+        for other_side in (0..2).filter(|&other_side| q.0[other_side] == *body) {
+            for k in 0..3 {
+                let (own, theirs) = (p.1[3 * side + k], q.1[3 * other_side + k]);
+                sum = sum + Twofold::from(own) * Twofold::from(theirs);
+            }
+        }
+    }
+    sum
+}
+
+impl NearRows {
+    fn clear(&mut self) {
+        self.count = 0;
+        self.directions.clear();
+        self.length.clear();
+        self.offset.clear();
+        self.bilateral.clear();
+    }
+
+    /// Adds a row whose rate is to change by -`offset` [m/s].
+    fn push(&mut self, row: &CollisionRow, offset: f64) {
+        self.count += 1;
+        self.directions.push((row.bodies.map(|body| body.0), direction(row)));
+        self.offset.push(offset);
+        self.bilateral.push(row.bilateral);
+    }
+
+    /// Finds the forces; false if rows contradict each other or the pivots run out.
+    fn solve(&mut self) -> bool {
+        self.begin();
+        let scaled = self.offset.iter().zip(&self.length).map(|(b, length)| (b / length).abs());
+        let scale = scaled.fold(0.0, f64::max);
+        self.order_connectors();
+        for place in 0..self.connectors.len() {
+            // Nothing gives way to a connector but contacts, and none is closed yet.
+            self.step(self.connectors[place]);
+            self.update_rates();
+        }
+        let mut pivots = PIVOTS * self.count;
+        while let Some(row) = self.most_violated(ROUNDING * scale) {
+            loop {
+                match self.step(row) {
+                    Step::Closed => break,
+                    Step::Opened if pivots > 0 => pivots -= 1,
+                    Step::Opened => return false,
+                    Step::Contradicted => {
+                        self.is_same[row] = true;
+                        break;
+                    }
+                }
+            }
+            if pivots == 0 {
+                return false;
+            }
+            pivots -= 1;
+            self.update_rates();
+        }
+        self.left = (0..self.count).filter(|&row| self.is_same[row]).map(|row| self.violation(row)).fold(0.0, f64::max);
+        self.left <= DEPENDENT.sqrt() * scale
+    }
+
+    /// Forms the matrix, with all forces 0 and all rows open.
+    fn begin(&mut self) {
+        let n = self.count;
+        self.matrix.clear();
+        for i in 0..n {
+            for j in 0..n {
+                let known = if j < i { self.matrix[j * n + i] } else { product(&self.directions[i], &self.directions[j]) };
+                self.matrix.push(known);
+            }
+        }
+        self.length.extend((0..n).map(|i| self.matrix[i * n + i].nearest().sqrt()));
+        self.closed.clear();
+        self.force.clear();
+        self.force.resize(n, Twofold::default());
+        self.rate.clear();
+        self.rate.extend(self.offset.iter().map(|&b| Twofold::from(b)));
+    }
+
+    /// Lists the connectors that do not depend on each other, each next one that of which those before leave most; the
+    /// others count as one with these.
+    fn order_connectors(&mut self) {
+        let n = self.count;
+        self.connectors.clear();
+        self.is_same.clear();
+        self.is_same.extend_from_slice(&self.bilateral);
+        // The factor's rows of all connectors; what the listed ones leave of their squares.
+        let (rows, rest) = (&mut self.factor, &mut self.shares);
+        rows.clear();
+        rows.resize(n * n, Twofold::default());
+        rest.clear();
+        rest.extend((0..n).map(|row| self.matrix[row * n + row]));
+        loop {
+            let share = |row: usize| rest[row].nearest() / (self.length[row] * self.length[row]);
+            let left = (0..n).filter(|&row| self.is_same[row]);
+            let Some(next) = left.max_by(|&p, &q| share(p).total_cmp(&share(q))) else { return };
+            if share(next) <= DEPENDENT {
+                return;
+            }
+            let place = self.connectors.len();
+            self.connectors.push(next);
+            self.is_same[next] = false;
+            let square = rest[next];
+            for row in (0..n).filter(|&row| self.is_same[row]) {
+                let known = (0..place).fold(self.matrix[row * n + next], |sum, k| {
+                    sum - rows[row * n + k] * rows[next * n + k] * self.pivot[k]
+                });
+                rows[row * n + place] = known / square;
+                rest[row] = rest[row] - known * known / square;
+            }
+            self.pivot.truncate(place);
+            self.pivot.push(square);
+        }
+    }
+
+    /// Violation of a row, as a scaled rate [sqrt(kg) m/s].
+    fn violation(&self, row: usize) -> f64 {
+        let rate = self.rate[row].nearest() / self.length[row];
+        if self.bilateral[row] { rate.abs() } else { -rate }
+    }
+
+    /// The open contact that is violated most, by more than `noise`.
+    fn most_violated(&self, noise: f64) -> Option<usize> {
+        let is_free = |row: &usize| !self.bilateral[*row] && !self.is_same[*row] && !self.closed.contains(row);
+        let violated = (0..self.count).filter(|row| is_free(row) && self.violation(*row) > noise);
+        violated.max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)))
+    }
+
+    /// Changes the force of an open row until its rate is 0, or until that of a closed one vanishes.
+    fn step(&mut self, row: usize) -> Step {
+        let complement = self.consider(row);
+        let rate = self.rate[row];
+        let pushes = rate < Twofold::default();
+        let is_independent = complement.nearest() > DEPENDENT * self.length[row] * self.length[row];
+        let full = is_independent.then(|| rate.abs() / complement);
+        // The force that is used up first by what the entering row takes over.
+        let mut blocking: Option<(usize, Twofold)> = None;
+        for (place, &closed) in self.closed.iter().enumerate() {
+            let share = if pushes { self.shares[place] } else { -self.shares[place] };
+            if self.bilateral[closed] || share.nearest() <= 0.0 {
+                continue;
+            }
+            let least = self.force[closed] / share;
+            if blocking.is_none_or(|(_, known)| least < known) {
+                blocking = Some((place, least));
+            }
+        }
+        let opens = match (blocking, full) {
+            (Some((_, least)), Some(full)) => least < full,
+            (Some(_), None) => true,
+            (None, Some(_)) => false,
+            (None, None) => return Step::Contradicted,
+        };
+        let size = if opens { blocking.map(|(_, least)| least) } else { full };
+        let size = size.unwrap_or_default();
+        let size = if pushes { size } else { -size };
+        for (place, &closed) in self.closed.iter().enumerate() {
+            self.force[closed] = self.force[closed] - size * self.shares[place];
+        }
+        self.force[row] = self.force[row] + size;
+        self.rate[row] = rate + size * complement;
+        match blocking.filter(|_| opens) {
+            Some((place, _)) => {
+                let opened = self.closed.remove(place);
+                self.force[opened] = Twofold::default();
+                Step::Opened
+            }
+            None => {
+                self.closed.push(row);
+                Step::Closed
+            }
+        }
+    }
+
+    /// Finds the shares of the closed rows in an open one, and returns what they leave of its square.
+    fn consider(&mut self, row: usize) -> Twofold {
+        let (n, count) = (self.count, self.closed.len());
+        self.factorize();
+        let factor = &self.factor;
+        let shares = &mut self.shares;
+        shares.clear();
+        let mut complement = self.matrix[row * n + row];
+        for (i, &closed) in self.closed.iter().enumerate() {
+            let mut value = self.matrix[row * n + closed];
+            for j in 0..i {
+                value = value - factor[i * count + j] * shares[j];
+            }
+            complement = complement - value * value / factor[i * count + i];
+            shares.push(value);
+        }
+        for i in 0..count {
+            shares[i] = shares[i] / factor[i * count + i];
+        }
+        for i in (0..count).rev() {
+            for k in i + 1..count {
+                shares[i] = shares[i] - factor[k * count + i] * shares[k];
+            }
+        }
+        complement
+    }
+
+    fn factorize(&mut self) {
+        let (n, count) = (self.count, self.closed.len());
+        let factor = &mut self.factor;
+        factor.clear();
+        factor.resize(count * count, Twofold::default());
+        for i in 0..count {
+            let mut square = self.matrix[self.closed[i] * n + self.closed[i]];
+            for j in 0..i {
+                let mut value = self.matrix[self.closed[i] * n + self.closed[j]];
+                for k in 0..j {
+                    value = value - factor[i * count + k] * factor[j * count + k] * factor[k * count + k];
+                }
+                let part = value / factor[j * count + j];
+                square = square - part * value;
+                factor[i * count + j] = part;
+            }
+            factor[i * count + i] = square;
+        }
+    }
+
+    /// Brings all rates up to date with the forces.
+    fn update_rates(&mut self) {
+        let n = self.count;
+        for i in 0..n {
+            let products = (0..n).map(|j| self.matrix[i * n + j] * self.force[j]);
+            self.rate[i] = products.fold(Twofold::from(self.offset[i]), |sum, term| sum + term);
+        }
+    }
+}
+
+/// Outcome of a step.
+enum Step {
+    /// The row is closed now.
+    Closed,
+    /// Another row was opened, and the row is still violated.
+    Opened,
+    /// The closed rows keep the row from moving, and none of them gives way.
+    Contradicted,
+}
+
+impl Impact {
+    /// Solves rows that may nearly depend on each other, each to reach its target rate, and applies the impulses; false
+    /// if they contradict each other or are too many.
+    pub(super) fn solve_near(&mut self, set: &[usize]) -> bool {
+        if set.len() > MOST {
+            return false;
+        }
+        let mut near = self.scratch.near.take().unwrap_or_default();
+        near.clear();
+        for &row in set {
+            near.push(&self.rows[row], self.rates[row] - self.scratch.targets[row]);
+        }
+        let is_solved = near.solve();
+        if is_solved {
+            self.solves += 1;
+            self.apply_together(set, &near);
+            for &row in set {
+                self.noise = self.noise.max(near.left * self.length(row));
+            }
+        }
+        self.scratch.near = Some(near);
+        is_solved
+    }
+
+    /// Adds the impulses of nearly dependent rows. They may cancel each other by far, so that their changes of a rate are
+    /// summed up before they are rounded.
+    fn apply_together(&mut self, set: &[usize], near: &NearRows) {
+        for (place, &row) in set.iter().enumerate() {
+            self.impulses[row] += near.force[place].nearest();
+        }
+        for other in 0..self.rows.len() {
+            if self.couplings.row(other).all(|(row, _)| set.binary_search(&row).is_err()) {
+                continue;
+            }
+            let own = (self.rows[other].bodies.map(|body| body.0), direction(&self.rows[other]));
+            let changes = near.directions.iter().zip(&near.force).map(|(direction, &force)| product(&own, direction) * force);
+            let change = changes.fold(Twofold::default(), |sum, term| sum + term).nearest();
+            self.largest_change = self.largest_change.max(change.abs());
+            self.rates[other] += change;
+        }
+        self.noise = self.noise.max(super::NOISE * self.largest_change);
+    }
+}

@@ -1,0 +1,78 @@
+//! Bodies that fit exactly, struck by others: a block between two walls, a plug in a slot, a box in a corner, a disc in
+//! a groove.
+
+use crate::random::Random;
+use serde_json::{Value, json};
+
+fn block(width: f64, height: f64) -> Value {
+    json!({ "block": { "width": width, "height": height } })
+}
+
+fn fixed(name: &str, shape: Value, position: [f64; 2], angle: f64) -> Value {
+    json!({ "name": name, "fixed": true, "shape": shape, "position": position, "angle": angle })
+}
+
+/// The scene of a seed, whose law and elasticity are given: nothing but the body that fits is struck.
+#[must_use]
+pub fn struck_fit_of_seed(seed: u64, law: &str, elasticity: f64) -> Value {
+    let mut random = Random::new(seed ^ 0xf17_0000);
+    let two_digits = |value: f64| (100.0 * value).round() / 100.0;
+    let width = two_digits(random.between(0.2, 1.5)).max(0.2);
+    let height = two_digits(random.between(0.2, 1.5)).max(0.2);
+    let radius = two_digits(random.between(0.05, 0.2)).max(0.05);
+    let kind = random.below(4);
+    let off = match random.below(4) {
+        0 => 0.0,
+        1 => two_digits(random.between(-0.4, 0.4)) * width,
+        _ => random.between(-0.45, 0.45) * width,
+    };
+    let speed = two_digits(random.between(0.3, 5.0));
+    let tilt = if random.chance(0.5) { 0.0 } else { random.between(-0.5, 0.5) };
+    let mut bodies = Vec::new();
+    let mut shape = block(width, height);
+    let mut place = [0.0, 0.0];
+    let walls = |bodies: &mut Vec<Value>| {
+        for (name, side) in [("left", -1.0), ("right", 1.0)] {
+            bodies.push(fixed(name, block(1.0, height), [side * (0.5 * width + 0.5), 0.0], 0.0));
+        }
+    };
+    match kind {
+        0 => walls(&mut bodies),
+        1 => {
+            walls(&mut bodies);
+            bodies.push(fixed("bottom", block(width, 1.0), [0.0, -0.5 * height - 0.5], 0.0));
+        }
+        2 => {
+            bodies.push(fixed("left", block(1.0, height), [-0.5 * width - 0.5, 0.0], 0.0));
+            bodies.push(fixed("bottom", block(8.0, 1.0), [0.0, -0.5 * height - 0.5], 0.0));
+        }
+        _ => {
+            let half = random.between(0.2, 1.3);
+            // The sides of the groove lean by `half` from the vertical; the disc touches both.
+            shape = json!({ "disc": { "radius": 0.5 * width } });
+            for (name, side) in [("left", -1.0f64), ("right", 1.0)] {
+                let normal = [-side * half.cos(), half.sin()];
+                let center = normal.map(|n| -(0.5 * width + 0.5) * n);
+                bodies.push(fixed(name, block(1.0, 1.2 * width), center, side * (0.0 - half)));
+            }
+            place = [0.0, 0.0];
+        }
+    }
+    bodies.push(json!({
+        "name": "fit", "shape": shape, "position": place, "elasticity": elasticity,
+        "mass": random.one_of(&[1.0, 4.0, 0.1, 30.0]),
+    }));
+    let top = if kind == 3 { (0.25 * width * width - off * off).max(0.0).sqrt() } else { 0.5 * height };
+    let room = random.between(0.1, 0.5);
+    let start = [off + room * f64::tan(tilt) * f64::from(kind != 3), top + radius + room];
+    bodies.push(json!({
+        "name": "striker", "shape": { "disc": { "radius": radius } }, "mass": random.one_of(&[1.0, 0.2, 9.0]),
+        "position": start, "elasticity": elasticity,
+        "velocity": [-speed * tilt.sin(), -speed * tilt.cos()],
+    }));
+    json!({
+        "format": "halfgap-scene-1", "title": format!("struck fit {seed}"),
+        "run": { "duration": 1.5 * (room + radius) / speed, "impact_law": law },
+        "body": bodies,
+    })
+}
