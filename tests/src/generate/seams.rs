@@ -29,9 +29,10 @@ pub fn drop_of_seed(seed: u64) -> Drop {
     let single = random.chance(0.5);
     let digits = 1 + random.below(5) as i32;
     let round = |value: f64| decimal(value, digits, single);
-    let width = decimal(random.between(0.15, 2.0), digits.min(3), single).max(0.1);
+    let width = decimal(random.between(0.04, 1.5), digits.max(2), single).max(0.03);
     let thick = round(random.between(0.2, 1.0)).max(0.1);
-    let count = 2 + random.below(4);
+    let most = if random.chance(0.3) { 12 } else { 4 };
+    let count = 2 + random.below(most);
     let far = if random.chance(0.2) { decimal(random.power_of_ten(0.0, 2.0), 1, single) } else { 0.0 };
     let is_level = random.chance(0.4);
     let slope = if is_level { 0.0 } else { round(random.between(-0.6, 0.6)) };

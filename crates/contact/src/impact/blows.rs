@@ -37,9 +37,14 @@ impl Impact {
         (BLOWS_OF_MASSES / self.lightness().sqrt()).min(MOST_BLOWS).max(of_few) as usize
     }
 
+    /// Whether the rows are a few contacts and nothing else.
+    pub(super) fn has_few_contacts(&self) -> bool {
+        !self.has_connectors && self.rows.len() <= FEW_CONTACTS
+    }
+
     /// Number of blows that the least angle between rows takes which drive each other together.
     fn blows_of_angles(&self) -> f64 {
-        if self.has_connectors || self.rows.len() > FEW_CONTACTS {
+        if !self.has_few_contacts() {
             return BLOWS_OF_FEW;
         }
         let least_cosine = |(at, row): (usize, &CollisionRow)| {

@@ -5,6 +5,7 @@
 //! (Portugal, Júdice and Vicente 1994; see `start`). A row that nearly depends on those before it gets no force, as
 //! long as these hold it too. Problems that do not end so are left to `many_rows`.
 
+use super::pair_problem::DEPENDENT;
 use crate::settings::Settings;
 
 /// Largest number of rows that are solved directly.
@@ -30,6 +31,8 @@ pub(super) struct FewRows {
     pub(super) matrix: [[f64; FEW]; FEW],
     pub(super) offset: [f64; FEW],
     pub(super) bilateral: [bool; FEW],
+    /// Whether a row was found that nearly depends on others, but not to the last digits.
+    pub(super) is_near: bool,
 }
 
 /// Impulses of a few rows.
@@ -105,7 +108,7 @@ impl FewRows {
 
     /// The forces that hold the closed rows, 0 on the others, and one flag per row that is held. Closed rows that
     /// nearly depend on earlier ones are not held.
-    fn hold(&self, closed: &[bool; FEW]) -> ([f64; FEW], [bool; FEW]) {
+    fn hold(&mut self, closed: &[bool; FEW]) -> ([f64; FEW], [bool; FEW]) {
         let mut rows = [0; FEW];
         let mut count = 0;
         // A = L D L^T by rows, with the forward substitution of the right-hand side.
@@ -127,6 +130,8 @@ impl FewRows {
             if square > WELL {
                 (rows[count], pivot[count], value[count]) = (candidate, square, right);
                 count += 1;
+            } else {
+                self.is_near |= square > DEPENDENT;
             }
         }
         let (mut force, mut held) = ([0.0; FEW], [false; FEW]);

@@ -149,21 +149,26 @@ impl ImpactLaw {
         match self.grouping() {
             None => impact.solve_all(rest, &mut patience)?,
             Some(grouping) => {
-                impact.find_locked(rest);
+                // A last pass is meant to stop what would go to and fro between bodies that all can move.
+                impact.find_locked(rest, self.has_last_pass());
                 impact.keep_start();
                 impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?;
-                if impact.still_rebounds(rest.max(NEARLY * impact.fastest)) {
-                    // The ricochet has no end. Together the rows rebound and keep their energy.
+                if impact.has_few_contacts() && impact.still_rebounds(rest.max(NEARLY * impact.fastest)) {
+                    // Walls at too small an angle. Together the rows turn the body back as that many blows would.
                     impact.start_again();
                     impact.solve_all(rest, &mut Patience::short(impact.rows.len(), small.max(quiet)))?;
                 }
                 impact.relieve_locked()?;
             }
         }
-        if matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass) {
+        if self.has_last_pass() {
             impact.solve_all_inelastic(small)?;
         }
         impact.finish(small)
+    }
+
+    fn has_last_pass(self) -> bool {
+        matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass)
     }
 
     /// The rows that join a focus; `None` if all rows are solved together.

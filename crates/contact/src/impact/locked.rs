@@ -58,18 +58,46 @@ impl Impact {
         !self.scratch.locked.rows.is_empty()
     }
 
-    /// Flags the locked rows among those whose rate is at most `rest` [m/s].
-    pub(super) fn find_locked(&mut self, rest: f64) {
+    /// Flags the locked rows among those whose rate is at most `rest` [m/s]; if `between_walls`, those alone that press,
+    /// directly or through other locked rows, on something immovable.
+    pub(super) fn find_locked(&mut self, rest: f64, between_walls: bool) {
         let mut locked = std::mem::take(&mut self.scratch.locked);
         locked.rows.clear();
         self.list_at_rest(&mut locked, rest);
         while self.drop_unopposed(&mut locked.parts) {
             if self.comes_to_rest_pressed(&mut locked) {
                 locked.rows.extend(locked.parts.iter().map(|&part| part == Part::Pressed));
+                if between_walls {
+                    self.keep_those_at_walls(&mut locked);
+                }
                 break;
             }
         }
         self.scratch.locked = locked;
+    }
+
+    /// Drops the locked rows that do not reach anything immovable through each other.
+    fn keep_those_at_walls(&self, locked: &mut Locked) {
+        let Locked { rows, at_rest: reached, .. } = locked;
+        reached.clear();
+        reached.extend((0..rows.len()).filter(|&row| rows[row] && self.rows[row].movable_bodies().contains(&None)));
+        let locked_rows = std::mem::take(&mut locked.parts);
+        rows.fill(false);
+        reached.iter().for_each(|&row| rows[row] = true);
+        let mut next = 0;
+        while next < reached.len() {
+            for (other, _) in self.couplings.row(reached[next]) {
+                if locked_rows[other] == Part::Pressed && !rows[other] {
+                    rows[other] = true;
+                    reached.push(other);
+                }
+            }
+            next += 1;
+        }
+        locked.parts = locked_rows;
+        if reached.is_empty() {
+            locked.rows.clear();
+        }
     }
 
     /// Takes the impulses of locked rows that press on each other without moving a body out of them: blow after blow may

@@ -162,7 +162,7 @@ impl ManyRows {
 impl Impact {
     /// Solves the rows of an ascending set of any length, each to reach its target rate, and applies the impulses.
     pub(super) fn solve_many(&mut self, set: &[usize], begin: Beginning<'_>) -> Result<(), ImpactError> {
-        if set.len() <= FEW && (self.solve_few(set) || self.solve_near(set)) {
+        if set.len() <= FEW && self.solve_few(set) {
             return Ok(());
         }
         let mut many = self.scratch.many.take().unwrap_or_default();
@@ -172,7 +172,8 @@ impl Impact {
         outcome
     }
 
-    /// Solves a few rows directly and applies the impulses; false if the direct method does not end.
+    /// Solves a few rows directly, or with more digits if they nearly depend on each other, and applies the impulses;
+    /// false if neither method ends.
     fn solve_few(&mut self, set: &[usize]) -> bool {
         let mut few = FewRows { count: set.len(), ..FewRows::default() };
         for (place, &row) in set.iter().enumerate() {
@@ -188,7 +189,7 @@ impl Impact {
                 }
             }
         }
-        let Some(found) = few.solve() else { return false };
+        let Some(found) = few.solve() else { return few.is_near && self.solve_near(set) };
         self.solves += 1;
         for (&row, &impulse) in set.iter().zip(&found.impulses) {
             self.noise = self.noise.max(found.left * self.length(row));

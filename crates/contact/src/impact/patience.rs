@@ -17,7 +17,8 @@ pub(super) const QUIET: f64 = 1e-3;
 const FIRST_ROWS: usize = 20;
 /// Number of rows solved in one stage, per row of the impact; the first stage may take more.
 const ROWS_PER_STAGE: usize = 20;
-/// Number of rows solved together after a ricochet without end, per row of the impact: all of them twice.
+/// Number of rows solved together after a ricochet without end, per row of the impact: all of them twice, as rows may be
+/// driven to close that were not in the first problem.
 const ROWS_AT_LAST: usize = 2;
 /// Factor by which the speed that counts as closing grows from one stage to the next.
 const RAISE: f64 = 10.0;
