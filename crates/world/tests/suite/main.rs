@@ -4,6 +4,7 @@ mod failures;
 mod impacts;
 mod integrators;
 mod interventions;
+mod newcomer;
 #[cfg(feature = "scene")]
 mod pictures;
 #[cfg(feature = "scene")]
