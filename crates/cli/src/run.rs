@@ -3,10 +3,10 @@
 use crate::args::RunOptions;
 use crate::failure::{End, Failure};
 use crate::interrupt::Interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, Shown, Way};
 use crate::{files, output, table};
 use halfgap::scene::SceneSource;
-use halfgap::{Outcome, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
+use halfgap::{Outcome, Reached, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
 
 pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     let source = SceneSource::read(&options.scene)?;
@@ -25,16 +25,16 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     for warning in world.warnings() {
         output::tell(&format!("warning: {}: {warning}", options.scene.display()));
     }
-    // Without a folder there is no recording to lose: a signal ends the command at once, as usual.
-    let interrupt = if options.out.is_some() { Interrupt::listen() } else { Interrupt::default() };
+    let interrupt = Interrupt::listen();
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }
     let record = if everything { Record::Everything } else { Record::Ends };
     let plan = RunPlan::of_scene(&scene, record);
-    let progress = Progress::new(!options.quiet && !options.json, &scene.title);
-    let mut follow = |part| {
-        progress.set(part);
+    let way = Way::Run { start: scene.run.start_time, duration: scene.run.duration };
+    let mut progress = Progress::new(Shown::of(options.quiet, options.json), &scene.title, way);
+    let mut follow = |reached: &Reached| {
+        progress.set(reached.fraction, reached.events);
         interrupt.flow()
     };
     let report = run_world(&mut world, &plan, &mut follow);

@@ -64,6 +64,7 @@ pub mod scene;
 mod sentry;
 mod settings;
 mod start;
+mod unmeant;
 mod world;
 mod world_error;
 
@@ -91,7 +92,7 @@ pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording
 #[cfg(feature = "scene")]
 pub use result::{EnergyResult, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
-pub use run::{Progress, Record, RunPlan, RunReport, run, unwatched};
+pub use run::{Progress, Reached, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{Outcome, RunError};
 pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};

@@ -3,7 +3,7 @@
 use crate::builder::LARGEST;
 use crate::finding::Finding;
 use crate::rounded::Rounded;
-use halfgap_advance::rigid::{AdvanceError, Between};
+use halfgap_advance::rigid::{AdvanceError, Between, LARGEST_MASS_RATIO};
 use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, Problem, SolveError};
 
@@ -162,6 +162,43 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// A body turns so often in the planned time that following it is hopeless: bodies are near that it may hit, or ties
+    /// and forces act on it. The state at that time is sound: an advance over a shorter duration may go on.
+    #[error(
+        "at {time} s body \"{body}\" turns at {} rad/s: too fast to follow for the {} s asked for, in which it turns {} times \
+         beside bodies that it may hit, or with ties or forces on it; slow it down, shorten the `duration`, or let it pass \
+         through the others",
+        Rounded(*angular_velocity), Rounded(*duration), Rounded(angular_velocity.abs() * duration / std::f64::consts::TAU)
+    )]
+    TooFast {
+        /// Time of the error [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Its angular velocity [rad/s].
+        angular_velocity: f64,
+        /// Duration to be simulated [s].
+        duration: f64,
+    },
+    /// A body is held between others of which one is too heavy for it: the forces that pass through it would be lost in
+    /// rounding.
+    #[error(
+        "at {time} s \"{light}\" ({} kg) is held between \"{heavy}\" ({} kg) and another body: what one body presses or pulls \
+         on through another may be {LARGEST_MASS_RATIO:e} times as heavy as that at most; make \"{light}\" heavier or \"{heavy}\" \
+         lighter, or join them into one body",
+        Rounded(masses[0]),
+        Rounded(masses[1])
+    )]
+    Squeezed {
+        /// Time of the error [s].
+        time: f64,
+        /// Name of the light body.
+        light: String,
+        /// Name of the heavy body.
+        heavy: String,
+        /// Masses of the two [kg].
+        masses: [f64; 2],
+    },
     /// Connectors have come apart, bodies overlap, or the energy books do not close: further motion would not be that
     /// of the scene.
     #[error("at {time} s the world no longer holds together: {}", finding.without_time())]
@@ -240,6 +277,8 @@ impl RunError {
             | Self::RanAway { time, .. }
             | Self::Unresolved { time, .. }
             | Self::Crawls { time, .. }
+            | Self::TooFast { time, .. }
+            | Self::Squeezed { time, .. }
             | Self::Astray { time, .. }
             | Self::Pressed { time, .. }
             | Self::Interrupted { time }
@@ -280,6 +319,12 @@ impl RunError {
             AdvanceError::Crawls { time, step, duration, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::Crawls { time, step, duration, bodies, laws }
+            }
+            AdvanceError::TooFast { time, body, angular_velocity, duration } => {
+                Self::TooFast { time, body: name(body), angular_velocity, duration }
+            }
+            AdvanceError::Squeezed { time, light, heavy, masses } => {
+                Self::Squeezed { time, light: name(light), heavy: name(heavy), masses }
             }
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);

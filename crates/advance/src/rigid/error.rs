@@ -117,6 +117,33 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// A body turns so fast that the duration told to [`set_duration`](crate::rigid::RigidSystem::set_duration) would
+    /// take a hopeless number of turns, each of which has to be followed: bodies are near that it may hit, or ties and
+    /// forces act on it. The system is intact: with a lesser duration set, it can be advanced further.
+    #[error("at {time} s body {} turns at {angular_velocity:e} rad/s: too many turns in {duration} s", body.0)]
+    TooFast {
+        /// Time of the error [s].
+        time: f64,
+        /// The body.
+        body: BodyId,
+        /// Its angular velocity [rad/s].
+        angular_velocity: f64,
+        /// Time to be simulated in all [s].
+        duration: f64,
+    },
+    /// A body is held between others of which one is too heavy for it: the forces that pass through it would be lost in
+    /// rounding.
+    #[error("at {time} s body {} of {} kg is held between body {} of {} kg and another", light.0, masses[0], heavy.0, masses[1])]
+    Squeezed {
+        /// Time of the error [s].
+        time: f64,
+        /// The light body.
+        light: BodyId,
+        /// The heavy body.
+        heavy: BodyId,
+        /// Masses of the two [kg].
+        masses: [f64; 2],
+    },
     /// Only where contacts carry impulses only: two bodies that are pressed as far into each other as they may sink
     /// collide again and again within a step. In shorter steps they sink less.
     #[error(

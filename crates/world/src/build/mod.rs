@@ -9,6 +9,7 @@ pub(crate) mod settings;
 
 use self::bodies::Bodies;
 use crate::builder::{BodySpec, WorldBuilder};
+use crate::run_error::RunError;
 use crate::scene::{BodyData, EdgeData, FieldPath, ForceData, PathData, Scene, SceneError, ShapeData};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
@@ -149,6 +150,9 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         }
         WorldError::ShortDuration { .. } => Some(top.field("run").field("duration")),
         WorldError::WideAccuracy { .. } => Some(top.field("run").field("accuracy")),
+        WorldError::Start { source: RunError::Squeezed { light, .. } } => {
+            body(light, &|body| field_of(body, "mass"))
+        }
         WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
     };
     SceneError::new(place.unwrap_or_else(|| top.field("run")), error.to_string())

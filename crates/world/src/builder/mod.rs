@@ -219,6 +219,7 @@ impl WorldBuilder {
             self.fixed_warning(),
             self.law_warning(),
             self.stop_warning(),
+            self.still_warning(),
         ];
         let mut warnings: Vec<String> =
             self.warnings.into_iter().chain(warnings.into_iter().flatten()).collect();

@@ -38,6 +38,15 @@ impl WorldBuilder {
         ))
     }
 
+    /// Warning if there is nothing that can move.
+    pub(super) fn still_warning(&self) -> Option<String> {
+        if self.bodies.is_empty() {
+            return Some("there are no bodies: nothing will happen".to_owned());
+        }
+        let all_fixed = self.bodies.iter().all(|body| body.inertia.is_none());
+        all_fixed.then(|| "all bodies are fixed: nothing can move".to_owned())
+    }
+
     /// Warning if all bodies on which a force law acts are fixed.
     pub(super) fn law_warning(&self) -> Option<String> {
         let is_fixed =

@@ -61,8 +61,8 @@ impl<const STEPS: u32> Count<STEPS> {
 }
 
 impl RigidSystem {
-    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] is never returned. That error
-    /// leaves the system valid: with a lesser duration set, it can be advanced further.
+    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] and [`AdvanceError::TooFast`] are
+    /// never returned. These errors leave the system valid: with a lesser duration set, it can be advanced further.
     pub fn set_duration(&mut self, duration: f64) {
         self.limits.duration = duration;
     }
@@ -75,17 +75,24 @@ impl RigidSystem {
             pace.is_hasty = mean < HASTE * self.settings.resolution_time;
         }
         let mean = pace.all.note(group.start);
-        if let Some(mean) = mean {
-            pace.hopeless = if mean * HOPELESS < self.limits.duration { pace.hopeless + 1 } else { 0 };
+        self.limits.crawls = None;
+        let Some(step) = mean else { return };
+        let crawls = step * HOPELESS < self.limits.duration;
+        // A body that turns less than once a step is not followed around its turns.
+        let turning = || group.bodies.iter().find_map(|&body| self.too_fast(body, 1.0 / step));
+        let fast = if crawls { None } else { turning() };
+        let pace = &mut self.limits.paces[group.leader().index()];
+        pace.hopeless = if crawls || fast.is_some() { pace.hopeless + 1 } else { 0 };
+        if pace.hopeless < PACES {
+            return;
         }
-        let is_told = pace.hopeless >= PACES;
-        self.limits.crawls = mean.filter(|_| is_told).map(|step| AdvanceError::Crawls {
+        self.limits.crawls = Some(fast.unwrap_or_else(|| AdvanceError::Crawls {
             time: group.start.seconds(),
             step,
             duration: self.limits.duration,
             bodies: group.bodies.clone(),
             laws: self.names_of_laws(group),
-        });
+        }));
     }
 
     /// Names of the laws that act on a group.
