@@ -7,9 +7,10 @@
 use crate::args::SweepOptions;
 use crate::failure::{End, Failure};
 use crate::interrupt::Interrupt;
+use crate::numbers::{change, given};
+use crate::output;
 use crate::progress::{Progress, Shown, Way};
 use crate::rows::{QUANTITIES, Rows};
-use crate::{output, table};
 use halfgap::scene::{Scene, SceneError, SceneSource, VariedScene};
 use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
 use rayon::ThreadPoolBuilder;
@@ -175,7 +176,7 @@ impl SweepRun {
 fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     let mut told = BTreeSet::new();
     for SweepRun { value, result, error, warnings } in &sweep.runs {
-        let at = format!("{} with {} = {}", scene.display(), sweep.field, table::number(*value));
+        let at = format!("{} with {} = {}", scene.display(), sweep.field, given(*value));
         for warning in warnings.iter().filter(|warning| told.insert(warning.as_str())) {
             output::tell(&format!("warning: {at}: {warning}"));
         }
@@ -202,14 +203,14 @@ fn lines(sweep: &Sweep) -> String {
     heads.iter().for_each(|head| text.push_str(&format!(" {head:>18}")));
     text.push('\n');
     for run in &sweep.runs {
-        let _ = write!(text, "{:>20} {:>18}", table::number(run.value), run.status());
+        let _ = write!(text, "{:>20} {:>18}", given(run.value), run.status());
         if let Some(result) = &run.result {
             let statistics = &result.statistics.world;
             let _ = write!(
                 text,
-                " {:>18} {:>18.9e} {:>18} {:>18}",
-                table::number(result.time),
-                result.energy.total - result.energy.start,
+                " {:>18} {:>18} {:>18} {:>18}",
+                given(result.time),
+                change(result.energy.total - result.energy.start, result.scales.energy),
                 statistics.impacts,
                 statistics.steps
             );

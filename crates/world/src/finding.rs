@@ -7,12 +7,12 @@
 use crate::ledger::Books;
 use crate::near::NearPairs;
 use crate::overlap::overlap_depth;
-use crate::rounded::Rounded;
 use crate::sentry::Sentry;
 use crate::world::World;
 use crate::world_error::ConnectorName;
 use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId};
+use halfgap_geometry::Rounded;
 
 // The energy in play is the largest sum seen of the kinetic energy, the change of the potential energy and the work of
 // force laws.

@@ -55,7 +55,6 @@ mod recording;
 #[cfg(feature = "scene")]
 mod result;
 mod rigid_settings;
-mod rounded;
 #[cfg(feature = "scene")]
 mod run;
 mod run_error;
@@ -90,7 +89,7 @@ pub use names::{short_names, short_text};
 #[cfg(feature = "scene")]
 pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};
 #[cfg(feature = "scene")]
-pub use result::{EnergyResult, RunResult, StatisticsResult};
+pub use result::{EnergyResult, ResultScales, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
 pub use run::{Progress, Reached, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{Outcome, RunError};

@@ -7,7 +7,7 @@ use crate::recording::Recording;
 use crate::run::RunReport;
 use crate::run_error::{Outcome, RunError};
 use crate::world::{Statistics, World};
-use halfgap_collision::BodyState;
+use halfgap_collision::{BodyId, BodyState};
 use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
 
@@ -32,6 +32,45 @@ pub struct RunResult {
     pub findings: Vec<Finding>,
     /// Estimate of the error, if one was made.
     pub error_estimate: Option<ErrorEstimate>,
+    /// Sizes that numbers have in the run; not part of the JSON form.
+    pub scales: ResultScales,
+}
+
+/// Sizes that numbers have in a run, by which it can be told which of their digits mean something.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ResultScales {
+    /// Largest coordinate of a movable body at the start and the end [m].
+    pub length: f64,
+    /// Speed [m/s] that the energy in play gives to the bodies, or below which a contact is slow if that is more.
+    pub speed: f64,
+    /// Angular velocity [rad/s] at which the largest movable body's points have that speed.
+    pub spin: f64,
+    /// Largest of the energies at the start and the end, and of that in play [J].
+    pub energy: f64,
+}
+
+impl ResultScales {
+    fn of(world: &World, report: &RunReport) -> Self {
+        let recording = &report.recording;
+        let reach = |body: BodyId| world.shape(body).reach();
+        let ends = recording.frames.first().into_iter().chain(recording.frames.last());
+        let states = ends.flat_map(|frame| recording.movable.iter().zip(&frame.states));
+        let length = states.map(|(&body, state)| state.position.abs().max_element() + reach(body));
+        let mass: f64 =
+            recording.movable.iter().filter_map(|&body| world.inertia(body)).map(|own| own.mass).sum();
+        let of_energy = if mass > 0.0 { (2.0 * report.energy_in_play / mass).sqrt() } else { 0.0 };
+        let speed = of_energy.max(world.tolerances().velocity_tol);
+        let largest = recording.movable.iter().map(|&body| reach(body)).fold(0.0, f64::max);
+        let now = world.energy();
+        let energies =
+            [report.start_energy.kinetic, report.start_energy.potential, now.kinetic, now.potential];
+        Self {
+            length: length.fold(0.0, f64::max),
+            speed,
+            spin: if largest > 0.0 { speed / largest } else { 0.0 },
+            energy: energies.into_iter().map(f64::abs).fold(report.energy_in_play, f64::max),
+        }
+    }
 }
 
 /// Energy at start and end.
@@ -78,6 +117,7 @@ impl RunResult {
             ledger: world.ledger(),
             findings: report.findings.clone(),
             error_estimate: None,
+            scales: ResultScales::of(world, report),
         }
     }
 

@@ -110,6 +110,9 @@ pub struct RunReport {
     pub error: Option<RunError>,
     /// Broken invariants at the end, or where the run stopped; with [`Record::Everything`] also those seen on the way.
     pub findings: Vec<Finding>,
+    /// Energy in play [J]: the largest sum seen of the kinetic energy, the change of the potential energy and the work of
+    /// force laws.
+    pub energy_in_play: f64,
     /// Wall time of stepping alone [s]; `None` on platforms without a clock, such as wasm32-unknown-unknown.
     pub wall_seconds: Option<f64>,
 }
@@ -205,6 +208,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
         start_energy,
         error,
         findings,
+        energy_in_play: turnover.energy,
         wall_seconds: stepper.wall.map(|wall| wall.as_secs_f64()),
     }
 }

@@ -2,10 +2,10 @@
 
 use super::bodies::Bodies;
 use crate::builder::{WorldBuilder, center_of_mass};
-use crate::rounded::Rounded;
 use crate::scene::{BodyData, FieldPath, ForceData, Scene, ShapeData};
 use halfgap_collision::BodyId;
 use halfgap_geometry::Pose;
+use halfgap_geometry::Rounded;
 
 /// Distance of a centroid from the origin of the shape's coordinates, as a fraction of the shape's reach, up to which
 /// the shape counts as centred: the accuracy to which the ends of an outline's edges must be written.

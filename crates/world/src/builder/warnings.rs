@@ -3,10 +3,10 @@
 use super::WorldBuilder;
 use crate::force::ForceLaw;
 use crate::rigid_settings::method;
-use crate::rounded::Rounded;
 use glam::DVec2;
 use halfgap_advance::rigid::Scales;
 use halfgap_collision::{BodyId, BodyState, Connector};
+use halfgap_geometry::Rounded;
 use std::sync::Arc;
 
 impl WorldBuilder {

@@ -280,3 +280,15 @@ fn a_tied_body_that_turns_too_fast_is_named_and_a_shorter_run_goes_on() {
     ));
     builder.build().expect("it turns").advance_to(100.0, &mut |_| ()).expect("nobody follows it");
 }
+
+#[test]
+fn a_pendulum_that_swings_to_and_fro_for_years_does_not_turn_without_end() {
+    let text = "format = \"halfgap-scene-1\"\ntitle = \"clock\"\nrun = { duration = 6e8 }\n\
+        [[body]]\nname = \"bob\"\nmass = 1.0\nposition = [0.3, -0.4]\nshape = { disc = { radius = 0.1 } }\n\
+        [[connector]]\npin = { a = { body = \"world\", point = [0, 0] }, b = { body = \"bob\", point = [-0.3, 0.4] } }\n\
+        [[force]]\ngravity = { acceleration = [0.0, -9.81] }\n";
+    let mut clock = world(text);
+    // Ten means of its steps, at which it turns at some 3 rad/s.
+    clock.advance_to(1.5e4, &mut |_| ()).expect("it swings");
+    assert!(clock.statistics().steps > 100_000, "{}", clock.statistics().steps);
+}

@@ -12,10 +12,12 @@
 
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::region::Region;
+use crate::rigid::step::dynamics::body_state;
 use crate::rigid::step::group::Group;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, BodyState};
+use std::f64::consts::TAU;
 
 /// Number of steps in succession over which one mean length is taken.
 const STEPS: u32 = 10_000;
@@ -78,8 +80,7 @@ impl RigidSystem {
         self.limits.crawls = None;
         let Some(step) = mean else { return };
         let crawls = step * HOPELESS < self.limits.duration;
-        // A body that turns less than once a step is not followed around its turns.
-        let turning = || group.bodies.iter().find_map(|&body| self.too_fast(body, 1.0 / step));
+        let turning = || self.turns_without_end(group, step);
         let fast = if crawls { None } else { turning() };
         let pace = &mut self.limits.paces[group.leader().index()];
         pace.hopeless = if crawls || fast.is_some() { pace.hopeless + 1 } else { 0 };
@@ -93,6 +94,20 @@ impl RigidSystem {
             bodies: group.bodies.clone(),
             laws: self.names_of_laws(group),
         }));
+    }
+
+    /// Error of a body of a group that turns too often in the time to be simulated, and is stepped turn by turn.
+    fn turns_without_end(&self, group: &Group, step: f64) -> Option<AdvanceError> {
+        let elapsed = group.start.since(self.start);
+        group.bodies.iter().enumerate().find_map(|(place, &body)| {
+            let BodyState { angle, angular_velocity, .. } =
+                body_state(&group.state, group.bodies.len(), place);
+            // One that swings to and fro does not get anywhere; one that turns more than once in a step is not followed.
+            let mean = self.flyer(body).with_turns(angle).abs() / elapsed;
+            let is_followed = angular_velocity.abs() * step < TAU;
+            let spin = mean.min(angular_velocity.abs()).copysign(angular_velocity);
+            if is_followed { self.too_fast(body, spin, group.start) } else { None }
+        })
     }
 
     /// Names of the laws that act on a group.

@@ -6,6 +6,7 @@
 use crate::rigid::error::AdvanceError;
 use crate::rigid::search::pairs::{PairId, Prediction};
 use crate::rigid::system::RigidSystem;
+use crate::time::Time;
 use halfgap_collision::BodyId;
 use std::f64::consts::TAU;
 
@@ -26,18 +27,18 @@ impl RigidSystem {
         past.searches = if goes_on { past.searches + 1 } else { 0 };
         if past.searches >= SEARCHES {
             past.searches = 0;
-            self.limits.crawls =
-                self.pairs.bodies(pair).into_iter().find_map(|body| self.too_fast(body, 0.0));
+            let spin = |body: BodyId| self.moving_at(body, self.now).angular_velocity;
+            let mut bodies = self.pairs.bodies(pair).into_iter();
+            self.limits.crawls = bodies.find_map(|body| self.too_fast(body, spin(body), self.now));
         }
     }
 
-    /// Error of a body that turns too often in the time to be simulated, and faster than a rate [rad/s].
-    pub(super) fn too_fast(&self, body: BodyId, rate: f64) -> Option<AdvanceError> {
-        let angular_velocity = self.moving_at(body, self.now).angular_velocity;
+    /// Error of a body that has an angular velocity [rad/s] at a time, if it turns too often in the time to be
+    /// simulated.
+    pub(super) fn too_fast(&self, body: BodyId, angular_velocity: f64, time: Time) -> Option<AdvanceError> {
         let duration = self.limits.duration;
-        let is_too_fast =
-            angular_velocity.abs() * duration > MOST_TURNS * TAU && angular_velocity.abs() > rate;
-        let time = self.now.seconds();
+        let is_too_fast = angular_velocity.abs() * duration > MOST_TURNS * TAU;
+        let time = time.seconds();
         is_too_fast.then_some(AdvanceError::TooFast { time, body, angular_velocity, duration })
     }
 }
