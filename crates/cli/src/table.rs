@@ -11,12 +11,13 @@ const LONGEST_NAME: usize = 24;
 /// Largest length of a title; longer ones lose their end.
 const LONGEST_TITLE: usize = 200;
 
-/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate.
-pub(crate) fn of_result(result: &RunResult) -> String {
+/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate; `repeats` is the
+/// number of runs that were timed.
+pub(crate) fn of_result(result: &RunResult, repeats: usize) -> String {
     let title = short_text(&result.scene, LONGEST_TITLE);
     let mut text = format!("{}: {} at t = {} s\n\n", title, result.status.name(), given(result.time));
     push_states(&mut text, result);
-    push_summary(&mut text, result);
+    push_summary(&mut text, result, repeats);
     push_ledger(&mut text, &result.ledger, result.scales.energy);
     if result.error_estimate.is_some() {
         text.push('\n');
@@ -61,7 +62,7 @@ fn push_states(text: &mut String, result: &RunResult) {
     text.push('\n');
 }
 
-fn push_summary(text: &mut String, result: &RunResult) {
+fn push_summary(text: &mut String, result: &RunResult, repeats: usize) {
     let (energies, statistics, scales) = (&result.energy, &result.statistics.world, &result.scales);
     let length = |value: Option<f64>| {
         value.map_or("none".to_owned(), |value| format!("{} m", gap(value, scales.length)))
@@ -69,7 +70,11 @@ fn push_summary(text: &mut String, result: &RunResult) {
     let joules = |value: f64| energy(value, scales.energy);
     let lost = change(energies.total - energies.start, scales.energy);
     let ends = format!("{} J at the start, {} J at the end", joules(energies.start), joules(energies.total));
-    let wall = result.statistics.wall_seconds.map_or("none".to_owned(), |wall| format!("{wall:.6} s"));
+    let seconds = |wall: Option<f64>| wall.map_or("none".to_owned(), |wall| format!("{wall:.6} s"));
+    let least = seconds(result.statistics.wall_seconds);
+    let median = seconds(result.statistics.wall_seconds_median);
+    let wall =
+        if repeats > 1 { format!("{least} (least of {repeats} runs; median {median})") } else { least };
     let rows = [
         ("energy", format!("{ends} (change {lost} J)")),
         (

@@ -91,8 +91,10 @@ pub struct EnergyResult {
 pub struct StatisticsResult {
     /// Counters of the world.
     pub world: Statistics,
-    /// Wall time of stepping alone [s]; `None` on platforms without a clock.
+    /// Wall time of stepping alone [s], the least where a run was repeated; `None` on platforms without a clock.
     pub wall_seconds: Option<f64>,
+    /// Median of the wall times [s] where a run was repeated: the mean of the two in the middle of an even number.
+    pub wall_seconds_median: Option<f64>,
 }
 
 impl RunResult {
@@ -113,7 +115,11 @@ impl RunResult {
                 potential: energy.potential,
                 total: energy.total(),
             },
-            statistics: StatisticsResult { world: world.statistics(), wall_seconds: report.wall_seconds },
+            statistics: StatisticsResult {
+                world: world.statistics(),
+                wall_seconds: report.wall_seconds,
+                wall_seconds_median: None,
+            },
             ledger: world.ledger(),
             findings: report.findings.clone(),
             error_estimate: None,
@@ -184,7 +190,8 @@ impl From<&BodyState> for StateJson {
 impl Serialize for StatisticsResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let world = &self.world;
-        let mut statistics = serializer.serialize_struct("StatisticsResult", 8)?;
+        let fields = 8 + usize::from(self.wall_seconds_median.is_some());
+        let mut statistics = serializer.serialize_struct("StatisticsResult", fields)?;
         statistics.serialize_field("steps", &world.steps)?;
         statistics.serialize_field("evaluations", &world.evaluations)?;
         statistics.serialize_field("impacts", &world.impacts)?;
@@ -193,6 +200,10 @@ impl Serialize for StatisticsResult {
         statistics.serialize_field("smallest_gap", &world.smallest_gap)?;
         statistics.serialize_field("largest_connector_error", &world.largest_connector_error)?;
         statistics.serialize_field("wall_seconds", &self.wall_seconds)?;
+        match self.wall_seconds_median {
+            Some(median) => statistics.serialize_field("wall_seconds_median", &median)?,
+            None => statistics.skip_field("wall_seconds_median")?,
+        }
         statistics.end()
     }
 }

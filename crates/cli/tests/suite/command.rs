@@ -639,3 +639,33 @@ fn tables_show_no_digits_below_what_a_run_can_know() {
         "{result}"
     );
 }
+
+#[test]
+fn a_repeated_run_tells_the_least_and_the_median_of_its_times() {
+    let folder = Folder::new("repeat");
+    let scene = folder.write("bounce.toml", BOUNCE);
+    let once = json(&halfgap(&["run", &scene, "--json"]));
+    assert!(once["statistics"].get("wall_seconds_median").is_none(), "{once}");
+    let output = halfgap(&["run", &scene, "--json", "--repeat", "5"]);
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+    let mut result = json(&output);
+    let time = |name: &str| result["statistics"][name].as_f64().expect("a time");
+    let [least, median] = ["wall_seconds", "wall_seconds_median"].map(time);
+    assert!(least > 0.0 && least <= median, "{least} {median}");
+    // Everything else is as of one run.
+    let mut once = once;
+    for told in [&mut once, &mut result] {
+        let statistics = told["statistics"].as_object_mut().expect("an object");
+        statistics.retain(|name, _| !name.starts_with("wall"));
+    }
+    assert_eq!(once, result);
+    let text = folder.plain(&halfgap(&["run", &scene, "--repeat", "4"]).stdout);
+    assert!(text.contains(" s (least of 4 runs; median 0."), "{text}");
+    let alone = folder.plain(&halfgap(&["run", &scene, "--repeat", "1"]).stdout);
+    assert!(alone.contains("wall time") && !alone.contains("median"), "{alone}");
+    let alone = json(&halfgap(&["run", &scene, "--repeat", "1", "--json"]));
+    assert_eq!(alone["statistics"]["wall_seconds"], alone["statistics"]["wall_seconds_median"]);
+    let none = halfgap(&["run", &scene, "--repeat", "0"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(folder.plain(&none.stderr).contains("invalid value '0' for '--repeat <N>'"));
+}

@@ -61,6 +61,26 @@ fn a_quiet_run_tells_nothing_of_its_progress() {
     assert_eq!((output.status.code(), output.stdout.len()), (Some(3), 0));
 }
 
+#[cfg(unix)]
+#[test]
+fn ctrl_c_between_repetitions_keeps_those_that_were_made() {
+    let folder = Folder::new("repeat-interrupted");
+    let scene = folder.write("flight.toml", FLIGHT);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_halfgap"));
+    let command = command.args(["run", &scene, "--json", "--repeat", "100000000"]);
+    let mut command =
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
+    let mut messages = BufReader::new(command.stderr.take().expect("a pipe"));
+    let mut text = String::new();
+    messages.read_line(&mut text).expect("a line of progress");
+    press_ctrl_c(&command);
+    let output = command.wait_with_output().expect("the command ends");
+    messages.read_to_string(&mut text).expect("text");
+    assert_eq!(output.status.code(), Some(3), "{text}");
+    assert!(text.contains("interrupted: ") && text.ends_with(" of 100000000 runs were made\n"), "{text}");
+    assert!(json(&output)["statistics"]["wall_seconds_median"].is_number());
+}
+
 #[test]
 fn a_mistyped_name_comes_with_the_one_that_is_meant() {
     let folder = Folder::new("mistyped");
