@@ -2,11 +2,14 @@
 //! nothing happens.
 
 use crate::finding::Finding;
-use crate::force::{Snapshot, Wrench, wrenches_of};
-use crate::ledger::Turnover;
 use crate::world::World;
-use halfgap_collision::Moving;
-use std::slice::from_ref;
+#[cfg(feature = "scene")]
+use {
+    crate::force::{Snapshot, Wrench, wrenches_of},
+    crate::ledger::Turnover,
+    halfgap_collision::Moving,
+    std::slice::from_ref,
+};
 
 /// Distance of a point from a body, as a fraction of the body's reach, up to which the point counts as on it: the
 /// accuracy to which the points of outlines must be written.
@@ -29,7 +32,11 @@ impl World {
             findings.push(Finding::PointLeft { law, body, point, time: self.time() });
         }
     }
+}
 
+/// Only a whole run, of a scene, can tell that nothing has happened.
+#[cfg(feature = "scene")]
+impl World {
     /// Adds a finding if bodies that could move never did, and no force acts on any of them.
     pub(crate) fn find_nothing(&self, turnover: &Turnover, findings: &mut Vec<Finding>) {
         let has_movable = self.bodies().any(|body| !self.is_fixed(body));

@@ -284,6 +284,7 @@ impl World {
     }
 
     /// True if uniform gravity acts on a body.
+    #[cfg(feature = "scene")]
     pub(crate) fn has_gravity(&self, body: BodyId) -> bool {
         self.bodies[body.index()].gravity != DVec2::ZERO
     }

@@ -193,6 +193,7 @@ impl WorldBuilder {
     }
 
     /// Adds a warning, to be told before those of the builder.
+    #[cfg(feature = "scene")]
     pub(crate) fn warn(&mut self, warning: String) {
         self.warnings.push(warning);
     }
