@@ -17,8 +17,8 @@ const LAST_STEP_SHARE: f64 = 1e-6;
 /// Fraction of a run between two reports of its progress where no outputs are kept. The clock is read as often, which
 /// in a run of a few impacts costs as much as they do.
 const PROGRESS_SHARE: f64 = 1.0 / 50.0;
-/// Number of steps without an event between two reports of the progress: some 0.1 ms for a body alone, less than a
-/// second for a heap of hundreds.
+/// Number of steps without an event between two reports of the progress. Measured: 0.1 ms of a body on a pin, 2 ms of a
+/// heap of 25 discs.
 const QUIET_STEPS: u32 = 64;
 
 /// Selects what a run records.

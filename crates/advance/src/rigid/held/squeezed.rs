@@ -11,8 +11,8 @@ use halfgap_collision::BodyId;
 
 /// Largest ratio of the mass of a body to that of a lighter one through which it presses or pulls on another. Measured with
 /// boxes and discs stacked on a floor, and with a bob on a light link, for 5 s at a tolerance of 1e-8: up to 1e9
-/// all stay in place to the target gap of 1e-10 m, at 1e10 some creep by 3e-7 m, at 1e11 by 1e-4 m or their steps come to
-/// nothing, from 1e12 on no forces are found.
+/// all stay in place to 2e-10 m, at 1e10 some creep by 3e-7 m, at 1e11 by 1e-4 m or come to no end, and at 1e12 most find no
+/// forces.
 pub const LARGEST_MASS_RATIO: f64 = 1e10;
 
 impl RigidSystem {

@@ -10,12 +10,12 @@ use crate::time::Time;
 use halfgap_collision::BodyId;
 use std::f64::consts::TAU;
 
-/// Largest number of turns of a body in a run that are followed. Measured at 2.5 GHz: a turn takes 0.7 us to search
-/// beside a floor, and 15 us to step on a pin, so that so many take one to 25 minutes. More would be a run of
-/// hours; fewer are a matter of patience.
+/// Largest number of turns of a body in a run that are followed. Measured with blocks at 1e6 to 1e8 rad/s: a turn takes
+/// 0.4 us of a run above a floor, and 6 to 11 us on a pin, so that so many take 40 s to 20 minutes. More would be
+/// a run of hours; fewer are a matter of patience.
 pub(super) const MOST_TURNS: f64 = 1e8;
-/// Number of times in succession that the search of a pair goes on before its bodies are looked at: half a second, in
-/// which a body that turns fast may well have passed the other.
+/// Number of times in succession that the search of a pair goes on before its bodies are looked at. Measured with a block at
+/// 1e9 rad/s: half a second, in which a body that turns fast may well have passed the other.
 const SEARCHES: u32 = 100_000;
 
 impl RigidSystem {
