@@ -58,5 +58,5 @@ mod system;
 mod time;
 
 pub use queue::{EventQueue, Scheduled, SourceId};
-pub use system::{EventDriven, advance_until, advance_while};
+pub use system::{EventDriven, advance_until, advance_watched, advance_while};
 pub use time::Time;

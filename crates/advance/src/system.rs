@@ -52,11 +52,29 @@ pub fn advance_while<S: EventDriven>(
     until: Time,
     mut on_report: impl FnMut(&S, &S::Report) -> ControlFlow<()>,
 ) -> Result<ControlFlow<()>, S::Error> {
+    advance_watched(system, until, |system, report| match report {
+        Some(report) => on_report(system, report),
+        None => ControlFlow::Continue(()),
+    })
+}
+
+/// Advances like [`advance_while`], but calls `on_event` also after events that have no report: a caller can tell how
+/// far a long advance has come, and break it off.
+///
+/// # Errors
+/// The first event that cannot be handled; events reported before it stay handled.
+pub fn advance_watched<S: EventDriven>(
+    system: &mut S,
+    until: Time,
+    mut on_event: impl FnMut(&S, Option<&S::Report>) -> ControlFlow<()>,
+) -> Result<ControlFlow<()>, S::Error> {
     let is_number = !until.seconds().is_nan();
     while is_number && system.next_event().is_some_and(|time| time <= until) {
-        if let Some(report) = system.handle_next()?
-            && on_report(system, &report).is_break()
-        {
+        let report = system.handle_next()?;
+        if on_event(system, report.as_ref()).is_break() {
+            if report.is_none() {
+                system.arrive();
+            }
             return Ok(ControlFlow::Break(()));
         }
     }

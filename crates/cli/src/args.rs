@@ -48,6 +48,10 @@ pub(crate) struct RunOptions {
     /// Duration in seconds, instead of the scene's.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
+    /// Run the scene N times: the wall time told is the least of them, beside the median (of an even number the mean of
+    /// the two in the middle). All must give the same bits, else the exit code is 1. Recorded is the first.
+    #[arg(long, value_name = "N")]
+    pub(crate) repeat: Option<NonZeroUsize>,
     /// Run the scene again at a tighter tolerance, and print the differences.
     #[arg(long)]
     pub(crate) estimate_error: bool,

@@ -2,6 +2,7 @@
 
 use crate::args::CheckOptions;
 use crate::failure::{End, Failure, describe};
+use crate::numbers::size;
 use crate::output;
 use halfgap::scene::{FieldPath, SceneError, SceneSource};
 use halfgap::{CheckReport, World, check as check_world};
@@ -88,7 +89,7 @@ fn lines(file: &FileReport) -> String {
         (true, false) => "FAILED",
     };
     let error = |value: Option<f64>, unit: &str| {
-        value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2e} {unit}"))
+        value.map_or_else(|| "-".to_owned(), |value| format!("{} {unit}", size(value)))
     };
     let mut text = format!(
         "{word:6} {}  position {}  velocity {}  energy {}\n",

@@ -1,6 +1,6 @@
-//! Ctrl-C and SIGTERM: the run stops, and its recording up to then is written.
+//! Ctrl-C and SIGTERM: the run stops, and what it has found up to then is printed and written.
 //!
-//! A run stops at its next event or output. A second Ctrl-C ends the command at once; a second SIGTERM does not, as
+//! A run stops at its next event or output, or within a few steps. A second Ctrl-C ends the command at once; a second SIGTERM does not, as
 //! some programs send each of them twice.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -9,8 +9,8 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Flag that a signal asked the command to stop; the default listens to no signals.
-#[derive(Debug, Default)]
+/// Flag that a signal asked the command to stop.
+#[derive(Debug)]
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {

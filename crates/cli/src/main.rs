@@ -1,7 +1,7 @@
 //! The `halfgap` command: runs, varies and checks scene files, and solves contact problems.
 //!
-//! `args` declares the command line; each subcommand is a module of its own (`run` with `files`, `check`, `sweep` with
-//! `vary`, `solve`), `failure` makes messages and exit codes, `table` the tables, `output` writes to standard output
+//! `args` declares the command line; each subcommand is a module of its own (`run` with `files` and `repeat`, `check`, `sweep` with
+//! `vary` and `rows`, `solve`), `failure` makes messages and exit codes, `table` the tables and `numbers` what stands in them, `output` writes to standard output
 //! and standard error, `progress` shows the progress bar, `interrupt` handles Ctrl-C and SIGTERM.
 
 #![warn(
@@ -15,8 +15,11 @@ mod check;
 mod failure;
 mod files;
 mod interrupt;
+mod numbers;
 mod output;
 mod progress;
+mod repeat;
+mod rows;
 mod run;
 mod solve;
 mod sweep;

@@ -3,10 +3,13 @@
 use crate::args::RunOptions;
 use crate::failure::{End, Failure};
 use crate::interrupt::Interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, Shown, Way};
+use crate::repeat::Repeats;
 use crate::{files, output, table};
 use halfgap::scene::SceneSource;
-use halfgap::{Outcome, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
+use halfgap::{Outcome, Reached, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
+use std::num::NonZeroUsize;
+use std::path::Path;
 
 pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     let source = SceneSource::read(&options.scene)?;
@@ -25,20 +28,31 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     for warning in world.warnings() {
         output::tell(&format!("warning: {}: {warning}", options.scene.display()));
     }
-    // Without a folder there is no recording to lose: a signal ends the command at once, as usual.
-    let interrupt = if options.out.is_some() { Interrupt::listen() } else { Interrupt::default() };
+    let interrupt = Interrupt::listen();
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
     }
     let record = if everything { Record::Everything } else { Record::Ends };
     let plan = RunPlan::of_scene(&scene, record);
-    let progress = Progress::new(!options.quiet && !options.json, &scene.title);
-    let mut follow = |part| {
-        progress.set(part);
+    let way = Way::Run { start: scene.run.start_time, duration: scene.run.duration };
+    let mut progress = Progress::new(Shown::of(options.quiet, options.json), &scene.title, way);
+    let mut follow = |reached: &Reached| {
+        progress.set(reached.fraction, reached.events);
         interrupt.flow()
     };
     let report = run_world(&mut world, &plan, &mut follow);
     let mut result = RunResult::new(&world, &report);
+    let repeats = match options.repeat {
+        Some(count) if result.status != Outcome::Interrupted => {
+            let again = || -> Result<RunResult, Failure> {
+                let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
+                let report = run_world(&mut world, &plan, &mut follow);
+                Ok(RunResult::new(&world, &report))
+            };
+            Some(Repeats::make(&mut result, count, again)?)
+        }
+        _ => None,
+    };
     if options.estimate_error && result.status != Outcome::Interrupted {
         let estimate = estimate_error(&scene, &plan, &world, &report, &mut follow);
         result.error_estimate = Some(estimate.map_err(|error| source.locate(error))?);
@@ -52,7 +66,9 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         options.out.as_ref().map_or(Ok(false), |folder| files::write_problem(folder, report.error.as_ref()));
     let printed = match (options.json, options.quiet) {
         (true, _) => output::print(&format!("{}\n", result.to_json())),
-        (false, false) => output::print(&table::of_result(&result)),
+        (false, false) => {
+            output::print(&table::of_result(&result, repeats.as_ref().map_or(1, |made| made.count)))
+        }
         (false, true) => output::print(&table::of_estimate(&result)),
     };
     for finding in &report.findings {
@@ -68,8 +84,27 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
             path.display()
         ));
     }
+    let repeated = repeats
+        .zip(options.repeat)
+        .map_or(End::Done, |(made, wanted)| tell_repeats(&made, wanted, &options.scene));
     written?;
     problem?;
     printed?;
-    Ok(if report.error.is_none() { End::Done } else { End::Stopped })
+    Ok(if report.error.is_none() { repeated } else { End::Stopped })
+}
+
+/// Tells of repetitions that were not made or that differ, and returns the end of the command for them.
+fn tell_repeats(made: &Repeats, wanted: NonZeroUsize, scene: &Path) -> End {
+    let scene = scene.display();
+    if let Some(number) = made.differs {
+        output::tell(&format!(
+            "error: {scene}: run {number} of {wanted} differs from the first in its result"
+        ));
+        return End::CheckFailed;
+    }
+    if made.count < wanted.get() {
+        output::tell(&format!("error: {scene}: interrupted: {} of {wanted} runs were made", made.count));
+        return End::Stopped;
+    }
+    End::Done
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::failure::{End, Failure};
+use crate::numbers::{given, size};
 use crate::output;
 use clap::{Args, ValueEnum};
 use halfgap::scene::SceneFormat;
@@ -219,8 +220,8 @@ fn compare(text: &mut String, file: &ContactFile, outcome: &Outcome) {
         let Some(said) = said.as_ref().filter(|said| said.len() == found.len()) else { continue };
         let differences = said.iter().zip(found).map(|(said, found)| (said - found).abs());
         let Some((row, most)) = differences.enumerate().max_by(|p, q| p.1.total_cmp(&q.1)) else { continue };
-        let _ = write!(text, "The expected {what} differs by {most:.1e} at most, in row {row}");
-        let allowed = expected.tolerance.map(|tolerance| format!("; {tolerance:.1e} is allowed"));
+        let _ = write!(text, "The expected {what} differs by {} at most, in row {row}", size(most));
+        let allowed = expected.tolerance.map(|tolerance| format!("; {} is allowed", size(tolerance)));
         let _ = writeln!(text, "{}.", allowed.unwrap_or_default());
     }
 }
@@ -234,7 +235,7 @@ fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {
         rows.truncate(SHOWN_ROWS);
         let _ = writeln!(text, "the {SHOWN_ROWS} rows with the largest forces:");
     }
-    let _ = writeln!(text, "{:>6}  {:>13}  {:>13}  state", "row", "force", "acceleration");
+    let _ = writeln!(text, "{:>6}  {:>16}  {:>16}  state", "row", "force", "acceleration");
     for row in rows {
         let (force, acceleration) = (solution.force[row], solution.acceleration[row]);
         let state =
@@ -244,7 +245,8 @@ fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {
                 (false, false, true) => "closed, no force",
                 (false, false, false) => "free",
             };
-        let _ = writeln!(text, "{row:>6}  {force:>13.6e}  {acceleration:>13.6e}  {state}");
+        let (force, acceleration) = (given(force), given(acceleration));
+        let _ = writeln!(text, "{row:>6}  {force:>16}  {acceleration:>16}  {state}");
     }
     let _ = writeln!(
         text,
@@ -270,7 +272,7 @@ fn times(outcome: &Outcome) -> String {
 fn judgement(solution: &Solution) -> String {
     let Residuals { natural, growth, backward } = solution.residuals;
     let exact = natural <= Settings::default().natural_residual;
-    let mut text = format!("Residual {natural:.1e} of the largest offset: ");
+    let mut text = format!("Residual {} of the largest offset: ", size(natural));
     text += if exact {
         "the answer is exact to rounding."
     } else if solution.inconsistency > 0.0 {
@@ -278,12 +280,12 @@ fn judgement(solution: &Solution) -> String {
     } else {
         "rounding shows, because the forces are so much larger than the offsets."
     };
-    let _ = write!(text, "\nGrowth {growth:.1e}, backward residual {backward:.1e}.");
+    let _ = write!(text, "\nGrowth {}, backward residual {}.", size(growth), size(backward));
     if solution.inconsistency > 0.0 {
         let _ = write!(
             text,
-            "\nDependent rows contradict each other by {:.1e} of the largest offset; the answer is that of least squares.",
-            solution.inconsistency
+            "\nDependent rows contradict each other by {} of the largest offset; the answer is that of least squares.",
+            size(solution.inconsistency)
         );
     }
     text

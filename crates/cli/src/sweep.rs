@@ -1,29 +1,28 @@
 //! `halfgap sweep`: runs a scene many times, with one of its numbers varied.
 //!
 //! Runs share nothing, so they go to all cores at once, and each gives the same bits as alone. A value from which no
-//! world can be built, say because bodies overlap, is reported as a refused run; the other runs are not affected.
+//! world can be built, say because bodies overlap, is reported as a refused run; the other runs are not affected. Each
+//! run is written as soon as it is over and those before it are (`rows`).
 
 use crate::args::SweepOptions;
 use crate::failure::{End, Failure};
 use crate::interrupt::Interrupt;
-use crate::progress::Progress;
-use crate::{output, table};
-use halfgap::scene::{SceneError, SceneSource, VariedScene};
-use halfgap::{Outcome, Record, RunPlan, RunResult, World, csv_field, run};
+use crate::numbers::{change, given};
+use crate::output;
+use crate::progress::{Progress, Shown, Way};
+use crate::rows::{QUANTITIES, Rows};
+use halfgap::scene::{Scene, SceneError, SceneSource, VariedScene};
+use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
 use rayon::ThreadPoolBuilder;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::Write as _;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Status of a value from which no world can be built.
 const REFUSED: &str = "refused";
-/// Quantities of each body in the table: SI units and radians, `w` for the angular velocity.
-const QUANTITIES: [&str; 6] = ["x", "y", "angle", "vx", "vy", "w"];
 
 /// One run of the sweep.
 #[derive(Debug, Serialize)]
@@ -53,54 +52,86 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     let values = options.vary.values();
     // All scenes are read before the first runs, so that a value out of range is found at once.
     let scenes = values.iter().map(|&value| varied.with(value));
-    let scenes = scenes.map(|scene| scene.map(|scene| scene.title)).collect::<Result<BTreeSet<_>, _>>()?;
-    let title = scenes.first().cloned().unwrap_or_default();
+    let kinds = scenes.map(|scene| scene.map(Kind::of)).collect::<Result<BTreeSet<_>, _>>()?;
+    let Kind { title, bodies } = kinds.into_iter().next().unwrap_or_default();
     let interrupt = Interrupt::listen();
+    let field = varied.field().to_string();
     // The file is made before the runs, which a bad path would lose.
-    let file = match &options.out {
-        Some(path) => Some((path, File::create(path).map_err(|error| Failure::Write(path.clone(), error))?)),
-        None => None,
-    };
-    let progress = Progress::new(!options.quiet && !options.json, &title);
-    let runs = run_all(&values, &varied, options, (&progress, &interrupt))?;
+    let rows = options.out.as_ref().map(|path| Rows::create(path, &field, &bodies)).transpose()?;
+    let rows = rows.map(Mutex::new);
+    let way = Way::Runs { count: values.len() };
+    let mut progress = Progress::new(Shown::of(options.quiet, options.json), &title, way);
+    let runs = run_all(
+        &values,
+        options,
+        (&progress, &interrupt),
+        |value| run_scene(value, &varied, &interrupt),
+        |index, run| {
+            if let Some(rows) = &rows {
+                rows.lock().unwrap_or_else(PoisonError::into_inner).add(index, row(run, bodies.len()));
+            }
+        },
+    )?;
     progress.finish();
-    let sweep = Sweep { format: "halfgap-sweep-1", field: varied.field().to_string(), runs };
+    let sweep = Sweep { format: "halfgap-sweep-1", field, runs };
+    // A failure to write is reported last, so that the results are not lost with it.
+    let written =
+        rows.map_or(Ok(()), |rows| rows.into_inner().unwrap_or_else(PoisonError::into_inner).finish());
     tell_on_stderr(&sweep, &options.scene, values.len());
-    if let Some((path, mut file)) = file {
-        let written = file.write_all(csv(&sweep).as_bytes());
-        written.map_err(|error| Failure::Write(path.clone(), error))?;
-    }
     if options.json {
         let json = serde_json::to_string(&sweep).expect("a sweep is strings and numbers only");
         output::print(&format!("{json}\n"))?;
     } else if !options.quiet {
         output::print(&lines(&sweep))?;
     }
+    written?;
     Ok(sweep.end(values.len()))
 }
 
-/// Runs all values, except those left after an interruption.
+/// What all scenes of a sweep have in common.
+#[derive(Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Kind {
+    title: String,
+    /// Names of the movable bodies.
+    bodies: Vec<String>,
+}
+
+impl Kind {
+    fn of(scene: Scene) -> Self {
+        let movable = scene.bodies.into_iter().filter(|body| !body.fixed);
+        Self { title: scene.title, bodies: movable.map(|body| body.name).collect() }
+    }
+}
+
+/// Runs all values, except those left after an interruption, and tells of each run as soon as it is over. Values are
+/// taken up in their order, so that of the first ones all are over soon.
 fn run_all(
     values: &[f64],
-    varied: &VariedScene,
     options: &SweepOptions,
     (progress, interrupt): (&Progress, &Interrupt),
+    run_one: impl Fn(f64) -> SweepRun + Sync,
+    is_over: impl Fn(usize, &SweepRun) + Sync,
 ) -> Result<Vec<SweepRun>, Failure> {
     // 0 stands for one thread for each core; more threads than runs would only wait.
     let threads = options.threads.map_or(0, |threads| threads.get().min(values.len()));
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::Threads)?;
-    let done = AtomicUsize::new(0);
-    let run_one = |&value: &f64| {
-        if interrupt.flow().is_break() {
-            return None;
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let of_threads = pool.broadcast(|_| {
+        let mut runs = Vec::new();
+        while interrupt.flow().is_continue() {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(&value) = values.get(index) else { break };
+            let run = run_one(value);
+            is_over(index, &run);
+            runs.push((index, run));
+            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress.set(count as f64 / values.len() as f64, 0);
         }
-        let run = run_scene(value, varied, interrupt);
-        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress.set(count as f64 / values.len() as f64);
-        Some(run)
-    };
-    let runs: Vec<_> = pool.install(|| values.par_iter().map(run_one).collect());
-    Ok(runs.into_iter().flatten().collect())
+        runs
+    });
+    let mut runs: Vec<_> = of_threads.into_iter().flatten().collect();
+    runs.sort_unstable_by_key(|&(index, _)| index);
+    Ok(runs.into_iter().map(|(_, run)| run).collect())
 }
 
 fn run_scene(value: f64, varied: &VariedScene, interrupt: &Interrupt) -> SweepRun {
@@ -141,11 +172,11 @@ impl SweepRun {
 }
 
 /// Writes to standard error: each warning at the first run that has it, findings and errors with the value of their
-/// run, and the number of runs not made after an interruption.
+/// run, and the number of runs made before an interruption.
 fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
     let mut told = BTreeSet::new();
     for SweepRun { value, result, error, warnings } in &sweep.runs {
-        let at = format!("{} with {} = {}", scene.display(), sweep.field, table::number(*value));
+        let at = format!("{} with {} = {}", scene.display(), sweep.field, given(*value));
         for warning in warnings.iter().filter(|warning| told.insert(warning.as_str())) {
             output::tell(&format!("warning: {at}: {warning}"));
         }
@@ -158,11 +189,10 @@ fn tell_on_stderr(sweep: &Sweep, scene: &Path, values: usize) {
             (_, None) => {}
         }
     }
-    if sweep.runs.len() < values {
-        output::tell(&format!(
-            "error: interrupted: {} of {values} runs were not made",
-            values - sweep.runs.len()
-        ));
+    let broken_off = |run: &&SweepRun| run.status() == Outcome::Interrupted.name();
+    let whole = sweep.runs.len() - sweep.runs.iter().filter(broken_off).count();
+    if whole < values {
+        output::tell(&format!("error: interrupted: {whole} of {values} runs were made"));
     }
 }
 
@@ -173,14 +203,14 @@ fn lines(sweep: &Sweep) -> String {
     heads.iter().for_each(|head| text.push_str(&format!(" {head:>18}")));
     text.push('\n');
     for run in &sweep.runs {
-        let _ = write!(text, "{:>20} {:>18}", table::number(run.value), run.status());
+        let _ = write!(text, "{:>20} {:>18}", given(run.value), run.status());
         if let Some(result) = &run.result {
             let statistics = &result.statistics.world;
             let _ = write!(
                 text,
-                " {:>18} {:>18.9e} {:>18} {:>18}",
-                table::number(result.time),
-                result.energy.total - result.energy.start,
+                " {:>18} {:>18} {:>18} {:>18}",
+                given(result.time),
+                change(result.energy.total - result.energy.start, result.scales.energy),
                 statistics.impacts,
                 statistics.steps
             );
@@ -190,26 +220,15 @@ fn lines(sweep: &Sweep) -> String {
     text
 }
 
-/// Returns all results as CSV, in digits that read back as the same bits and without wall times: equal sweeps write
-/// equal files. A refused run has its value and status only; its other fields are empty.
-fn csv(sweep: &Sweep) -> String {
-    let mut text = format!("{},status,time,energy_start,energy_end,impacts,steps", csv_field(&sweep.field));
-    let known = sweep.runs.iter().find_map(|run| run.result.as_ref());
-    let bodies = known.map_or(&[][..], |result| &result.bodies);
-    for (name, _) in bodies {
-        for quantity in QUANTITIES {
-            let _ = write!(text, ",{}", csv_field(&format!("{name}.{quantity}")));
-        }
+/// Returns the row of a run, in digits that read back as the same bits and without wall times: equal sweeps write equal
+/// files. A refused run has its value and status only; its other fields are empty.
+fn row(run: &SweepRun, bodies: usize) -> String {
+    let mut text = format!("{:?},{}", run.value, run.status());
+    match &run.result {
+        Some(result) => write_result(&mut text, result),
+        None => text.push_str(&",".repeat(5 + QUANTITIES.len() * bodies)),
     }
     text.push('\n');
-    for run in &sweep.runs {
-        let _ = write!(text, "{:?},{}", run.value, run.status());
-        match &run.result {
-            Some(result) => write_result(&mut text, result),
-            None => text.push_str(&",".repeat(5 + QUANTITIES.len() * bodies.len())),
-        }
-        text.push('\n');
-    }
     text
 }
 

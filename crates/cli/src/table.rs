@@ -1,8 +1,8 @@
-//! The table that `halfgap run` prints, and numbers in tables.
+//! The table that `halfgap run` prints.
 
+use crate::numbers::{change, energy, gap, given, size, state};
 use halfgap::{Difference, ErrorEstimate, Ledger, RunResult, short_names, short_text};
 use std::fmt::Write;
-use std::ops::Range;
 
 /// Largest number of bodies listed; `--json` and `--out` list all.
 const MOST_BODIES: usize = 60;
@@ -10,16 +10,15 @@ const MOST_BODIES: usize = 60;
 const LONGEST_NAME: usize = 24;
 /// Largest length of a title; longer ones lose their end.
 const LONGEST_TITLE: usize = 200;
-/// Sizes, in the unit of the column, that are written without an exponent.
-const PLAIN: Range<f64> = 1e-3..1e5;
 
-/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate.
-pub(crate) fn of_result(result: &RunResult) -> String {
+/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate; `repeats` is the
+/// number of runs that were timed.
+pub(crate) fn of_result(result: &RunResult, repeats: usize) -> String {
     let title = short_text(&result.scene, LONGEST_TITLE);
-    let mut text = format!("{}: {} at t = {} s\n\n", title, result.status.name(), result.time);
+    let mut text = format!("{}: {} at t = {} s\n\n", title, result.status.name(), given(result.time));
     push_states(&mut text, result);
-    push_summary(&mut text, result);
-    push_ledger(&mut text, &result.ledger);
+    push_summary(&mut text, result, repeats);
+    push_ledger(&mut text, &result.ledger, result.scales.energy);
     if result.error_estimate.is_some() {
         text.push('\n');
     }
@@ -45,11 +44,15 @@ fn push_states(text: &mut String, result: &RunResult) {
         let _ = write!(text, " {head:>16}");
     }
     text.push('\n');
-    for (name, (_, state)) in names.iter().zip(listed) {
+    let scales = &result.scales;
+    for (name, (_, body)) in names.iter().zip(listed) {
         let _ = write!(text, "{name:width$}");
-        let (position, velocity) = (state.position, state.velocity);
-        for value in [position.x, position.y, state.angle, velocity.x, velocity.y, state.angular_velocity] {
-            let _ = write!(text, " {:>16}", number(value));
+        let (place, speed) = (body.position, body.velocity);
+        let numbers = [place.x, place.y, body.angle, speed.x, speed.y, body.angular_velocity];
+        // Angles are of the scale of a radian.
+        let scales = [scales.length, scales.length, 1.0, scales.speed, scales.speed, scales.spin];
+        for (value, scale) in numbers.into_iter().zip(scales) {
+            let _ = write!(text, " {:>16}", state(value, scale));
         }
         text.push('\n');
     }
@@ -59,17 +62,24 @@ fn push_states(text: &mut String, result: &RunResult) {
     text.push('\n');
 }
 
-fn push_summary(text: &mut String, result: &RunResult) {
-    let (energy, statistics) = (&result.energy, &result.statistics.world);
-    let length = |value: Option<f64>| value.map_or("none".to_owned(), |value| format!("{value:.3e} m"));
-    let change = energy.total - energy.start;
-    let ends = format!("{} J at the start, {} J at the end", number(energy.start), number(energy.total));
-    let wall = result.statistics.wall_seconds.map_or("none".to_owned(), |wall| format!("{wall:.6} s"));
+fn push_summary(text: &mut String, result: &RunResult, repeats: usize) {
+    let (energies, statistics, scales) = (&result.energy, &result.statistics.world, &result.scales);
+    let length = |value: Option<f64>| {
+        value.map_or("none".to_owned(), |value| format!("{} m", gap(value, scales.length)))
+    };
+    let joules = |value: f64| energy(value, scales.energy);
+    let lost = change(energies.total - energies.start, scales.energy);
+    let ends = format!("{} J at the start, {} J at the end", joules(energies.start), joules(energies.total));
+    let seconds = |wall: Option<f64>| wall.map_or("none".to_owned(), |wall| format!("{wall:.6} s"));
+    let least = seconds(result.statistics.wall_seconds);
+    let median = seconds(result.statistics.wall_seconds_median);
+    let wall =
+        if repeats > 1 { format!("{least} (least of {repeats} runs; median {median})") } else { least };
     let rows = [
-        ("energy", format!("{ends} (change {change:.3e} J)")),
+        ("energy", format!("{ends} (change {lost} J)")),
         (
             "at the end",
-            format!("kinetic {} J, potential {} J", number(energy.kinetic), number(energy.potential)),
+            format!("kinetic {} J, potential {} J", joules(energies.kinetic), joules(energies.potential)),
         ),
         ("steps", format!("{} ({} evaluations)", statistics.steps, statistics.evaluations)),
         ("impacts", statistics.impacts.to_string()),
@@ -84,8 +94,8 @@ fn push_summary(text: &mut String, result: &RunResult) {
     }
 }
 
-/// Adds the changes of the energy that are not 0, and the error of the integration.
-fn push_ledger(text: &mut String, ledger: &Ledger) {
+/// Adds the changes of the energy that are not 0, and the error of the integration; `scale` is that of the energies [J].
+fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
     let fixed = [
         ("impacts", ledger.impacts),
         ("captures", ledger.captures),
@@ -94,22 +104,26 @@ fn push_ledger(text: &mut String, ledger: &Ledger) {
         ("damping", ledger.damping),
     ];
     let laws = ledger.laws.iter().map(|law| (law.law.as_str(), law.work));
-    let _ = writeln!(text, "\nenergy ledger");
-    for (name, change) in fixed.into_iter().chain(laws).filter(|(_, change)| *change != 0.0) {
-        let _ = writeln!(text, "  {name:30} {change:+.9e} J");
-    }
-    let _ = writeln!(text, "  {:30} {:+.9e} J", "integration error", ledger.integration_error());
-    if ledger.start_correction != 0.0 {
-        let _ = writeln!(text, "  {:30} {:+.9e} J", "corrections before the start", ledger.start_correction);
-    }
+    text.push_str("\nenergy ledger\n");
+    let mut push = |name: &str, joules: f64, is_told: bool| {
+        let joules = energy(joules, scale);
+        if is_told || joules != "0" {
+            let sign = if joules.starts_with('-') || joules == "0" { "" } else { "+" };
+            let joules = format!("{sign}{joules}");
+            let _ = writeln!(text, "  {name:30} {joules:>16} J");
+        }
+    };
+    fixed.into_iter().chain(laws).for_each(|(name, joules)| push(name, joules, false));
+    push("integration error", ledger.integration_error(), true);
+    push("corrections before the start", ledger.start_correction, false);
 }
 
 fn push_estimate(text: &mut String, estimate: &ErrorEstimate) {
     let (tolerance, tighter) = (estimate.tolerance, estimate.tighter_tolerance);
-    let _ = writeln!(text, "error estimate: tolerance {tolerance:.1e} against {tighter:.1e}");
+    let _ = writeln!(text, "error estimate: tolerance {} against {}", size(tolerance), size(tighter));
     push_difference(text, "  largest", &estimate.largest);
     push_difference(text, &format!("  at {:.4} s", estimate.compared_until), &estimate.end);
-    let times = estimate.event_time.map_or("none to compare".to_owned(), |time| format!("{time:.3e} s"));
+    let times = estimate.event_time.map_or("none to compare".to_owned(), |time| format!("{} s", size(time)));
     let [impacts, of_tighter] = estimate.impacts;
     let _ = writeln!(text, "  {:14} {times} ({impacts} impacts against {of_tighter})", "event times");
     match (estimate.chaotic, estimate.trusted_until) {
@@ -134,15 +148,7 @@ fn push_estimate(text: &mut String, estimate: &ErrorEstimate) {
 }
 
 fn push_difference(text: &mut String, when: &str, difference: &Difference) {
-    let Difference { position, angle, velocity, angular_velocity } = difference;
-    let _ = writeln!(
-        text,
-        "{when:16} {position:.3e} m, {angle:.3e} rad, {velocity:.3e} m/s, {angular_velocity:.3e} rad/s"
-    );
-}
-
-/// Formats a number to nine digits after the point, or eight with an exponent: few enough to compare by eye.
-pub(crate) fn number(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 || PLAIN.contains(&size) { format!("{value:.9}") } else { format!("{value:.8e}") }
+    let Difference { position, angle, velocity, angular_velocity } = *difference;
+    let [position, angle, velocity, spin] = [position, angle, velocity, angular_velocity].map(size);
+    let _ = writeln!(text, "{when:16} {position} m, {angle} rad, {velocity} m/s, {spin} rad/s");
 }

@@ -1,5 +1,6 @@
 //! Checks of answers, computed from the original data alone. The formulas are at [`Residuals`].
 
+use halfgap_collision::geometry::Rounded;
 use std::fmt;
 
 use crate::entries::Entries;
@@ -79,7 +80,8 @@ impl Problem {
 impl fmt::Display for Residuals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Residuals { natural, growth, backward } = self;
-        write!(f, "natural residual {natural:.1e}, growth {growth:.1e}, backward residual {backward:.1e}")
+        let [natural, growth, backward] = [natural, growth, backward].map(|residual| Rounded(*residual));
+        write!(f, "natural residual {natural}, growth {growth}, backward residual {backward}")
     }
 }
 

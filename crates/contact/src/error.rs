@@ -2,6 +2,7 @@
 
 use crate::check::Residuals;
 use crate::solver::Method;
+use halfgap_collision::geometry::Rounded;
 
 /// A number of [`Settings`](crate::Settings) is not positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -68,7 +69,8 @@ pub enum ProblemError {
     },
     /// A matrix that was given as symmetric is not.
     #[error(
-        "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {difference:e}"
+        "row {row}: A is not symmetric, it differs from the entry across the diagonal in column {column} by {}",
+        Rounded(*difference)
     )]
     NotSymmetric {
         /// The row.
@@ -80,7 +82,9 @@ pub enum ProblemError {
     },
     /// An entry of a symmetric matrix is larger than its diagonal allows, so that A is not positive semidefinite.
     #[error(
-        "row {row}: A is not positive semidefinite, its entry {value:e} in column {column} is larger than its diagonal allows"
+        "row {row}: A is not positive semidefinite, its entry {} in column {column} is larger than its diagonal \
+         allows",
+        Rounded(*value)
     )]
     NotSemidefinite {
         /// The row.
@@ -92,7 +96,8 @@ pub enum ProblemError {
     },
     /// The square of a row, its diagonal entry of A, overflows or underflows.
     #[error(
-        "row {row}: its diagonal entry of A is {value:e}, which is too large or too small to compute with"
+        "row {row}: its diagonal entry of A is {}, which is too large or too small to compute with",
+        Rounded(*value)
     )]
     OutOfRange {
         /// The row.
@@ -156,8 +161,9 @@ impl SolveError {
 /// semidefinite, A z = 0 then.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "no forces satisfy the rows: they contradict each other at row {row}, by {contradiction:e} of the scale"
-)]
+        "no forces satisfy the rows: they contradict each other at row {row}, by {} of the scale",
+        Rounded(*contradiction)
+    )]
 pub struct Infeasibility {
     /// Index of the row at which the contradiction showed.
     pub row: usize,

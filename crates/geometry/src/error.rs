@@ -1,5 +1,7 @@
 //! Errors of building an edge or a shape.
 
+use crate::rounded::{Rounded, RoundedPlace};
+
 /// Reason why a straight edge could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -8,7 +10,7 @@ pub enum LineError {
     #[error("end points, and the square of their distance, must be finite")]
     NotFinite,
     /// The end points coincide.
-    #[error("end points coincide at ({0}, {1}) m")]
+    #[error("end points coincide at ({}, {}) m", RoundedPlace(*.0), RoundedPlace(*.1))]
     ZeroLength(f64, f64),
 }
 
@@ -26,7 +28,12 @@ pub enum ArcError {
     #[error("arc sweep must be between 0 and a full turn in size, got {0} rad")]
     BadSweep(f64),
     /// The distances of the two ends from the center differ by more than the fit tolerance.
-    #[error("arc radius is {from_radius} m at its start but {to_radius} m at its end: off by {off} m")]
+    #[error(
+        "arc radius is {} m at its start but {} m at its end: off by {} m",
+        RoundedPlace(*from_radius),
+        RoundedPlace(*to_radius),
+        Rounded(*off)
+    )]
     RadiusMismatch {
         /// Distance [m] of the start from the center.
         from_radius: f64,
@@ -37,7 +44,8 @@ pub enum ArcError {
     },
     /// The center of an arc of more than half a turn lies off the perpendicular bisector of its chord.
     #[error(
-        "arc center is {off} m off the line of all points that are as far from its start as from its end"
+        "arc center is {} m off the line of all points that are as far from its start as from its end",
+        Rounded(*off)
     )]
     CenterOff {
         /// Distance [m] of the center from the bisector.
@@ -69,7 +77,7 @@ pub enum ShapeError {
         value: f64,
     },
     /// A measure of a ready-made shape conflicts with another one.
-    #[error("{name} is {value} m, but must be {rule} {limit} m")]
+    #[error("{name} is {value} m, but must be {rule} {} m", RoundedPlace(*limit))]
     OutOfRange {
         /// Name of the measure.
         name: &'static str,
@@ -81,7 +89,7 @@ pub enum ShapeError {
         limit: f64,
     },
     /// An angle of a ready-made shape is out of range.
-    #[error("{name} must be more than 0 and at most {limit} rad, got {value} rad")]
+    #[error("{name} must be more than 0 and at most {} rad, got {value} rad", RoundedPlace(*limit))]
     BadAngle {
         /// Name of the angle.
         name: &'static str,
@@ -111,7 +119,7 @@ pub enum ShapeError {
         edge: usize,
     },
     /// The last edge does not end where the path starts.
-    #[error("path {path} is open: edge {edge} ends {gap} m away from the start")]
+    #[error("path {path} is open: edge {edge} ends {} m away from the start", Rounded(*gap))]
     OpenPath {
         /// Index of the path.
         path: usize,
@@ -121,7 +129,7 @@ pub enum ShapeError {
         gap: f64,
     },
     /// Both ends of an edge are one point.
-    #[error("path {path}, edge {edge}: its end points coincide ({length} m apart)")]
+    #[error("path {path}, edge {edge}: its end points coincide ({} m apart)", Rounded(*length))]
     CoincidentVertices {
         /// Index of the path.
         path: usize,
@@ -141,13 +149,17 @@ pub enum ShapeError {
         source: ArcError,
     },
     /// The shape is so small or so large that its area or moments under- or overflow.
-    #[error("a shape that reaches {reach:e} m from its origin has moments beyond what numbers hold")]
+    #[error("a shape that reaches {} m from its origin has moments beyond what numbers hold", Rounded(*reach))]
     NoMoments {
         /// Largest distance [m] of a point of the shape from the body's origin.
         reach: f64,
     },
     /// Two edges cross or touch.
-    #[error("path {path_a}, edge {edge_a} meets path {path_b}, edge {edge_b} at ({x}, {y}) m")]
+    #[error(
+        "path {path_a}, edge {edge_a} meets path {path_b}, edge {edge_b} at ({}, {}) m",
+        RoundedPlace(*x),
+        RoundedPlace(*y)
+    )]
     Crossing {
         /// Path of the first edge.
         path_a: usize,

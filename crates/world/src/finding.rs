@@ -1,16 +1,18 @@
 //! Broken invariants of a run: connectors that are off, overlaps, and energy books that do not close.
 //!
 //! A simulation that goes wrong mostly ends in numbers that look like any others. These invariants can be checked
-//! without knowing the answer, now and then and at the end of every run.
+//! without knowing the answer, now and then and at the end of every run. So can what its author hardly meant
+//! (`unmeant`).
 
 use crate::ledger::Books;
 use crate::near::NearPairs;
 use crate::overlap::overlap_depth;
-use crate::rounded::Rounded;
 use crate::sentry::Sentry;
 use crate::world::World;
 use crate::world_error::ConnectorName;
+use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId};
+use halfgap_geometry::Rounded;
 
 // The energy in play is the largest sum seen of the kinetic energy, the change of the potential energy and the work of
 // force laws.
@@ -46,7 +48,7 @@ const SELDOM: f64 = 1e-2;
 /// as much.
 const CAPTURED: f64 = 5e-2;
 
-/// A broken invariant of a run.
+/// A broken invariant of a run, or what its author can hardly have meant.
 ///
 /// `turned_over` is the energy in play: see [`World::findings`].
 #[derive(Clone, Debug, PartialEq)]
@@ -97,6 +99,19 @@ pub enum Finding {
         /// Speed [m/s] below which a collision is a contact.
         slow: f64,
     },
+    /// The point at which a force law pushes a body is fixed in the world, and the body has left it.
+    PointLeft {
+        /// Name of the law.
+        law: String,
+        /// Name of the body.
+        body: String,
+        /// The point [m].
+        point: DVec2,
+        /// Time at which the point was first seen outside of the body [s].
+        time: f64,
+    },
+    /// No body ever moved, and no force acts on any.
+    NothingMoved,
 }
 
 /// A finding without its time, for errors that have one of their own.
@@ -131,13 +146,28 @@ impl std::fmt::Display for WithoutTime<'_> {
                 Rounded(*energy),
                 Rounded(*turned_over)
             ),
+            Finding::PointLeft { law, body, point, .. } => write!(
+                out,
+                "the point ({}, {}) m at which \"{law}\" pushes \"{body}\" is outside of that body: with `frame = \"world\"` the \
+                 point stays where it is while the body moves, and the force turns it; `frame = \"body\"` keeps the point on \
+                 the body, and turns the force with it",
+                Rounded(point.x),
+                Rounded(point.y)
+            ),
+            Finding::NothingMoved => write!(
+                out,
+                "nothing moved: all bodies start at rest, and no force acts on any (a body is given a `velocity`, and \
+                 `[[force]]` acts on bodies)"
+            ),
         }
     }
 }
 
 impl std::fmt::Display for Finding {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if let Self::ConnectorOff { time, .. } | Self::Overlap { time, .. } = self {
+        if let Self::ConnectorOff { time, .. } | Self::Overlap { time, .. } | Self::PointLeft { time, .. } =
+            self
+        {
             write!(out, "at {} s ", Rounded(*time))?;
         }
         WithoutTime(self).fmt(out)
@@ -171,9 +201,18 @@ impl Findings {
         }
     }
 
+    /// Notes force laws whose point has left its body, each once, when that is first seen.
+    pub(crate) fn look_at_points(&mut self, world: &World) {
+        let mut found = Vec::new();
+        world.find_points_left(&mut found);
+        found.retain(|finding| !self.found.iter().any(|known| known.is_of_same(finding)));
+        self.found.append(&mut found);
+    }
+
     /// Returns all findings, with those at the end and in the energy books.
     pub(crate) fn at_end(mut self, world: &World, turned_over: f64) -> Vec<Finding> {
         self.look(world);
+        self.look_at_points(world);
         world.look_at_books(&Books::from(&world.ledger()), turned_over, &mut self.found);
         self.found
     }
@@ -185,7 +224,7 @@ impl Finding {
         WithoutTime(self)
     }
 
-    /// True for two findings about one connector, or about one pair of bodies.
+    /// True for two findings about one connector, one pair of bodies, or the point of one law.
     fn is_of_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::ConnectorOff { connector: a, .. }, Self::ConnectorOff { connector: b, .. }) => a == b,
@@ -193,6 +232,7 @@ impl Finding {
                 Self::Overlap { first: a, second: b, .. },
                 Self::Overlap { first: other_a, second: other_b, .. },
             ) => (a, b) == (other_a, other_b),
+            (Self::PointLeft { law: a, .. }, Self::PointLeft { law: b, .. }) => a == b,
             _ => false,
         }
     }
@@ -205,6 +245,7 @@ impl Finding {
             | Self::OpenBooks { error: size, .. }
             | Self::Projected { energy: size, .. }
             | Self::Captured { energy: size, .. } => *size,
+            Self::PointLeft { .. } | Self::NothingMoved => 0.0,
         };
         size(self).total_cmp(&size(other)).is_gt()
     }
@@ -372,7 +413,6 @@ mod tests {
     use super::*;
     use crate::world::Energy;
     use crate::{BodySpec, ConnectorSpec, Stabilization, ToleranceOverrides, WorldBuilder, WorldSettings};
-    use glam::DVec2;
     use halfgap_collision::{Anchor, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
 

@@ -55,7 +55,6 @@ mod recording;
 #[cfg(feature = "scene")]
 mod result;
 mod rigid_settings;
-mod rounded;
 #[cfg(feature = "scene")]
 mod run;
 mod run_error;
@@ -64,6 +63,7 @@ pub mod scene;
 mod sentry;
 mod settings;
 mod start;
+mod unmeant;
 mod world;
 mod world_error;
 
@@ -89,9 +89,9 @@ pub use names::{short_names, short_text};
 #[cfg(feature = "scene")]
 pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};
 #[cfg(feature = "scene")]
-pub use result::{EnergyResult, RunResult, StatisticsResult};
+pub use result::{EnergyResult, ResultScales, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
-pub use run::{Progress, Record, RunPlan, RunReport, run, unwatched};
+pub use run::{Progress, Reached, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{Outcome, RunError};
 pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};

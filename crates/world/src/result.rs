@@ -7,7 +7,7 @@ use crate::recording::Recording;
 use crate::run::RunReport;
 use crate::run_error::{Outcome, RunError};
 use crate::world::{Statistics, World};
-use halfgap_collision::BodyState;
+use halfgap_collision::{BodyId, BodyState};
 use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
 
@@ -32,6 +32,45 @@ pub struct RunResult {
     pub findings: Vec<Finding>,
     /// Estimate of the error, if one was made.
     pub error_estimate: Option<ErrorEstimate>,
+    /// Sizes that numbers have in the run; not part of the JSON form.
+    pub scales: ResultScales,
+}
+
+/// Sizes that numbers have in a run, by which it can be told which of their digits mean something.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ResultScales {
+    /// Largest coordinate of a movable body at the start and the end [m].
+    pub length: f64,
+    /// Speed [m/s] that the energy in play gives to the bodies, or below which a contact is slow if that is more.
+    pub speed: f64,
+    /// Angular velocity [rad/s] at which the largest movable body's points have that speed.
+    pub spin: f64,
+    /// Largest of the energies at the start and the end, and of that in play [J].
+    pub energy: f64,
+}
+
+impl ResultScales {
+    fn of(world: &World, report: &RunReport) -> Self {
+        let recording = &report.recording;
+        let reach = |body: BodyId| world.shape(body).reach();
+        let ends = recording.frames.first().into_iter().chain(recording.frames.last());
+        let states = ends.flat_map(|frame| recording.movable.iter().zip(&frame.states));
+        let length = states.map(|(&body, state)| state.position.abs().max_element() + reach(body));
+        let mass: f64 =
+            recording.movable.iter().filter_map(|&body| world.inertia(body)).map(|own| own.mass).sum();
+        let of_energy = if mass > 0.0 { (2.0 * report.energy_in_play / mass).sqrt() } else { 0.0 };
+        let speed = of_energy.max(world.tolerances().velocity_tol);
+        let largest = recording.movable.iter().map(|&body| reach(body)).fold(0.0, f64::max);
+        let now = world.energy();
+        let energies =
+            [report.start_energy.kinetic, report.start_energy.potential, now.kinetic, now.potential];
+        Self {
+            length: length.fold(0.0, f64::max),
+            speed,
+            spin: if largest > 0.0 { speed / largest } else { 0.0 },
+            energy: energies.into_iter().map(f64::abs).fold(report.energy_in_play, f64::max),
+        }
+    }
 }
 
 /// Energy at start and end.
@@ -52,8 +91,10 @@ pub struct EnergyResult {
 pub struct StatisticsResult {
     /// Counters of the world.
     pub world: Statistics,
-    /// Wall time of stepping alone [s]; `None` on platforms without a clock.
+    /// Wall time of stepping alone [s], the least where a run was repeated; `None` on platforms without a clock.
     pub wall_seconds: Option<f64>,
+    /// Median of the wall times [s] where a run was repeated: the mean of the two in the middle of an even number.
+    pub wall_seconds_median: Option<f64>,
 }
 
 impl RunResult {
@@ -74,10 +115,15 @@ impl RunResult {
                 potential: energy.potential,
                 total: energy.total(),
             },
-            statistics: StatisticsResult { world: world.statistics(), wall_seconds: report.wall_seconds },
+            statistics: StatisticsResult {
+                world: world.statistics(),
+                wall_seconds: report.wall_seconds,
+                wall_seconds_median: None,
+            },
             ledger: world.ledger(),
             findings: report.findings.clone(),
             error_estimate: None,
+            scales: ResultScales::of(world, report),
         }
     }
 
@@ -144,7 +190,8 @@ impl From<&BodyState> for StateJson {
 impl Serialize for StatisticsResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let world = &self.world;
-        let mut statistics = serializer.serialize_struct("StatisticsResult", 8)?;
+        let fields = 8 + usize::from(self.wall_seconds_median.is_some());
+        let mut statistics = serializer.serialize_struct("StatisticsResult", fields)?;
         statistics.serialize_field("steps", &world.steps)?;
         statistics.serialize_field("evaluations", &world.evaluations)?;
         statistics.serialize_field("impacts", &world.impacts)?;
@@ -153,6 +200,10 @@ impl Serialize for StatisticsResult {
         statistics.serialize_field("smallest_gap", &world.smallest_gap)?;
         statistics.serialize_field("largest_connector_error", &world.largest_connector_error)?;
         statistics.serialize_field("wall_seconds", &self.wall_seconds)?;
+        match self.wall_seconds_median {
+            Some(median) => statistics.serialize_field("wall_seconds_median", &median)?,
+            None => statistics.skip_field("wall_seconds_median")?,
+        }
         statistics.end()
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::builder::LARGEST;
 use crate::finding::Finding;
-use crate::rounded::Rounded;
-use halfgap_advance::rigid::{AdvanceError, Between};
+use halfgap_advance::rigid::{AdvanceError, Between, LARGEST_MASS_RATIO};
 use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, Problem, SolveError};
+use halfgap_geometry::{Rounded, RoundedPlace};
 
 /// Largest number of names shown in a message; the error itself has all of them.
 const MOST_NAMES: usize = 12;
@@ -42,7 +42,7 @@ impl Outcome {
 #[non_exhaustive]
 pub enum RunError {
     /// An impact cannot be resolved.
-    #[error("at {time} s in an impact of {}: {source}{}", quoted(bodies), on_row(between))]
+    #[error("at {} s in an impact of {}: {source}{}", RoundedPlace(*time), quoted(bodies), on_row(between))]
     Impact {
         /// Time of the error [s].
         time: f64,
@@ -55,7 +55,8 @@ pub enum RunError {
     },
     /// Two bodies collide again and again without any time going by.
     #[error(
-        "stuck at {time} s: \"{primary}\" and \"{normal}\" collided {events} times without any time going by"
+        "stuck at {} s: \"{primary}\" and \"{normal}\" collided {events} times without any time going by",
+        RoundedPlace(*time)
     )]
     Stuck {
         /// Time of the error [s].
@@ -70,8 +71,9 @@ pub enum RunError {
     /// Where contacts carry impulses only: two bodies are pressed as far into each other as they may sink,
     /// and collide again and again within a step.
     #[error(
-        "at {time} s \"{primary}\" and \"{normal}\" are pressed into each other and collide without end: {events} times \
+        "at {} s \"{primary}\" and \"{normal}\" are pressed into each other and collide without end: {events} times \
          within a `time_step` of {} s; a shorter one lets them sink less",
+        RoundedPlace(*time),
         Rounded(*step)
     )]
     Pressed {
@@ -87,7 +89,7 @@ pub enum RunError {
         step: f64,
     },
     /// The forces of contacts and connectors cannot be found.
-    #[error("at {time} s in the contacts of {}: {source}{}", quoted(bodies), on_row(between))]
+    #[error("at {} s in the contacts of {}: {source}{}", RoundedPlace(*time), quoted(bodies), on_row(between))]
     Contacts {
         /// Time of the error [s].
         time: f64,
@@ -101,7 +103,13 @@ pub enum RunError {
         source: Box<SolveError>,
     },
     /// The integrator's step has fallen to nothing: forces grow beyond all bounds or are not numbers.
-    #[error("at {time} s the step of {} fell to {step:e} s{}", quoted(bodies), under(laws))]
+    #[error(
+        "at {} s the step of {} fell to {} s{}",
+        RoundedPlace(*time),
+        quoted(bodies),
+        Rounded(*step),
+        under(laws)
+    )]
     StepCollapsed {
         /// Time of the error [s].
         time: f64,
@@ -114,7 +122,8 @@ pub enum RunError {
     },
     /// Errors of an integrator with fixed steps have grown until bodies were fast beyond all measure.
     #[error(
-        "at {time} s integration errors grew: {} reached {} m/s; use a shorter `time_step` or an adaptive `integrator`",
+        "at {} s integration errors grew: {} reached {} m/s; use a shorter `time_step` or an adaptive `integrator`",
+        RoundedPlace(*time),
         quoted(bodies),
         Rounded(*speed)
     )]
@@ -129,10 +138,12 @@ pub enum RunError {
     /// Forces vary over so short a length that rounding of coordinates, or the gap of contacts, would create or destroy
     /// energy.
     #[error(
-        "at {time} s the forces of {} on {} vary over {length:e} m, too short a length for the rounding of the coordinates or \
+        "at {} s the forces of {} on {} vary over {} m, too short a length for the rounding of the coordinates or \
          the gap of bodies in contact at this tolerance; keep the bodies farther apart, or nearer the origin",
+        RoundedPlace(*time),
         quoted(laws),
-        quoted(bodies)
+        quoted(bodies),
+        Rounded(*length)
     )]
     Unresolved {
         /// Time of the error [s].
@@ -147,8 +158,13 @@ pub enum RunError {
     /// Steps have become so short that the planned time would take hopelessly many, and no events happen meanwhile. The
     /// state at that time is sound: an advance over a shorter duration may go on.
     #[error(
-        "at {time} s the steps of {} are only {} s long{}; the {} s asked for would take {} of them (see `duration`)",
-        quoted(bodies), Rounded(*step), under(laws), Rounded(*duration), Rounded(duration / step)
+        "at {} s the steps of {} are only {} s long{}; the {} s asked for would take {} of them (see `duration`)",
+        RoundedPlace(*time),
+        quoted(bodies),
+        Rounded(*step),
+        under(laws),
+        Rounded(*duration),
+        Rounded(duration / step)
     )]
     Crawls {
         /// Time of the error [s].
@@ -162,9 +178,50 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// A body turns so often in the planned time that following it is hopeless: bodies are near that it may hit, or ties
+    /// and forces act on it. The state at that time is sound: an advance over a shorter duration may go on.
+    #[error(
+        "at {} s body \"{body}\" turns at {} rad/s: too fast to follow for the {} s asked for, in which it turns {} \
+         times beside bodies that it may hit, or with ties or forces on it; slow it down, shorten the `duration`, or \
+         let it pass through the others",
+        RoundedPlace(*time),
+        Rounded(*angular_velocity),
+        Rounded(*duration),
+        Rounded(angular_velocity.abs() * duration / std::f64::consts::TAU)
+    )]
+    TooFast {
+        /// Time of the error [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Its angular velocity [rad/s].
+        angular_velocity: f64,
+        /// Duration to be simulated [s].
+        duration: f64,
+    },
+    /// A body is held between others of which one is too heavy for it: the forces that pass through it would be lost in
+    /// rounding.
+    #[error(
+        "at {} s \"{light}\" ({} kg) is held between \"{heavy}\" ({} kg) and another body: what one body presses or \
+         pulls on through another may be {LARGEST_MASS_RATIO:e} times as heavy as that at most; make \"{light}\" \
+         heavier or \"{heavy}\" lighter, or join them into one body",
+        RoundedPlace(*time),
+        Rounded(masses[0]),
+        Rounded(masses[1])
+    )]
+    Squeezed {
+        /// Time of the error [s].
+        time: f64,
+        /// Name of the light body.
+        light: String,
+        /// Name of the heavy body.
+        heavy: String,
+        /// Masses of the two [kg].
+        masses: [f64; 2],
+    },
     /// Connectors have come apart, bodies overlap, or the energy books do not close: further motion would not be that
     /// of the scene.
-    #[error("at {time} s the world no longer holds together: {}", finding.without_time())]
+    #[error("at {} s the world no longer holds together: {}", RoundedPlace(*time), finding.without_time())]
     Astray {
         /// Time of the error [s].
         time: f64,
@@ -172,7 +229,7 @@ pub enum RunError {
         finding: Finding,
     },
     /// The callback of the run stopped it.
-    #[error("interrupted at {time} s")]
+    #[error("interrupted at {} s", RoundedPlace(*time))]
     Interrupted {
         /// Time of the interruption [s].
         time: f64,
@@ -240,6 +297,8 @@ impl RunError {
             | Self::RanAway { time, .. }
             | Self::Unresolved { time, .. }
             | Self::Crawls { time, .. }
+            | Self::TooFast { time, .. }
+            | Self::Squeezed { time, .. }
             | Self::Astray { time, .. }
             | Self::Pressed { time, .. }
             | Self::Interrupted { time }
@@ -280,6 +339,12 @@ impl RunError {
             AdvanceError::Crawls { time, step, duration, bodies, laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::Crawls { time, step, duration, bodies, laws }
+            }
+            AdvanceError::TooFast { time, body, angular_velocity, duration } => {
+                Self::TooFast { time, body: name(body), angular_velocity, duration }
+            }
+            AdvanceError::Squeezed { time, light, heavy, masses } => {
+                Self::Squeezed { time, light: name(light), heavy: name(heavy), masses }
             }
             AdvanceError::Stuck { time, between, events } => {
                 let (primary, normal) = names(between);

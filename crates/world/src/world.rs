@@ -9,7 +9,7 @@ use glam::DVec2;
 use halfgap_advance::rigid::{
     AdvanceError, Handled, ImpactReport, Ledger as Booked, RigidSettings, RigidSystem, RowForce,
 };
-use halfgap_advance::{Time, advance_while};
+use halfgap_advance::{Time, advance_watched};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
 use std::ops::ControlFlow;
@@ -283,6 +283,12 @@ impl World {
         self.system.row_forces(self.now).iter().map(contact_force).collect()
     }
 
+    /// True if uniform gravity acts on a body.
+    #[cfg(feature = "scene")]
+    pub(crate) fn has_gravity(&self, body: BodyId) -> bool {
+        self.bodies[body.index()].gravity != DVec2::ZERO
+    }
+
     /// The force laws, in the order in which they were added.
     #[must_use]
     pub fn forces(&self) -> &[Arc<dyn ForceLaw>] {
@@ -387,8 +393,8 @@ impl World {
     /// # Errors
     /// [`RunError::NotATime`] for a time that is not finite. [`RunError::Astray`] if connectors have come apart, bodies
     /// overlap or the energy books do not close at that time. Another error if an event or a step cannot be simulated:
-    /// the world stays at that time. Both kinds are repeated on every further attempt, except [`RunError::Crawls`]:
-    /// after it an advance over a shorter duration may go on.
+    /// the world stays at that time. Both kinds are repeated on every further attempt, except [`RunError::Crawls`]
+    /// and [`RunError::TooFast`]: after these an advance over a shorter duration may go on.
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let outcome = self.advance_while(time, &mut |event| {
             on_event(event);
@@ -409,6 +415,17 @@ impl World {
         time: f64,
         on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, RunError> {
+        self.advance_watched(time, on_event, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Advances like [`advance_while`](Self::advance_while); `on_quiet` is called with the present time [s] after each
+    /// step that is no event for callers, and may stop the advance there.
+    pub(crate) fn advance_watched(
+        &mut self,
+        time: f64,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+        on_quiet: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RunError> {
         if !time.is_finite() {
             return Err(RunError::NotATime);
         }
@@ -422,7 +439,10 @@ impl World {
             return self.conclude(Ok(ControlFlow::Break(())), self.system.now());
         }
         let (system, told) = (&mut self.system, &mut self.told);
-        let outcome = advance_while(system, until, |system, handled| tell(told, system, *handled, on_event));
+        let outcome = advance_watched(system, until, |system, handled| match handled {
+            Some(handled) => tell(told, system, *handled, on_event),
+            None => on_quiet(system.now().seconds()),
+        });
         let reached =
             if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.system.now() };
         if !has_failed {

@@ -1,10 +1,10 @@
 //! Errors of building a world, which name bodies and connectors.
 
 use crate::connector::kind_name;
-use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::world::BACKGROUND;
 use halfgap_collision::{BodyId, Connector, ConnectorError};
+use halfgap_geometry::Rounded;
 
 /// Error that keeps a world from being built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -58,7 +58,7 @@ pub enum WorldError {
         value: f64,
     },
     /// A duration is so short that the speed that crosses the scene in it is no number to compute with.
-    #[error("duration must be at least {} s, got {duration:e} s", Rounded(*least))]
+    #[error("duration must be at least {} s, got {} s", Rounded(*least), Rounded(*duration))]
     ShortDuration {
         /// The duration [s].
         duration: f64,
@@ -108,7 +108,11 @@ pub enum WorldError {
         source: ConnectorError,
     },
     /// A connector is off at the start by more than is allowed.
-    #[error("{connector} is off by {} m at the start; at most {} m are allowed", Rounded(*error), Rounded(*allowed))]
+    #[error(
+        "{connector} is off by {} m at the start; at most {} m are allowed",
+        Rounded(*error),
+        Rounded(*allowed)
+    )]
     ConnectorError {
         /// The connector.
         connector: ConnectorName,
@@ -129,7 +133,11 @@ pub enum WorldError {
     },
     /// Two stops lie at one place of a closed rail, one for each direction: every point of the rail is beyond one of
     /// them.
-    #[error("{} and {} lie back to back on a closed path; use an open path with a stop at each end", stops[0], stops[1])]
+    #[error(
+        "{} and {} lie back to back on a closed path; use an open path with a stop at each end",
+        stops[0],
+        stops[1]
+    )]
     StopsBackToBack {
         /// The stops.
         stops: Box<[ConnectorName; 2]>,

@@ -142,8 +142,9 @@ fn nudged_heap(seed: u32) -> World {
     let mut scene = Scene::read(path).expect("the scene is there");
     for (index, body) in (0..).zip(scene.bodies.iter_mut().filter(|body| !body.fixed)) {
         let phase = f64::from(25 * seed + index);
-        body.position.x += 1e-3 * (7.3 * phase).sin();
-        body.position.y += 1e-3 * (9.1 * phase).sin();
+        let position = body.position.get_or_insert_default();
+        position.x += 1e-3 * (7.3 * phase).sin();
+        position.y += 1e-3 * (9.1 * phase).sin();
     }
     World::from_scene(&scene).expect("a world that can be built")
 }

@@ -36,7 +36,7 @@ fn body(data: &BodyData) -> Body {
     assert!(data.friction == 0.0, "{} has friction", data.name);
     let inertia = data.mass.zip(data.moment).map(|(mass, moment)| Inertia { mass, moment });
     let start = BodyState {
-        position: data.position.into(),
+        position: data.position.unwrap_or_default().into(),
         angle: data.angle,
         velocity: data.velocity.into(),
         angular_velocity: data.angular_velocity,

@@ -3,6 +3,7 @@
 use super::parts::PartsError;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::{ImpactError, Problem, SolveError};
+use halfgap_geometry::{Rounded, RoundedPlace};
 
 /// The two bodies of a contact, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +37,7 @@ pub enum AdvanceError {
         value: f64,
     },
     /// The impulses of an impact cannot be found.
-    #[error("at {time} s, between bodies {bodies:?}: {source}")]
+    #[error("at {} s, between bodies {bodies:?}: {source}", RoundedPlace(*time))]
     Impact {
         /// Time of the impact [s].
         time: f64,
@@ -48,7 +49,7 @@ pub enum AdvanceError {
         source: ImpactError,
     },
     /// The forces of contacts and connectors cannot be found.
-    #[error("at {time} s, between bodies {bodies:?}: {source}")]
+    #[error("at {} s, between bodies {bodies:?}: {source}", RoundedPlace(*time))]
     Contacts {
         /// Time at which forces were sought [s].
         time: f64,
@@ -62,7 +63,11 @@ pub enum AdvanceError {
         source: Box<SolveError>,
     },
     /// The step size of the integrator has fallen to nothing: forces grow beyond all bounds or are not numbers.
-    #[error("at {time} s the step of bodies {bodies:?} fell to {step:e} s; forces on them: {laws:?}")]
+    #[error(
+        "at {} s the step of bodies {bodies:?} fell to {} s; forces on them: {laws:?}",
+        RoundedPlace(*time),
+        Rounded(*step)
+    )]
     StepCollapsed {
         /// Time at the start of the step [s].
         time: f64,
@@ -75,7 +80,11 @@ pub enum AdvanceError {
     },
     /// Steps of a method without an error estimate are too long: they have made bodies faster than anything in the
     /// scene explains.
-    #[error("at {time} s steps without an error estimate have made bodies {bodies:?} {speed:e} m/s fast")]
+    #[error(
+        "at {} s steps without an error estimate have made bodies {bodies:?} {} m/s fast",
+        RoundedPlace(*time),
+        Rounded(*speed)
+    )]
     RanAway {
         /// Time at the start of the step [s].
         time: f64,
@@ -87,7 +96,9 @@ pub enum AdvanceError {
     /// Forces vary over so short a length that rounding of positions, or the gap that contacts have, would create
     /// energy.
     #[error(
-        "at {time} s the forces on bodies {bodies:?} vary over {length:e} m, too little for their coordinates or gaps: {laws:?}"
+        "at {} s the forces on bodies {bodies:?} vary over {} m, too little for their coordinates or gaps: {laws:?}",
+        RoundedPlace(*time),
+        Rounded(*length)
     )]
     Unresolved {
         /// Time at the start of the step [s].
@@ -103,7 +114,10 @@ pub enum AdvanceError {
     /// would take a hopeless number of them, with no impact in between. The system is intact: with a lesser
     /// duration set, it can be advanced further.
     #[error(
-        "at {time} s the steps of bodies {bodies:?} are {step:e} s long: too many of them for {duration} s; forces on them: {laws:?}"
+        "at {} s the steps of bodies {bodies:?} are {} s long: too many of them for {duration} s; forces on them: \
+         {laws:?}",
+        RoundedPlace(*time),
+        Rounded(*step)
     )]
     Crawls {
         /// Time at the start of the last step [s].
@@ -117,11 +131,53 @@ pub enum AdvanceError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
+    /// A body turns so fast that the duration told to [`set_duration`](crate::rigid::RigidSystem::set_duration) would
+    /// take a hopeless number of turns, each of which has to be followed: bodies are near that it may hit, or ties and
+    /// forces act on it. The system is intact: with a lesser duration set, it can be advanced further.
+    #[error(
+        "at {} s body {} turns at {} rad/s: too many turns in {duration} s",
+        RoundedPlace(*time),
+        body.0,
+        Rounded(*angular_velocity)
+    )]
+    TooFast {
+        /// Time of the error [s].
+        time: f64,
+        /// The body.
+        body: BodyId,
+        /// Its angular velocity [rad/s].
+        angular_velocity: f64,
+        /// Time to be simulated in all [s].
+        duration: f64,
+    },
+    /// A body is held between others of which one is too heavy for it: the forces that pass through it would be lost in
+    /// rounding.
+    #[error(
+        "at {} s body {} of {} kg is held between body {} of {} kg and another",
+        RoundedPlace(*time),
+        light.0,
+        masses[0],
+        heavy.0,
+        masses[1]
+    )]
+    Squeezed {
+        /// Time of the error [s].
+        time: f64,
+        /// The light body.
+        light: BodyId,
+        /// The heavy body.
+        heavy: BodyId,
+        /// Masses of the two [kg].
+        masses: [f64; 2],
+    },
     /// Only where contacts carry impulses only: two bodies that are pressed as far into each other as they may sink
     /// collide again and again within a step. In shorter steps they sink less.
     #[error(
-        "at {time} s bodies {} and {} have collided {events} times, pressed into each other, within a step of {step:e} s",
-        between.primary.0, between.normal.0
+        "at {} s bodies {} and {} have collided {events} times, pressed into each other, within a step of {} s",
+        RoundedPlace(*time),
+        between.primary.0,
+        between.normal.0,
+        Rounded(*step)
     )]
     Pressed {
         /// Time of the last collision [s].
@@ -135,8 +191,10 @@ pub enum AdvanceError {
     },
     /// Two bodies collide again and again without any time going by.
     #[error(
-        "stuck at {time} s: bodies {} and {} collided {events} times without any time going by",
-        between.primary.0, between.normal.0
+        "stuck at {} s: bodies {} and {} collided {events} times without any time going by",
+        RoundedPlace(*time),
+        between.primary.0,
+        between.normal.0
     )]
     Stuck {
         /// Time of the collisions [s].

@@ -42,6 +42,7 @@ pub use event::impacts::{ImpactReport, RowReport};
 pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
+pub use held::squeezed::LARGEST_MASS_RATIO;
 pub use intervention::VelocityChange;
 pub use ledger::Ledger;
 pub use motion::flyer::{FlightLaw, Flyer};

@@ -121,6 +121,8 @@ pub struct RigidSystem {
     pub(crate) flyers: Vec<Flyer>,
     pub(crate) connectors: Connectors,
     pub(crate) laws: Laws,
+    /// True if some masses differ beyond the ratio that can be held together.
+    pub(crate) masses_are_extreme: bool,
     /// True if nothing but contacts and connectors accelerates bodies.
     pub(crate) is_forceless: bool,
     /// Time at which the system started.
@@ -186,7 +188,9 @@ impl RigidSystem {
             touched: Vec::new(),
             counts: Counts { segments: movable as u64, ..Counts::default() },
             told: Told::default(),
+            masses_are_extreme: false,
         };
+        system.masses_are_extreme = system.has_extreme_masses();
         if settings.collisions {
             system.set_up_boxes();
         }
@@ -332,7 +336,7 @@ impl RigidSystem {
             Source::Tick => return self.handle_tick(),
             Source::Pair(pair) => match self.pairs.get(pair).prediction {
                 Prediction::Contact(features) => return self.handle_contact(pair, features),
-                _ => self.predict(pair),
+                _ => self.search_on(pair),
             },
         }
         Ok(())

@@ -3,3 +3,5 @@
 mod command;
 mod determinism;
 mod messages;
+#[cfg(unix)]
+mod newcomer;

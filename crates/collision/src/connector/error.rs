@@ -1,5 +1,6 @@
 //! Errors of building a connector or a rail.
 
+use halfgap_geometry::RoundedPlace;
 use halfgap_geometry::{ArcError, LineError};
 
 /// Reason why a connector could not be built.
@@ -22,7 +23,7 @@ pub enum ConnectorError {
     #[error("elasticity must lie between 0 and 1, got {0}")]
     BadElasticity(f64),
     /// A stop does not lie on its rail.
-    #[error("a stop must lie on its rail, between 0 and {length} m, got {at} m")]
+    #[error("a stop must lie on its rail, between 0 and {} m, got {at} m", RoundedPlace(*length))]
     BadStop {
         /// Given arc length of the stop [m].
         at: f64,

@@ -7,6 +7,7 @@ use super::shuffle::Shuffle;
 use super::{Impact, NOISE};
 use crate::check::Residuals;
 use crate::row::CollisionRow;
+use halfgap_collision::geometry::Rounded;
 
 /// Rule by which the rows of an impact are solved together or one after another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +54,7 @@ pub enum ImpactError {
         rule: &'static str,
     },
     /// A row closes, but neither of its bodies can move.
-    #[error("row {row} closes at {closing} m/s, but neither of its bodies can move")]
+    #[error("row {row} closes at {} m/s, but neither of its bodies can move", Rounded(*closing))]
     Immovable {
         /// Index of the row.
         row: usize,
@@ -62,7 +63,8 @@ pub enum ImpactError {
     },
     /// No impulses keep all rows from closing: for example a body between jaws that nothing stops.
     #[error(
-        "row {row} cannot be kept from closing: the rows that hold it contradict it by {contradiction} m/s"
+        "row {row} cannot be kept from closing: the rows that hold it contradict it by {} m/s",
+        Rounded(*contradiction)
     )]
     Infeasible {
         /// Index of the row at which the contradiction showed.
@@ -79,7 +81,7 @@ pub enum ImpactError {
         residuals: Residuals,
     },
     /// A row still closes, or a bilateral one has a rate, after all attempts.
-    #[error("row {row} is left at a rate of {rate} m/s, beyond the bound of {bound} m/s")]
+    #[error("row {row} is left at a rate of {} m/s, beyond the bound of {} m/s", Rounded(*rate), Rounded(*bound))]
     Unfinished {
         /// Index of the row.
         row: usize,

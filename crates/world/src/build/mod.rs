@@ -1,13 +1,15 @@
 //! Building a world from a scene: its bodies here (`bodies` finds them by name), the rest in `settings`, `force` and
-//! `connector`.
+//! `connector`; `hints` tells what the author may not have meant.
 
 mod bodies;
 mod connector;
 mod force;
+mod hints;
 pub(crate) mod settings;
 
 use self::bodies::Bodies;
 use crate::builder::{BodySpec, WorldBuilder};
+use crate::run_error::RunError;
 use crate::scene::{BodyData, EdgeData, FieldPath, ForceData, PathData, Scene, SceneError, ShapeData};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
@@ -23,7 +25,9 @@ impl World {
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
         scene.validate_world()?;
         scene.check_supported()?;
-        collect(scene)?.build().map_err(|error| located(error, scene))
+        let mut builder = collect(scene)?;
+        hints::of(scene, &builder).into_iter().for_each(|hint| builder.warn(hint));
+        builder.build().map_err(|error| located(error, scene))
     }
 }
 
@@ -59,18 +63,22 @@ fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {
         Inertia { mass, moment: body.moment.unwrap_or(mass * (uniform.moment_per_mass + shift)) }
     });
     let state = BodyState {
-        position: body.position.into(),
+        position: body.position.unwrap_or_default().into(),
         angle: body.angle,
         velocity: body.velocity.into(),
         angular_velocity: body.angular_velocity,
     };
-    Ok(BodySpec {
+    let spec = BodySpec {
         name: body.name.clone(),
         shape,
         center_of_mass,
         inertia,
         state,
         elasticity: body.elasticity,
+    };
+    Ok(match body.origin {
+        Some(origin) => spec.with_origin(origin.into()),
+        None => spec,
     })
 }
 
@@ -121,9 +129,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         WorldError::TooLarge { quantity: "gravity", .. } => strongest_gravity(scene),
         WorldError::BadNumber { body: name, quantity, .. }
         | WorldError::TooLarge { body: name, quantity, .. } => body(name, &|body| field_of(body, quantity)),
-        WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => {
-            body(second, &|_| "position")
-        }
+        WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => body(second, &place_of),
         // The name of a law is the path of its field.
         WorldError::BadForce { law, .. }
         | WorldError::StrongForce { law, .. }
@@ -144,6 +150,9 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         }
         WorldError::ShortDuration { .. } => Some(top.field("run").field("duration")),
         WorldError::WideAccuracy { .. } => Some(top.field("run").field("accuracy")),
+        WorldError::Start { source: RunError::Squeezed { light, .. } } => {
+            body(light, &|body| field_of(body, "mass"))
+        }
         WorldError::NoSuchBody { .. } | WorldError::Start { .. } => None,
     };
     SceneError::new(place.unwrap_or_else(|| top.field("run")), error.to_string())
@@ -160,6 +169,11 @@ fn strongest_gravity(scene: &Scene) -> Option<FieldPath> {
     Some(FieldPath::top().field("force").element(index).field("gravity").field("acceleration"))
 }
 
+/// Returns the name of the field of a body that determines its place.
+fn place_of(body: &BodyData) -> &'static str {
+    if body.origin.is_some() { "origin" } else { "position" }
+}
+
 /// Returns the name of the field of a body that determines a quantity.
 fn field_of(body: &BodyData, quantity: &str) -> &'static str {
     match quantity {
@@ -168,13 +182,12 @@ fn field_of(body: &BodyData, quantity: &str) -> &'static str {
         "moment" if body.moment.is_none() => "mass",
         "moment" => "moment",
         "elasticity" => "elasticity",
-        "position" => "position",
+        "position" | "coordinates" => place_of(body),
         "angle" => "angle",
         "velocity" => "velocity",
         "angular velocity" => "angular_velocity",
         "centre of mass" => "center_of_mass",
         "coordinates of the shape" => "shape",
-        "coordinates" => "position",
         _ => "name",
     }
 }

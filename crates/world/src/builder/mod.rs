@@ -8,7 +8,6 @@ mod warnings;
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
 use crate::rigid_settings::{rigid_settings, tolerances};
-use crate::rounded::Rounded;
 use crate::run_error::RunError;
 use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
@@ -22,6 +21,7 @@ use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{BodyPart, FlightLaw, RigidParts, RigidSystem, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
+use halfgap_geometry::Rounded;
 use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -83,6 +83,25 @@ impl BodySpec {
             elasticity: 1.0,
         }
     }
+
+    /// Places the body so that the origin of its shape's coordinates lies at a point of the world [m], with its present
+    /// angle and centre of mass: a room drawn in world coordinates stays where it is drawn with `DVec2::ZERO`.
+    ///
+    /// ```
+    /// use halfgap::BodySpec;
+    /// use halfgap::geometry::{DVec2, Shape};
+    ///
+    /// let corner = [(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)].map(|(x, y)| DVec2::new(x, y));
+    /// let ramp = BodySpec::fixed("ramp", Shape::polygon(&corner)?, DVec2::ZERO).with_origin(DVec2::ZERO);
+    /// assert!((ramp.state.position - DVec2::new(4.0 / 3.0, 1.0)).length() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_origin(mut self, origin: DVec2) -> Self {
+        let turned = Pose::new(DVec2::ZERO, self.state.angle).vector_to_world(center_of_mass(&self));
+        self.state.position = origin + turned;
+        self
+    }
 }
 
 /// Collects the parts of a world and builds it.
@@ -94,6 +113,8 @@ pub struct WorldBuilder {
     forces: Vec<Arc<dyn ForceLaw>>,
     connectors: Vec<ConnectorSpec>,
     excluded: Vec<(BodyId, BodyId)>,
+    /// Warnings of the caller.
+    warnings: Vec<String>,
 }
 
 impl WorldBuilder {
@@ -171,6 +192,12 @@ impl WorldBuilder {
         self.excluded.push((a, b));
     }
 
+    /// Adds a warning, to be told before those of the builder.
+    #[cfg(feature = "scene")]
+    pub(crate) fn warn(&mut self, warning: String) {
+        self.warnings.push(warning);
+    }
+
     /// Checks the input, aligns connectors, corrects small overlaps and connector errors, and builds the world.
     ///
     /// # Errors
@@ -193,8 +220,10 @@ impl WorldBuilder {
             self.fixed_warning(),
             self.law_warning(),
             self.stop_warning(),
+            self.still_warning(),
         ];
-        let mut warnings: Vec<String> = warnings.into_iter().flatten().collect();
+        let mut warnings: Vec<String> =
+            self.warnings.into_iter().chain(warnings.into_iter().flatten()).collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.laws).map(into_part).unzip();
@@ -436,7 +465,8 @@ fn torques_on(bodies: &[BodyPart], wrenches: &[Wrench]) -> f64 {
     movable.map(|(_, wrench)| wrench.torque.abs()).sum()
 }
 
-fn center_of_mass(body: &BodySpec) -> DVec2 {
+/// Centre of mass of a body in shape coordinates [m].
+pub(crate) fn center_of_mass(body: &BodySpec) -> DVec2 {
     body.center_of_mass.unwrap_or_else(|| {
         let centroid = body.shape.mass_properties().centroid;
         // The centroid of a symmetric shape is the origin: what the integrals give instead is their rounding.

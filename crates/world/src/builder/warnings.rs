@@ -3,10 +3,10 @@
 use super::WorldBuilder;
 use crate::force::ForceLaw;
 use crate::rigid_settings::method;
-use crate::rounded::Rounded;
 use glam::DVec2;
 use halfgap_advance::rigid::Scales;
 use halfgap_collision::{BodyId, BodyState, Connector};
+use halfgap_geometry::Rounded;
 use std::sync::Arc;
 
 impl WorldBuilder {
@@ -36,6 +36,15 @@ impl WorldBuilder {
             Rounded(gap),
             Rounded(radius)
         ))
+    }
+
+    /// Warning if there is nothing that can move.
+    pub(super) fn still_warning(&self) -> Option<String> {
+        if self.bodies.is_empty() {
+            return Some("there are no bodies: nothing will happen".to_owned());
+        }
+        let all_fixed = self.bodies.iter().all(|body| body.inertia.is_none());
+        all_fixed.then(|| "all bodies are fixed: nothing can move".to_owned())
     }
 
     /// Warning if all bodies on which a force law acts are fixed.

@@ -68,6 +68,11 @@ impl ForceLaw for ConstantForce {
         wrenches.add_force(body, force, arm);
         wrenches.add_torque(body, torque);
     }
+
+    fn fixed_point(&self) -> Option<(BodyId, DVec2)> {
+        let Push { frame, point, force, .. } = self.push;
+        (frame == ForceFrame::World && force != DVec2::ZERO).then_some((self.body[0], point))
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::svg::{Svg, TextStyle, number};
 use super::ticks::Ticks;
 
 /// Width of a range of values, as a fraction of their size, below which it is drawn as a flat line.
-const FLAT: f64 = 1e-9;
+pub(super) const FLAT: f64 = 1e-9;
 /// Width of a range of times, as a fraction of their size, below which it is rounding.
 const ONE_TIME: f64 = 4.0 * f64::EPSILON;
 

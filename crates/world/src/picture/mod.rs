@@ -1,13 +1,14 @@
 //! Pictures of runs as SVG: the scene, energy over time, and the impacts on a time line.
 //!
 //! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `shown` chooses
-//! the part of the world to show and `view` maps it to the page; `scene` (with forces as `arrows` and connectors as
-//! `ties`), `energy` and `events` are one picture each, the latter two on common `axes` with round `ticks`.
+//! the part of the world to show and `view` maps it to the page; `scene` (with forces as `arrows`, connectors as
+//! `ties` and names as `labels`), `energy` and `events` are one picture each, the latter two on common `axes` with round `ticks`.
 
 mod arrows;
 mod axes;
 mod energy;
 mod events;
+mod labels;
 mod outline;
 mod scene;
 mod shown;

@@ -2,6 +2,7 @@
 
 use super::arrows::ForceScale;
 use super::color;
+use super::labels::draw_names;
 use super::outline::path_data;
 use super::shown::shown_box;
 use super::svg::{Svg, TextStyle, number};
@@ -12,7 +13,7 @@ use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
-use halfgap_geometry::Pose;
+use halfgap_geometry::{Pose, Shape};
 use std::collections::BTreeMap;
 
 /// Largest number of points of a trail; more are thinned out.
@@ -53,7 +54,10 @@ impl<'a> ScenePictures<'a> {
             ("stroke-linecap", "round"),
             ("fill-rule", "evenodd"),
         ]);
+        let movable = recording.movable.iter().zip(&frame.states);
+        let mut drawn: Vec<Drawn> = movable.map(|(&body, &state)| Drawn { body, state }).collect();
         for body in world.bodies().filter(|&body| world.is_fixed(body)) {
+            drawn.push(Drawn { body, state: world.state(body) });
             let data = path_data(world.shape(body), &pose(&world.state(body)), view);
             svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
         }
@@ -72,6 +76,7 @@ impl<'a> ScenePictures<'a> {
         }
         draw_ties(&mut svg, world, recording, frame, view);
         svg.close_group();
+        draw_names(&mut svg, world, &drawn, view);
         if let Some(forces) = forces {
             forces.draw(&mut svg, recording, frame, view);
         }
@@ -93,14 +98,49 @@ pub fn scene_picture(world: &World, recording: &Recording, frame: &Frame) -> Str
     ScenePictures::new(world, recording).at(frame)
 }
 
-fn pose(state: &BodyState) -> Pose {
+/// A body in the state in which it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drawn {
+    pub(super) body: BodyId,
+    pub(super) state: BodyState,
+}
+
+pub(super) fn pose(state: &BodyState) -> Pose {
     Pose::new(state.position, state.angle)
 }
 
 fn draw_title(svg: &mut Svg, recording: &Recording, frame: &Frame, view: &View) {
     svg.title(&recording.title, view.page_width());
     let subtitle = TextStyle { size: 13.0, anchor: "start", color: "#6b7278" };
-    svg.text((20.0, 47.0), subtitle, &format!("t = {} s", rounded(frame.time, time_digit(recording))));
+    let time = rounded(frame.time, time_digit(recording));
+    let texts = paths_told(recording, frame).map(|paths| format!("t = {time} s{paths}"));
+    let fits = |text: &&String| subtitle.width_of(text) < view.page_width() - 40.0;
+    let text = texts.iter().find(fits).unwrap_or(&texts[2]);
+    svg.text((20.0, 47.0), subtitle, text);
+}
+
+/// Says which part of the paths of the bodies, if they move, a picture of a frame shows, at length, shortly and not at
+/// all: they are drawn whole in each.
+fn paths_told(recording: &Recording, frame: &Frame) -> [&'static str; 3] {
+    let (Some(first), Some(last)) = (recording.frames.first(), recording.frames.last()) else {
+        return [""; 3];
+    };
+    let moves = |frame: &Frame| {
+        let mut states = frame.states.iter().zip(&first.states);
+        states.any(|(state, start)| state.position != start.position)
+    };
+    if !recording.frames.iter().any(moves) {
+        return [""; 3];
+    }
+    match frame.time {
+        time if time <= first.time => {
+            ["; thin lines: the paths of the centres of mass that are to come", "; paths to come", ""]
+        }
+        time if time >= last.time => {
+            ["; thin lines: the paths of the centres of mass up to here", "; paths up to here", ""]
+        }
+        _ => ["; thin lines: the paths of the centres of mass in the whole run", "; whole paths", ""],
+    }
 }
 
 /// Exponent of the last digit of the time in the title: milliseconds, or a thousandth of a shorter recording.
@@ -155,10 +195,16 @@ fn draw_movable(svg: &mut Svg, world: &World, body: BodyId, drawn: (usize, &Body
     let attributes =
         [("fill", color(place)), ("fill-opacity", "0.55"), ("stroke", color(place)), ("stroke-width", "1.5")];
     svg.path(&data, &attributes);
-    let hand = pose.point_to_world(DVec2::new(0.5 * world.shape(body).reach(), 0.0));
+    let hand = pose.point_to_world(DVec2::new(hand_length(world.shape(body)), 0.0));
     let center = view.to_page(state.position);
     svg.line(center, view.to_page(hand), &[("stroke", "#22272b"), ("stroke-width", "1")]);
     svg.circle(center, 2.0, &[("fill", "#22272b")]);
+}
+
+/// Length of the line that shows the angle of a body [m]: half of its extent from the middle, which is less than that from
+/// the centre of mass where that lies outside of the shape.
+pub(super) fn hand_length(shape: &Shape) -> f64 {
+    0.5 * shape.reach().min(0.5 * shape.bounds_at(&Pose::IDENTITY).size().max_element())
 }
 
 fn draw_scale_bar(svg: &mut Svg, view: &View) {

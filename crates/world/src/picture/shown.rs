@@ -1,15 +1,17 @@
 //! The part of the world that pictures of a recording show.
 //!
-//! It holds the moving bodies in all frames, the points from which connectors and springs hang, the tips of the arrows
+//! It holds the moving bodies in all frames and impacts with the lines that show their angles, the points from which connectors and springs hang, the tips of the arrows
 //! of forces, and of the fixed bodies and rails those nearby. A point that a connector or spring ties is left out if it
 //! is farther from the moving bodies than [`FARTHEST_TIE`] times the size of the box that they cover, in which they
 //! would be lost; its connector is then drawn up to the edge of the picture.
 
 use super::arrows::ForceScale;
+use super::scene::hand_length;
 use super::ties::{place_of, rail_boxes, tied_points};
 use super::view::View;
 use crate::recording::{Frame, Recording};
 use crate::world::World;
+use glam::DVec2;
 use halfgap_geometry::Aabb;
 
 /// Distance beyond the moving bodies and tied points within which fixed bodies are shown whole, as a fraction of the
@@ -47,8 +49,15 @@ fn frames(recording: &Recording) -> impl Iterator<Item = &Frame> {
 /// Returns the box of bodies, rails, and tied points.
 fn box_of_bodies(world: &World, recording: &Recording) -> Option<Aabb> {
     let posed = frames(recording).flat_map(|frame| recording.movable.iter().zip(&frame.states));
-    let moving =
-        posed.map(|(&body, state)| world.shape(body).bounds_at(&state.pose()).including(state.position));
+    let struck = recording.impacts.len().div_ceil(MOST_FRAMES).max(1);
+    let struck = recording.impacts.iter().step_by(struck).flat_map(|impact| &impact.states);
+    let struck =
+        struck.map(|(body, state)| (body, state)).filter(|(body, _)| recording.place(**body).is_some());
+    let moving = posed.chain(struck).map(|(&body, state)| {
+        let (shape, pose) = (world.shape(body), state.pose());
+        let hand = pose.point_to_world(DVec2::new(hand_length(shape), 0.0));
+        shape.bounds_at(&pose).including(state.position).including(hand)
+    });
     let moving = moving.reduce(Aabb::union);
     let fixed = world.bodies().filter(|&body| world.is_fixed(body));
     let fixed = fixed.map(|body| world.shape(body).bounds_at(&world.state(body).pose()));

@@ -21,6 +21,13 @@ pub(super) struct TextStyle {
     pub(super) color: &'static str,
 }
 
+impl TextStyle {
+    /// Width of a text of common characters [px].
+    pub(super) fn width_of(self, text: &str) -> f64 {
+        CHARACTER * self.size * text.chars().count() as f64
+    }
+}
+
 impl Svg {
     pub(super) fn new(width: f64, height: f64) -> Self {
         let (width, height) = (number(width), number(height));

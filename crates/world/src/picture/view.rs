@@ -56,6 +56,12 @@ impl View {
         HEAD + self.height + FOOT
     }
 
+    /// Returns the point of the world [m] at a position on the page [px].
+    pub(super) fn to_world(self, (x, y): (f64, f64)) -> DVec2 {
+        let offset = DVec2::new(x - 0.5 * self.width, HEAD + 0.5 * self.height - y);
+        self.center + offset / self.scale
+    }
+
     /// Returns the position on the page [px] of a point of the world [m].
     pub(super) fn to_page(self, point: DVec2) -> (f64, f64) {
         let offset = (point - self.center) * self.scale;

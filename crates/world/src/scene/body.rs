@@ -26,9 +26,10 @@ pub struct BodyData {
     pub moment: Option<f64>,
     /// Centre of mass in shape coordinates [m]; the shape's centroid if not given.
     pub center_of_mass: Option<Vector>,
-    /// World position of the centre of mass at the start [m].
-    #[serde(default)]
-    pub position: Vector,
+    /// World position of the centre of mass at the start [m]; the world's origin if neither this nor `origin` is given.
+    pub position: Option<Vector>,
+    /// Instead of the position: the world position of the origin of the shape coordinates at the start [m].
+    pub origin: Option<Vector>,
     /// Angle at the start [rad].
     #[serde(default)]
     pub angle: f64,

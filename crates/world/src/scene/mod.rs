@@ -1,7 +1,7 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
 //! `source` reads and parses a text (`tables` refuses arrays for tables), `validate` checks the values, `locate` finds the line of a field for
-//! messages, `varied` puts other numbers into one field, and `supported` refuses fields of the format that are
+//! messages, `nearest` finds what a mistyped name may stand for, `varied` puts other numbers into one field, and `supported` refuses fields of the format that are
 //! not simulated yet. SI units, radians, counter-clockwise positive, y up.
 
 mod body;
@@ -11,6 +11,7 @@ mod expected;
 mod field_path;
 mod force;
 mod locate;
+mod nearest;
 mod one_key;
 mod run_data;
 mod shape;

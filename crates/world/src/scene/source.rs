@@ -4,6 +4,7 @@ use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
 use super::locate::find_offset;
+use super::nearest::with_nearest;
 use super::tables::Tables;
 use std::fs::File;
 use std::io::{self, Read};
@@ -214,8 +215,7 @@ pub(super) fn field_path(path: &serde_path_to_error::Path) -> FieldPath {
 
 /// Replaces serde's names of types by those that authors of scenes know.
 pub(super) fn plain(message: &str) -> String {
-    message
-        .trim_end()
+    with_nearest(message.trim_end())
         .replace("expected f64", "expected a number")
         .replace("expected u64", "expected a whole number that is not negative")
         .replace("expected a sequence", "expected an array")

@@ -5,12 +5,16 @@
 use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
+use super::nearest::did_you_mean;
 use super::source::{SceneSource, field_path, plain};
 use super::tables::Tables;
 use serde_json::{Number, Value};
 
 /// Size below which whole numbers are exact as floating-point numbers, 2^53.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// Tables at the top of a scene that have numbers.
+const TABLES: [&str; 5] = ["run", "body", "connector", "force", "expected"];
 
 /// A scene in which one number takes other values.
 #[derive(Clone, Debug)]
@@ -81,7 +85,10 @@ fn resolved(data: &Value, field: &FieldPath) -> Result<FieldPath, SceneError> {
             (Some(Value::Object(table)), Step::Field(name)) => {
                 now = table.get(name);
                 if now.is_none() && !is_last {
-                    return Err(missing(format!("there is no `{name}` in the scene")));
+                    let tables = index == 0;
+                    let known = table.keys().map(String::as_str).chain(TABLES.into_iter().filter(|_| tables));
+                    let question = did_you_mean(name, known, '`');
+                    return Err(missing(format!("there is no `{name}` in the scene{question}")));
                 }
                 place = place.field(name);
             }
@@ -120,7 +127,10 @@ fn absent(elements: &[Value], step: &Step) -> String {
                     "there is no `{name}`: none of the {} has a name, use [0], [1], ...",
                     elements.len()
                 ),
-                false => format!("there is no `{name}`: there are {}", names.join(", ")),
+                false => {
+                    let question = did_you_mean(name, names.iter().copied(), '`');
+                    format!("there is no `{name}`{question}: there are {}", names.join(", "))
+                }
             }
         }
     }
@@ -175,7 +185,7 @@ mod tests {
         let scene = varied("body.ball.position[1]").expect("it is there");
         assert_eq!(scene.field().to_string(), "body[1].position[1]");
         let changed = scene.with(0.1).expect("a good place");
-        assert_eq!(changed.bodies[1].position.y, 0.1);
+        assert_eq!(changed.bodies[1].position.map(|place| place.y), Some(0.1));
         let unchanged = scene.with(0.5).expect("the same scene");
         assert_eq!(unchanged, SceneSource::new(TEXT, SceneFormat::Toml).parse().expect("a good scene"));
         let by_place = varied(r#"body[0].shape.disc.radius"#).and_then(|scene| scene.with(0.25));
@@ -196,7 +206,10 @@ mod tests {
             varied(field).and_then(|scene| scene.with(-1.0)).expect_err("a bad field").to_string()
         };
         for (field, why) in [
-            ("body.bal.mass", "line 6: body.bal.mass: there is no `bal`: there are left disc, ball"),
+            (
+                "body.bal.mass",
+                "line 6: body.bal.mass: there is no `bal` (did you mean `ball`?): there are left disc, ball",
+            ),
             (
                 "force.gravity.acceleration[1]",
                 "there is no `gravity`: none of the 1 has a name, use [0], [1], ...",

@@ -5,6 +5,8 @@ mod impacts;
 mod integrators;
 mod interventions;
 #[cfg(feature = "scene")]
+mod newcomer;
+#[cfg(feature = "scene")]
 mod pictures;
 #[cfg(feature = "scene")]
 mod recordings;

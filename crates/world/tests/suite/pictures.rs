@@ -127,7 +127,7 @@ fn title_time_and_scales_are_drawn_on_top_of_the_world() {
     let last_of_the_world = ["#d8dbd6", "#22272b\"/>"].map(|mark| picture.rfind(mark).expect("bodies"));
     let first_cover = picture.rfind("<rect y=\"0\"").expect("a cover below the title");
     assert!(last_of_the_world.into_iter().all(|place| place < first_cover), "{picture}");
-    for text in ["A long title", ">t = 1.000 s<", " m</text>"] {
+    for text in ["A long title", ">t = 1.000 s; paths up to here<", " m</text>"] {
         assert!(picture.find(text).is_some_and(|place| place > first_cover), "{text} in {picture}");
     }
 }
@@ -188,4 +188,134 @@ fn names_beside_the_time_line_can_be_told_apart() {
         none.is_some_and(|y| (HEAD + 9.0..HEAD + 12.0).contains(&y)),
         "below the frame, above the first lane: {none:?}"
     );
+}
+
+/// A scene to look at, run for two seconds.
+fn looked_at(name: &str) -> (World, Recording) {
+    let path = format!("{}/../../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut scene = Scene::read(path).unwrap_or_else(|error| panic!("{error}"));
+    scene.set_duration(2.0, "the test").expect("a duration");
+    let mut world = World::from_scene(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let report = run(&mut world, &RunPlan::of_scene(&scene, Record::Everything), &mut unwatched);
+    (world, report.recording)
+}
+
+#[test]
+fn no_line_of_a_body_with_its_centre_of_mass_outside_of_it_is_cut_off() {
+    let (world, recording) = looked_at("graham_escapement");
+    let pictures = ScenePictures::new(&world, &recording);
+    for frame in recording.frames.iter().step_by(40) {
+        let picture = pictures.at(frame);
+        let [width, height] = size_of(&picture);
+        // The lines that show the angles of the bodies.
+        let points = points_of(&picture, "#22272b\" stroke-width=\"1\"");
+        assert_eq!(points.len(), 4);
+        for [x, y] in points {
+            assert!((0.0..=width).contains(&x) && (HEAD..=height - FOOT).contains(&y), "({x}, {y})");
+        }
+    }
+}
+
+/// Boxes around the names in a picture: left, right, top and bottom [px].
+fn names_in(picture: &str) -> Vec<(String, [f64; 4])> {
+    let drawn = picture.split("<g paint-order=").nth(1).and_then(|rest| rest.split("</g>").next());
+    let lines = drawn.expect("a group of names").lines().filter(|line| line.starts_with("<text"));
+    let number =
+        |line: &str, name: &str| attribute(line, name).next().and_then(|value| value.parse::<f64>().ok());
+    lines
+        .map(|line| {
+            let name = line.split('>').nth(1).and_then(|rest| rest.split('<').next()).unwrap_or_default();
+            let (x, y) = number(line, "x").zip(number(line, "y")).expect("a place");
+            let half = 0.5 * 7.2 * name.chars().count() as f64;
+            (name.to_owned(), [x - half, x + half, y - 9.0, y + 3.0])
+        })
+        .collect()
+}
+
+#[test]
+fn bodies_carry_their_names_where_there_is_room() {
+    for (scene, count) in
+        [("heap_of_discs", 28), ("pendulum_and_blocks", 6), ("graham_escapement", 2), ("four_bar", 3)]
+    {
+        let (world, recording) = looked_at(scene);
+        let picture = ScenePictures::new(&world, &recording).at(recording.frames.last().expect("a frame"));
+        let [width, height] = size_of(&picture);
+        let names = names_in(&picture);
+        assert_eq!(names.len(), count, "{scene}: {names:?}");
+        for (index, (name, [left, right, top, bottom])) in names.iter().enumerate() {
+            assert!(
+                *left >= 0.0 && *right <= width && *top >= HEAD && *bottom <= height - FOOT,
+                "{scene}: {name}"
+            );
+            for (other, [other_left, other_right, other_top, other_bottom]) in &names[..index] {
+                let meets =
+                    left < other_right && right > other_left && top < other_bottom && bottom > other_top;
+                assert!(!meets, "{scene}: {name} meets {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_a_crowd_a_name_that_has_no_room_is_left_out() {
+    let ball = |x: f64, name: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ disc = {{ radius = 0.5 }} }}\nmass = 1.0\nposition = [{x:?}, 0.0]\n"
+        )
+    };
+    let row: String =
+        (0..40).map(|index| ball(f64::from(index), &format!("quite a long name, {index}"))).collect();
+    let names = names_in(&last_picture(&row));
+    assert!((1..40).contains(&names.len()), "{names:?}");
+}
+
+#[test]
+fn a_picture_says_which_part_of_the_paths_it_shows() {
+    let (world, recording) = recorded(BOB);
+    let pictures = ScenePictures::new(&world, &recording);
+    let told = |index: usize| texts(&pictures.at(&recording.frames[index])).join("\n");
+    let last = recording.frames.len() - 1;
+    assert!(told(0).contains("t = 0 s; paths to come"), "{}", told(0));
+    assert!(told(last / 2).contains("s; whole paths"), "{}", told(last / 2));
+    assert!(told(last).contains("s; paths up to here"), "{}", told(last));
+    let wide = format!(
+        "{BOB}{}",
+        BOB.split("[[force]]").next().unwrap_or_default().replace("bob", "other").replace("[0.0,", "[9.0,")
+    );
+    let (world, recording) = recorded(&wide.replacen("[[body]]", "[[body]]\nvelocity = [1.0, 0.0]", 1));
+    let start = ScenePictures::new(&world, &recording).at(&recording.frames[0]);
+    assert!(
+        texts(&start).join("\n").contains("; thin lines: the paths of the centres of mass that are to come"),
+        "{start}"
+    );
+    let still = BOB.split("[[force]]").next().unwrap_or_default();
+    assert!(!last_picture(still).contains("paths"), "nothing moves");
+}
+
+#[test]
+fn the_energy_plot_shows_what_changes_and_says_what_it_leaves_out() {
+    let (_, recording) = looked_at("graham_escapement");
+    let picture = energy_picture(&recording);
+    let named = |picture: &str| {
+        texts(picture).into_iter().find(|text| text.starts_with("energy [")).map(str::to_owned)
+    };
+    let label = named(&picture).expect("a name");
+    assert!(
+        label.starts_with("energy [J], without -15.5") && label.ends_with(" J of the potential energy"),
+        "{label}"
+    );
+    // Each curve covers a good part of the plot, which is 320 px high.
+    for color in ["#d9822b", "#3b6fb6"] {
+        let heights: Vec<f64> =
+            points_of(&picture, color).into_iter().map(|[_, y]| y).filter(|y| *y > HEAD).collect();
+        let [low, high] = [f64::min, f64::max].map(|of| heights.iter().copied().reduce(of).expect("points"));
+        assert!(high - low > 200.0, "{color}: {low} to {high}");
+    }
+    // A kinetic energy that hardly changes is left out too; what does not change at all is shown as it is.
+    let (_, recording) = looked_at("geneva_drive");
+    assert!(
+        named(&energy_picture(&recording)).is_some_and(|label| label.ends_with(" J of the kinetic energy"))
+    );
+    let (_, recording) = looked_at("sinai_billiard");
+    assert_eq!(named(&energy_picture(&recording)).as_deref(), Some("energy [J]"));
 }

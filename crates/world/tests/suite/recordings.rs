@@ -4,7 +4,7 @@ use halfgap::picture::{energy_picture, events_picture, scene_picture};
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{
     BodyId, BodyState, ConnectorId, ContactChange, ContactEvent, ContactForce, ContactRecord, Energy, Frame,
-    Impact, ImpactRow, Record, Recording, RunError, RunPlan, World, run, unwatched,
+    Impact, ImpactRow, Reached, Record, Recording, RunError, RunPlan, World, run, unwatched,
 };
 use std::ops::ControlFlow;
 
@@ -31,12 +31,12 @@ fn output_times_are_counted_from_the_start_and_include_the_end() {
     let scene = scene(1.0, "start_time = 5.0\noutput_step = 0.4", "[0, 0]");
     let plan = RunPlan::of_scene(&scene, Record::Everything);
     let mut parts = Vec::new();
-    let report = run(&mut world(&scene), &plan, &mut |part| {
-        parts.push(part);
+    let report = run(&mut world(&scene), &plan, &mut |reached| {
+        parts.push(*reached);
         ControlFlow::Continue(())
     });
     assert_eq!(times(&report.recording), [5.0, 5.4, 5.8, 6.0]);
-    assert_eq!(parts.last(), Some(&1.0));
+    assert_eq!(parts.last(), Some(&Reached { fraction: 1.0, time: 6.0, events: 0 }));
     let ends = RunPlan::of_scene(&scene, Record::Ends);
     assert_eq!(times(&run(&mut world(&scene), &ends, &mut unwatched).recording), [5.0, 6.0]);
 }
@@ -79,9 +79,9 @@ fn a_run_can_be_broken_off_at_its_start_at_an_event_and_at_an_output() {
         assert_eq!(recording.impacts.len(), usize::from(time >= bounce));
     }
     let mut last = 0.0;
-    let report = run(&mut world(&scene), &plan, &mut |part| {
-        last = part;
-        if part < 1.0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    let report = run(&mut world(&scene), &plan, &mut |reached| {
+        last = reached.fraction;
+        if last < 1.0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     assert_eq!((report.error, last), (None, 1.0), "a run that has arrived is complete");
 }
@@ -308,4 +308,29 @@ fn the_ledger_books_impacts() {
     assert!(ledger.impacts < 0.0 && ledger.impacts == booked, "{ledger:?}");
     assert!(ledger.integration_error().abs() < 1e-15, "{ledger:?}");
     assert_eq!(ledger.start, 0.0625);
+}
+
+#[test]
+fn a_run_without_events_can_be_broken_off_between_its_outputs() {
+    // A stiff spring takes thousands of steps to the first of fifty reports.
+    let text = "format = \"halfgap-scene-1\"\ntitle = \"stiff\"\nrun = { duration = 1.0 }\n\
+        [[body]]\nname = \"bob\"\nmass = 1.0\nposition = [1.5, 0.0]\nshape = { disc = { radius = 0.5 } }\n\
+        [[force]]\nspring = { a = { body = \"world\", point = [0, 0] }, b = { body = \"bob\", point = [0, 0] }, \
+        rest_length = 1.0, stiffness = 1e10 }\n";
+    let scene = Scene::parse(text, SceneFormat::Toml).expect("a good scene");
+    let plan = RunPlan::of_scene(&scene, Record::Ends);
+    let mut broken = World::from_scene(&scene).expect("a spring");
+    let report = run(&mut broken, &plan, &mut |reached| {
+        if reached.time > 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let Some(RunError::Interrupted { time }) = report.error else { panic!("{:?}", report.error) };
+    assert!(time > 0.0 && time < 0.01, "{time}");
+    assert_eq!(report.recording.frames.last().map(|frame| frame.time), Some(time));
+    // It goes on from there as if it had not stopped.
+    let mut whole = World::from_scene(&scene).expect("a spring");
+    for world in [&mut broken, &mut whole] {
+        world.advance_to(0.02, &mut |_| ()).expect("it swings");
+    }
+    let state = |world: &World| world.bodies().map(|body| world.state(body)).collect::<Vec<_>>();
+    assert_eq!(state(&broken), state(&whole));
 }

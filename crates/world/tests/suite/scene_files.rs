@@ -81,14 +81,14 @@ fn defaults_are_those_of_the_format() {
 
 #[test]
 fn unknown_missing_and_mistyped_fields_are_named_with_their_line() {
-    insta::assert_snapshot!(message("mass = 1.0", "mas = 1.0"), @"line 16: body[1].mas: unknown field `mas`, expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `passes_through`");
+    insta::assert_snapshot!(message("mass = 1.0", "mas = 1.0"), @"line 16: body[1].mas: unknown field `mas` (did you mean `mass`?), expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `origin`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `passes_through`");
     insta::assert_snapshot!(message("duration = 2.0\n", "\n"), @"line 4: run: missing field `duration`");
     insta::assert_snapshot!(message("shape = { disc = { radius = 0.5 } }\n", "\n"), @"line 12: body[1]: missing field `shape`");
     insta::assert_snapshot!(message("radius = 0.5", "radius = \"half\""), @r#"line 14: body[1].shape.disc.radius: invalid type: string "half", expected a number"#);
     insta::assert_snapshot!(message("position = [0, 2.0]", "position = [0, 2.0, 1.0]"), @"line 15: body[1].position: invalid length 3, expected an array [x, y] of two numbers");
     insta::assert_snapshot!(message("radius = 0.5", "diameter = 0.5"), @"line 14: body[1].shape.disc.diameter: unknown field `diameter`, expected `radius`");
     insta::assert_snapshot!(message("title = \"Ball over a floor\"", ""), @"line 1: missing field `title`");
-    insta::assert_snapshot!(message("scene-1", "scene-7"), @"line 1: format: unknown variant `halfgap-scene-7`, expected `halfgap-scene-1`");
+    insta::assert_snapshot!(message("scene-1", "scene-7"), @"line 1: format: unknown variant `halfgap-scene-7` (did you mean `halfgap-scene-1`?), expected `halfgap-scene-1`");
     insta::assert_snapshot!(message("fixed = true", "fixed = 1"), @"line 9: body[0].fixed: invalid type: integer `1`, expected a boolean");
     insta::assert_snapshot!(message("duration = 2.0", "duration = 2.0\nseed = -1"), @"line 6: run.seed: invalid value: integer `-1`, expected a whole number that is not negative");
     insta::assert_snapshot!(message("duration = 2.0", "duration = 2.0\nimpact_law = \"soft\""), @"line 6: run.impact_law: unknown variant `soft`, expected one of `simultaneous`, `hybrid`, `serial_separate`, `serial_grouped`, `serial_separate_lastpass`, `serial_grouped_lastpass`");
@@ -123,7 +123,7 @@ fn values_out_of_range_are_named_with_their_line() {
 fn names_must_be_known_and_unique() {
     insta::assert_snapshot!(message("name = \"ball\"", "name = \"floor\""), @r#"line 13: body[1].name: "floor" is already the name of body[0]"#);
     insta::assert_snapshot!(message("name = \"ball\"", "name = \"world\""), @r#"line 13: body[1].name: "world" is reserved for the immovable background"#);
-    insta::assert_snapshot!(message("[\"floor\"]", "[\"flor\"]"), @r#"line 18: body[1].passes_through[0]: there is no body named "flor""#);
+    insta::assert_snapshot!(message("[\"floor\"]", "[\"flor\"]"), @r#"line 18: body[1].passes_through[0]: there is no body named "flor" (did you mean "floor"?)"#);
     insta::assert_snapshot!(message("bodies.ball", "bodies.\"the bal\""), @r#"line 26: expected[0].bodies."the bal": there is no body named "the bal""#);
     insta::assert_snapshot!(message("[0.0, -9.81] }", "[0.0, -9.81], bodies = [\"world\"] }"), @r#"line 21: force[0].gravity.bodies[0]: must be a body, not the background "world""#);
 }
@@ -144,7 +144,7 @@ fn times_must_make_sense() {
 fn connectors_and_forces_are_checked() {
     let with = |text: &str| message("[[force]]", &format!("{text}\n[[force]]"));
     let pin = "[[connector]]\npin = { a = { body = \"world\", point = [0, 2] }, b = { body = \"bal\", point = [0, 0] } }";
-    insta::assert_snapshot!(with(pin), @r#"line 21: connector[0].pin.b.body: there is no body named "bal""#);
+    insta::assert_snapshot!(with(pin), @r#"line 21: connector[0].pin.b.body: there is no body named "bal" (did you mean "ball"?)"#);
     let rope = "[[connector]]\nrope = { a = { body = \"world\", point = [0, 2] }, b = { body = \"ball\", point = [0, 0] }, length = 0 }";
     insta::assert_snapshot!(with(rope), @"line 21: connector[0].rope.length: must be positive, got 0 m");
     let rail = "[[connector]]\nrail = { a = { body = \"ball\", point = [0, 0] }, path = { start = [0, 0], points = [[0, 0], [1, 1]] } }";
@@ -162,7 +162,7 @@ fn json_messages_have_lines_too() {
     };
     let disc = "\"shape\": {\"disc\": {\"radius\": 1}}";
     insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mass\": -1}}"))), @"line 5: body[0].mass: must be positive, got -1 kg");
-    insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mas\": -1}}"))), @"line 5: body[0].mas: unknown field `mas`, expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `passes_through`");
+    insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mas\": -1}}"))), @"line 5: body[0].mas: unknown field `mas` (did you mean `mass`?), expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `origin`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `passes_through`");
     insta::assert_snapshot!(bad(&scene(&format!("{{{disc},\n   \"mass\": 1}}"))), @"line 4: body[0]: missing field `name`");
     insta::assert_snapshot!(bad(&scene("{\"name\": \"a\",, }")), @"line 4: not valid JSON: key must be a string");
     insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mass\": NaN}}"))), @"line 5: not valid JSON: expected value");

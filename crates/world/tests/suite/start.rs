@@ -162,6 +162,7 @@ fn the_velocity_of_a_fixed_body_is_told_to_count_for_nothing() {
     let warnings = |spec: &BodySpec| {
         let mut builder = WorldBuilder::new(WorldSettings::default());
         builder.add(spec.clone());
+        builder.add(disc("free", 1.0, DVec2::new(3.0, 0.0)));
         build(builder).warnings().to_vec()
     };
     assert_eq!(warnings(&fixed), Vec::<String>::new());

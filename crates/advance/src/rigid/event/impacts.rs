@@ -72,14 +72,14 @@ impl RigidSystem {
         manner: Manner,
     ) -> Result<(), AdvanceError> {
         let outcome = self.find_impulses(region, impact, manner);
-        outcome.map_err(|source| impact_error(region, time, source))?;
+        outcome.map_err(|source| self.impact_error(region, time, source))?;
         if self.leave_out_jammed(region, impact) {
             let outcome = self.find_impulses_of_pressed(region, impact, manner);
-            outcome.map_err(|source| impact_error(region, time, source))?;
+            outcome.map_err(|source| self.impact_error(region, time, source))?;
         }
         while self.hold_back(region, impact.rates()) {
             let outcome = self.find_impulses(region, impact, manner);
-            outcome.map_err(|source| impact_error(region, time, source))?;
+            outcome.map_err(|source| self.impact_error(region, time, source))?;
         }
         self.conclude_impact(region, impact, report, time);
         Ok(())
@@ -209,12 +209,16 @@ impl RigidSystem {
     pub(crate) fn moving_at(&self, body: BodyId, time: Time) -> Moving {
         if body.is_world() { Moving::BACKGROUND } else { self.flyer(body).moving_at(time) }
     }
-}
 
-fn impact_error(region: &Region, time: Time, source: ImpactError) -> AdvanceError {
-    let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();
-    bodies.sort_unstable();
-    bodies.dedup();
-    let record = source.row().and_then(|row| region.records.get(row));
-    AdvanceError::Impact { time: time.seconds(), bodies, between: record.map(Between::of), source }
+    fn impact_error(&self, region: &Region, time: Time, source: ImpactError) -> AdvanceError {
+        let touching = region.records.iter().map(Collision::bodies);
+        if let Err(squeezed) = self.refuse_squeezed(touching, time) {
+            return squeezed;
+        }
+        let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let record = source.row().and_then(|row| region.records.get(row));
+        AdvanceError::Impact { time: time.seconds(), bodies, between: record.map(Between::of), source }
+    }
 }

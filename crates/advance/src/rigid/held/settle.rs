@@ -111,7 +111,7 @@ impl RigidSystem {
             self.spare_redundant(region, settling, stage);
         }
         self.choose_rows(region, settling, time);
-        Ok(())
+        self.refuse_squeezed(settling.held.iter().map(|(_, row)| row.bodies), time)
     }
 
     /// Finds the forces of the candidates; leaves some of them out if they jam or no solution is found.
@@ -388,6 +388,10 @@ impl RigidSystem {
         time: Time,
         source: SolveError,
     ) -> AdvanceError {
+        let touching = region.records.iter().map(Collision::bodies);
+        if let Err(squeezed) = self.refuse_squeezed(touching, time) {
+            return squeezed;
+        }
         let mut bodies: Vec<BodyId> =
             settling.candidates.iter().flat_map(|&index| region.records[index].bodies()).collect();
         bodies.sort_unstable();

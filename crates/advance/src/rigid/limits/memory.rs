@@ -20,7 +20,8 @@ pub(crate) struct Memory {
     pub(crate) last_insistent: Option<Time>,
     /// Time at which a group was last ended as soon as it was made, because one of its contacts pulled.
     pub(crate) last_pull: Option<Time>,
-    /// [`AdvanceError::Crawls`], to be returned once the present event is over; the system stays valid.
+    /// [`AdvanceError::Crawls`] or [`AdvanceError::TooFast`], to be returned once the present event is over; the system
+    /// stays valid.
     pub(crate) crawls: Option<AdvanceError>,
 }
 

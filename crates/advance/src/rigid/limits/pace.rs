@@ -12,10 +12,12 @@
 
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::region::Region;
+use crate::rigid::step::dynamics::body_state;
 use crate::rigid::step::group::Group;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, BodyState};
+use std::f64::consts::TAU;
 
 /// Number of steps in succession over which one mean length is taken.
 const STEPS: u32 = 10_000;
@@ -61,8 +63,8 @@ impl<const STEPS: u32> Count<STEPS> {
 }
 
 impl RigidSystem {
-    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] is never returned. That error
-    /// leaves the system valid: with a lesser duration set, it can be advanced further.
+    /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] and [`AdvanceError::TooFast`] are
+    /// never returned. These errors leave the system valid: with a lesser duration set, it can be advanced further.
     pub fn set_duration(&mut self, duration: f64) {
         self.limits.duration = duration;
     }
@@ -75,17 +77,37 @@ impl RigidSystem {
             pace.is_hasty = mean < HASTE * self.settings.resolution_time;
         }
         let mean = pace.all.note(group.start);
-        if let Some(mean) = mean {
-            pace.hopeless = if mean * HOPELESS < self.limits.duration { pace.hopeless + 1 } else { 0 };
+        self.limits.crawls = None;
+        let Some(step) = mean else { return };
+        let crawls = step * HOPELESS < self.limits.duration;
+        let turning = || self.turns_without_end(group, step);
+        let fast = if crawls { None } else { turning() };
+        let pace = &mut self.limits.paces[group.leader().index()];
+        pace.hopeless = if crawls || fast.is_some() { pace.hopeless + 1 } else { 0 };
+        if pace.hopeless < PACES {
+            return;
         }
-        let is_told = pace.hopeless >= PACES;
-        self.limits.crawls = mean.filter(|_| is_told).map(|step| AdvanceError::Crawls {
+        self.limits.crawls = Some(fast.unwrap_or_else(|| AdvanceError::Crawls {
             time: group.start.seconds(),
             step,
             duration: self.limits.duration,
             bodies: group.bodies.clone(),
             laws: self.names_of_laws(group),
-        });
+        }));
+    }
+
+    /// Error of a body of a group that turns too often in the time to be simulated, and is stepped turn by turn.
+    fn turns_without_end(&self, group: &Group, step: f64) -> Option<AdvanceError> {
+        let elapsed = group.start.since(self.start);
+        group.bodies.iter().enumerate().find_map(|(place, &body)| {
+            let BodyState { angle, angular_velocity, .. } =
+                body_state(&group.state, group.bodies.len(), place);
+            // One that swings to and fro does not get anywhere; one that turns more than once in a step is not followed.
+            let mean = self.flyer(body).with_turns(angle).abs() / elapsed;
+            let is_followed = angular_velocity.abs() * step < TAU;
+            let spin = mean.min(angular_velocity.abs()).copysign(angular_velocity);
+            if is_followed { self.too_fast(body, spin, group.start) } else { None }
+        })
     }
 
     /// Names of the laws that act on a group.

@@ -124,6 +124,12 @@ pub trait ForceLaw: Debug + Send + Sync {
         None
     }
 
+    /// A body on which the law pushes at a point of the world [m] that stays where it is while the body moves; `None` for
+    /// other laws. A run tells when the body has left the point.
+    fn fixed_point(&self) -> Option<(BodyId, DVec2)> {
+        None
+    }
+
     /// Length [m] over which the forces vary by their own size, |F| / |dF/dposition|; `None` if it is never less than
     /// the size of the bodies. In one step bodies in contact move by no more than half of it, and so does a free body by no
     /// more than all of it, if the law names no other body.

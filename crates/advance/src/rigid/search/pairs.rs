@@ -52,6 +52,8 @@ pub(crate) struct PairPast {
     pub(crate) repeats: u32,
     /// Time of the last contact.
     pub(crate) last_contact: Option<Time>,
+    /// Number of times in succession that the search for the next contact went on.
+    pub(crate) searches: u32,
 }
 
 impl PairPast {
@@ -59,7 +61,7 @@ impl PairPast {
     fn clear(&mut self) {
         self.rules.clear();
         self.seen.clear();
-        (self.repeats, self.last_contact) = (0, None);
+        (self.repeats, self.last_contact, self.searches) = (0, None, 0);
     }
 }
 

@@ -109,6 +109,12 @@ impl RigidSystem {
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
 
+    /// Goes on with the search for a pair's next contact.
+    pub(crate) fn search_on(&mut self, pair: PairId) {
+        self.predict(pair);
+        self.note_search(pair);
+    }
+
     /// Searches from a time on for the next contact of a pair; `disc` is the flight of the body that the link starts
     /// from, if that is a disc.
     #[inline]

@@ -34,7 +34,11 @@ pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Resul
         validate_inertia(body, at)?;
     }
     optional(body.center_of_mass, |point| at.field("center_of_mass").finite_point(point))?;
-    at.field("position").finite_point(body.position)?;
+    optional(body.position, |point| at.field("position").finite_point(point))?;
+    optional(body.origin, |point| at.field("origin").finite_point(point))?;
+    if body.position.is_some() && body.origin.is_some() {
+        return Err(at.field("origin").error("give position or origin, not both"));
+    }
     at.field("angle").finite(body.angle)?;
     at.field("velocity").finite_point(body.velocity)?;
     at.field("angular_velocity").finite(body.angular_velocity)?;

@@ -10,6 +10,7 @@ mod shape;
 
 use super::body::WORLD;
 use super::error::SceneError;
+use super::nearest::did_you_mean;
 use super::{PointData, RunData, Scene};
 use check::{At, optional};
 use std::collections::BTreeSet;
@@ -59,11 +60,17 @@ impl Names<'_> {
         if name == WORLD {
             return Err(at.error(format!("must be a body, not the background {WORLD:?}")));
         }
-        if self.0.contains(name) { Ok(()) } else { Err(at.error(format!("there is no body named {name:?}"))) }
+        if self.0.contains(name) { Ok(()) } else { Err(self.unknown(name, &[], at)) }
     }
 
     fn require_or_world(&self, name: &str, at: &At<'_>) -> Result<(), SceneError> {
-        if name == WORLD { Ok(()) } else { self.require(name, at) }
+        if name == WORLD || self.0.contains(name) { Ok(()) } else { Err(self.unknown(name, &[WORLD], at)) }
+    }
+
+    /// Returns the error of a name that neither a body has nor is among `others`.
+    fn unknown(&self, name: &str, others: &[&str], at: &At<'_>) -> SceneError {
+        let known = self.0.iter().copied().chain(others.iter().copied());
+        at.error(format!("there is no body named {name:?}{}", did_you_mean(name, known, '"')))
     }
 
     /// Returns an error if two points that are tied are on one body.
