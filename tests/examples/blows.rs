@@ -39,7 +39,12 @@ fn count(drops: u64, first: u64) {
             }
         }
     }
-    println!("{drops} drops at {} tolerances: {} wrong, {:.1?}", TOLERANCES.len(), wrong.len(), started.elapsed());
+    println!(
+        "{drops} drops at {} tolerances: {} wrong, {:.1?}",
+        TOLERANCES.len(),
+        wrong.len(),
+        started.elapsed()
+    );
     wrong.iter().take(LISTED).for_each(|line| println!("{line}"));
     wrong.clear();
     let (fits, started) = (drops / DROPS_PER_FIT, Instant::now());
@@ -52,6 +57,10 @@ fn count(drops: u64, first: u64) {
             }
         }
     }
-    println!("{fits} fits by six laws and four elasticities: {} wrong, {:.1?}", wrong.len(), started.elapsed());
+    println!(
+        "{fits} fits by six laws and four elasticities: {} wrong, {:.1?}",
+        wrong.len(),
+        started.elapsed()
+    );
     wrong.iter().take(LISTED).for_each(|line| println!("{line}"));
 }

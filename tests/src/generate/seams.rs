@@ -73,10 +73,8 @@ pub fn drop_of_seed(seed: u64) -> Drop {
     // Above the seam by a height along the normal of the ramp, or straight above it.
     let reach = if is_ball { size } else { 1.5 * size };
     let up = if random.chance(0.5) { [-sin, cos] } else { [0.0, 1.0] };
-    let position = [
-        seam[0] + off * cos + (reach + height) * up[0],
-        seam[1] + off * sin + (reach + height) * up[1],
-    ];
+    let position =
+        [seam[0] + off * cos + (reach + height) * up[0], seam[1] + off * sin + (reach + height) * up[1]];
     let speed = decimal(random.between(0.5, 6.0), 2, false);
     let velocity = [-speed * up[0] + aslant * cos, -speed * up[1] + aslant * sin];
     let mut body = json!({

@@ -35,6 +35,8 @@ pub(super) struct Locked {
     parts: Vec<Part>,
     /// The rows at rest, with all connectors.
     at_rest: Vec<usize>,
+    /// Rows that may have lost what opposes them.
+    doubtful: Vec<usize>,
     /// Rates [m/s] and impulses [N s] of the impact, kept while it serves for the search.
     rates: Vec<f64>,
     impulses: Vec<f64>,
@@ -64,7 +66,7 @@ impl Impact {
         let mut locked = std::mem::take(&mut self.scratch.locked);
         locked.rows.clear();
         self.list_at_rest(&mut locked, rest);
-        while self.drop_unopposed(&mut locked.parts) {
+        while self.drop_unopposed(&mut locked) {
             if self.comes_to_rest_pressed(&mut locked) {
                 locked.rows.extend(locked.parts.iter().map(|&part| part == Part::Pressed));
                 if between_walls {
@@ -80,7 +82,9 @@ impl Impact {
     fn keep_those_at_walls(&self, locked: &mut Locked) {
         let Locked { rows, at_rest: reached, .. } = locked;
         reached.clear();
-        reached.extend((0..rows.len()).filter(|&row| rows[row] && self.rows[row].movable_bodies().contains(&None)));
+        reached.extend(
+            (0..rows.len()).filter(|&row| rows[row] && self.rows[row].movable_bodies().contains(&None)),
+        );
         let locked_rows = std::mem::take(&mut locked.parts);
         rows.fill(false);
         reached.iter().for_each(|&row| rows[row] = true);
@@ -131,31 +135,36 @@ impl Impact {
 
     /// Drops the pressed rows that no other one and no connector opposes on one of the bodies that they move, until all
     /// are opposed: forces that balance need an opposed one on each body. False if no pressed row is left.
-    fn drop_unopposed(&self, parts: &mut [Part]) -> bool {
-        loop {
-            let mut is_any_dropped = false;
-            for row in 0..parts.len() {
-                let is_opposed = |body: &Option<BodyId>| body.is_none_or(|body| self.is_opposed(row, body, parts));
-                if parts[row] == Part::Pressed && !self.rows[row].movable_bodies().iter().all(is_opposed) {
-                    parts[row] = Part::None;
-                    is_any_dropped = true;
-                }
-            }
-            if !is_any_dropped {
-                return parts.contains(&Part::Pressed);
+    fn drop_unopposed(&self, locked: &mut Locked) -> bool {
+        let Locked { parts, doubtful, .. } = locked;
+        doubtful.clear();
+        doubtful.extend((0..parts.len()).filter(|&row| parts[row] == Part::Pressed));
+        let mut left = doubtful.len();
+        while let Some(row) = doubtful.pop() {
+            let is_opposed =
+                |body: &Option<BodyId>| body.is_none_or(|body| self.is_opposed(row, body, parts));
+            if parts[row] == Part::Pressed && !self.rows[row].movable_bodies().iter().all(is_opposed) {
+                parts[row] = Part::None;
+                left -= 1;
+                let others = self.couplings.row(row).map(|(other, _)| other);
+                doubtful.extend(others.filter(|&other| parts[other] == Part::Pressed));
             }
         }
+        left > 0
     }
 
+    /// Whether pressed rows and connectors may balance a pressed row on a body: no direction in which all of them push, the
+    /// row itself or the mean of all, is left.
     fn is_opposed(&self, row: usize, body: BodyId, parts: &[Part]) -> bool {
-        self.couplings.rows_of_body(body).any(|other| {
-            let product = product_on(&self.rows[row], &self.rows[other], body);
-            match parts[other] {
-                Part::None => false,
-                Part::Pressed => product < 0.0,
-                Part::Connector => product != 0.0,
-            }
-        })
+        let on_body = || self.couplings.rows_of_body(body).filter(|&other| parts[other] != Part::None);
+        if on_body().any(|other| parts[other] == Part::Connector) {
+            return true;
+        }
+        let product = |p: usize, q: usize| product_on(&self.rows[p], &self.rows[q], body) / self.length(q);
+        let along_mean = |p: usize| on_body().map(|q| product(p, q)).sum::<f64>();
+        on_body().any(|other| product(row, other) < 0.0)
+            && (along_mean(row) <= DEPENDENT * self.length(row)
+                || on_body().any(|other| along_mean(other) < 0.0))
     }
 
     /// Presses the pressed rows and finds the impulses of all rows at rest. True if the pressed rows are at rest then;

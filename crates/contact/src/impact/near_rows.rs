@@ -144,7 +144,11 @@ impl NearRows {
         self.matrix.clear();
         for i in 0..n {
             for j in 0..n {
-                let known = if j < i { self.matrix[j * n + i] } else { product(&self.directions[i], &self.directions[j]) };
+                let known = if j < i {
+                    self.matrix[j * n + i]
+                } else {
+                    product(&self.directions[i], &self.directions[j])
+                };
                 self.matrix.push(known);
             }
         }
@@ -200,7 +204,8 @@ impl NearRows {
 
     /// The open contact that is violated most, by more than `noise`.
     fn most_violated(&self, noise: f64) -> Option<usize> {
-        let is_free = |row: &usize| !self.bilateral[*row] && !self.is_same[*row] && !self.closed.contains(row);
+        let is_free =
+            |row: &usize| !self.bilateral[*row] && !self.is_same[*row] && !self.closed.contains(row);
         let violated = (0..self.count).filter(|row| is_free(row) && self.violation(*row) > noise);
         violated.max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)))
     }
@@ -210,7 +215,8 @@ impl NearRows {
         let complement = self.consider(row);
         let rate = self.rate[row];
         let pushes = rate < Twofold::default();
-        let is_independent = complement.nearest() > self.dependence(row) * self.length[row] * self.length[row];
+        let is_independent =
+            complement.nearest() > self.dependence(row) * self.length[row] * self.length[row];
         let full = is_independent.then(|| rate.abs() / complement);
         // The force that is used up first by what the entering row takes over.
         let mut blocking: Option<(usize, Twofold)> = None;
@@ -353,7 +359,11 @@ impl Impact {
                 continue;
             }
             let own = (self.rows[other].bodies.map(|body| body.0), direction(&self.rows[other]));
-            let changes = near.directions.iter().zip(&near.force).map(|(direction, &force)| product(&own, direction) * force);
+            let changes = near
+                .directions
+                .iter()
+                .zip(&near.force)
+                .map(|(direction, &force)| product(&own, direction) * force);
             let change = changes.fold(Twofold::default(), |sum, term| sum + term).nearest();
             self.largest_change = self.largest_change.max(change.abs());
             self.rates[other] += change;
