@@ -5,7 +5,6 @@
 //! (Portugal, Júdice and Vicente 1994; see `start`). A row that nearly depends on those before it gets no force, as
 //! long as these hold it too. Problems that do not end so are left to `many_rows`.
 
-use super::pair_problem::DEPENDENT;
 use crate::settings::Settings;
 
 /// Largest number of rows that are solved directly.
@@ -31,8 +30,8 @@ pub(super) struct FewRows {
     pub(super) matrix: [[f64; FEW]; FEW],
     pub(super) offset: [f64; FEW],
     pub(super) bilateral: [bool; FEW],
-    /// Whether a row was found that nearly depends on others, but not to the last digits.
-    pub(super) is_near: bool,
+    /// Whether a row was found that depends on others, or nearly so.
+    pub(super) depends: bool,
 }
 
 /// Impulses of a few rows.
@@ -131,7 +130,7 @@ impl FewRows {
                 (rows[count], pivot[count], value[count]) = (candidate, square, right);
                 count += 1;
             } else {
-                self.is_near |= square > DEPENDENT;
+                self.depends = true;
             }
         }
         let (mut force, mut held) = ([0.0; FEW], [false; FEW]);

@@ -207,3 +207,85 @@ fn product_on(row: &CollisionRow, other: &CollisionRow, body: BodyId) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::{ImpactLaw, ImpactOrder};
+    use super::*;
+    use crate::problem::InverseInertia;
+
+    const FIXED: InverseInertia = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    /// A block 1 m wide and 0.5 m high of 1 kg.
+    const BLOCK: InverseInertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 9.6 };
+
+    /// Row at rest of the block's corner at (x, y) [m] against a wall with the normal [nx, ny].
+    fn corner([x, y]: [f64; 2], [nx, ny]: [f64; 2]) -> CollisionRow {
+        let jacobian = [nx, ny, x * ny - y * nx, -nx, -ny, 0.0];
+        let row = CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [BLOCK, FIXED], 0.0);
+        CollisionRow { elasticity: 1.0, velocity_tol: 1e-6, ..row }
+    }
+
+    fn left_and_right() -> [CollisionRow; 4] {
+        [(-0.5, -0.25), (-0.5, 0.25), (0.5, -0.25), (0.5, 0.25)]
+            .map(|(x, y): (f64, f64)| corner([x, y], [-x.signum(), 0.0]))
+    }
+
+    fn below() -> [CollisionRow; 2] {
+        [-0.5, 0.5].map(|x| corner([x, -0.25], [0.0, 1.0]))
+    }
+
+    fn locked(rows: &[CollisionRow], between_walls: bool) -> Vec<bool> {
+        let mut impact = Impact::new();
+        impact.set_rows(rows.iter().copied());
+        impact.find_locked(1e-9, between_walls);
+        assert!(impact.rates().iter().chain(impact.impulses()).all(|&x| x == 0.0), "the impact stays as it was");
+        (0..rows.len()).map(|row| impact.is_locked(row)).collect()
+    }
+
+    #[test]
+    fn walls_on_both_sides_lock_a_block_and_a_floor_does_not() {
+        let slot = [&left_and_right()[..], &below()].concat();
+        assert_eq!(locked(&slot, true), [true, true, true, true, false, false]);
+        let corner = [&left_and_right()[..2], &below()].concat();
+        assert_eq!(locked(&corner, true), [false; 4]);
+    }
+
+    #[test]
+    fn bodies_that_all_can_move_lock_each_other_but_not_at_walls() {
+        // Two discs fill a frame from side to side.
+        let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        let row = |a: u32, b: u32| CollisionRow::new([BodyId(a), BodyId(b)], [1.0, 0.0, 0.0, -1.0, 0.0, 0.0], [disc; 2], 0.0);
+        let rows = [row(1, 0), row(2, 1), row(0, 2)];
+        assert_eq!(locked(&rows, false), [true; 3]);
+        assert_eq!(locked(&rows, true), [false; 3]);
+    }
+
+    #[test]
+    fn a_block_in_its_bore_is_struck_as_if_it_were_guided_by_every_law() {
+        // A disc of 1 kg hits it at 1 m/s, 0.3 m off its middle.
+        let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+        for elasticity in [0.0, 0.3, 0.7, 1.0] {
+            let jacobian = [0.0, 1.0, 0.0, 0.0, -1.0, -0.3];
+            let blow = CollisionRow::new([BodyId(1), BodyId(0)], jacobian, [disc, BLOCK], -1.0);
+            let blow = CollisionRow { elasticity, velocity_tol: 1e-6, ..blow };
+            let rows = [&left_and_right()[..], &[blow]].concat();
+            for law in [
+                ImpactLaw::Simultaneous,
+                ImpactLaw::Hybrid,
+                ImpactLaw::SerialSeparate,
+                ImpactLaw::SerialGrouped,
+                ImpactLaw::SerialSeparateLastpass,
+                ImpactLaw::SerialGroupedLastpass,
+            ] {
+                let mut impact = Impact::new();
+                impact.set_rows(rows.iter().copied());
+                law.resolve(&mut impact, ImpactOrder::Fastest, 0).expect("an answer");
+                let impulse = 0.5 * (1.0 + elasticity);
+                assert!((impact.impulses()[4] - impulse).abs() < 1e-12, "{law:?}: {:?}", impact.impulses());
+                // The walls turn back what the blow would turn, by one corner on each side.
+                let walls: f64 = impact.impulses()[..4].iter().sum();
+                assert!((walls - 2.0 * 0.3 * impulse / 0.5).abs() < 1e-12, "{law:?}: {:?}", impact.impulses());
+            }
+        }
+    }
+}

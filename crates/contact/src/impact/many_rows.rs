@@ -172,7 +172,7 @@ impl Impact {
         outcome
     }
 
-    /// Solves a few rows directly, or with more digits if they nearly depend on each other, and applies the impulses;
+    /// Solves a few rows directly, or with more digits if some depend on others or nearly do, and applies the impulses;
     /// false if neither method ends.
     fn solve_few(&mut self, set: &[usize]) -> bool {
         let mut few = FewRows { count: set.len(), ..FewRows::default() };
@@ -189,7 +189,7 @@ impl Impact {
                 }
             }
         }
-        let Some(found) = few.solve() else { return few.is_near && self.solve_near(set) };
+        let Some(found) = few.solve() else { return few.depends && self.solve_near(set) };
         self.solves += 1;
         for (&row, &impulse) in set.iter().zip(&found.impulses) {
             self.noise = self.noise.max(found.left * self.length(row));
@@ -509,7 +509,7 @@ mod tests {
             if direct.solve_few(&set) {
                 pivoted.solve_with(&mut ManyRows::default(), &set)?;
                 for (p, q) in direct.rates.iter().zip(&pivoted.rates) {
-                    prop_assert!((p - q).abs() < 1e-9, "{p}, {q}");
+                    prop_assert!((p - q).abs() < 1e-9 * (1.0 + p.abs()), "{p}, {q}");
                 }
             }
         }

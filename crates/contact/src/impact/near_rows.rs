@@ -10,6 +10,7 @@
 
 use super::Impact;
 use super::pair_problem::DEPENDENT;
+use crate::problem::pushing;
 use crate::row::CollisionRow;
 use crate::twofold::{Number, Twofold};
 
@@ -218,11 +219,14 @@ impl NearRows {
         let is_independent =
             complement.nearest() > self.dependence(row) * self.length[row] * self.length[row];
         let full = is_independent.then(|| rate.abs() / complement);
+        // A share that is no larger than what dependent rows are told apart by does not give way to one: a force of that
+        // many times its own would have to move it.
+        let least_share = if is_independent { 0.0 } else { self.dependence(row).sqrt() * self.length[row] };
         // The force that is used up first by what the entering row takes over.
         let mut blocking: Option<(usize, Twofold)> = None;
         for (place, &closed) in self.closed.iter().enumerate() {
             let share = if pushes { self.shares[place] } else { -self.shares[place] };
-            if self.bilateral[closed] || share.nearest() <= 0.0 {
+            if self.bilateral[closed] || share.nearest() * self.length[closed] <= least_share {
                 continue;
             }
             let least = self.force[closed] / share;
@@ -352,7 +356,8 @@ impl Impact {
     /// summed up before they are rounded.
     fn apply_together(&mut self, set: &[usize], near: &NearRows) {
         for (place, &row) in set.iter().enumerate() {
-            self.impulses[row] += near.force[place].nearest();
+            let impulse = near.force[place].nearest();
+            self.impulses[row] += if self.rows[row].bilateral { impulse } else { pushing(impulse) };
         }
         for other in 0..self.rows.len() {
             if self.couplings.row(other).all(|(row, _)| set.binary_search(&row).is_err()) {
@@ -369,5 +374,114 @@ impl Impact {
             self.rates[other] += change;
         }
         self.noise = self.noise.max(super::NOISE * self.largest_change);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::{ImpactLaw, ImpactOrder};
+    use super::*;
+    use crate::problem::InverseInertia;
+    use halfgap_collision::BodyId;
+    use proptest::prelude::*;
+
+    const FIXED: InverseInertia = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+    const DISC: InverseInertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+
+    /// Row of a disc at a velocity [m/s] against something fixed, whose normal leans by an angle [rad] from the vertical.
+    fn leaning(angle: f64, [x, y]: [f64; 2], elasticity: f64) -> CollisionRow {
+        let (sin, cos) = angle.sin_cos();
+        CollisionRow {
+            elasticity,
+            velocity_tol: 1e-6,
+            ..CollisionRow::new(
+                [BodyId(0), BodyId::WORLD],
+                [sin, cos, 0.0, -sin, -cos, 0.0],
+                [DISC, FIXED],
+                sin * x + cos * y,
+            )
+        }
+    }
+
+    /// Velocity [m/s] of the disc after the impact.
+    fn after(rows: &[CollisionRow], [x, y]: [f64; 2], law: ImpactLaw) -> [f64; 2] {
+        let mut impact = Impact::new();
+        impact.set_rows(rows.iter().copied());
+        law.resolve(&mut impact, ImpactOrder::Fastest, 0).expect("an answer");
+        let sum = |k: usize| rows.iter().zip(impact.impulses()).map(|(row, j)| row.response[k] * j).sum::<f64>();
+        [x + sum(0), y + sum(1)]
+    }
+
+    #[test]
+    fn normals_however_close_throw_a_disc_back_as_one_does() {
+        for exponent in -40..=-8 {
+            let angle = 10f64.powf(0.25 * f64::from(exponent));
+            for (law, elasticity) in
+                [(ImpactLaw::Simultaneous, 1.0), (ImpactLaw::Hybrid, 1.0), (ImpactLaw::Hybrid, 0.5)]
+            {
+                let (before, rows) = ([0.0, -5.0], [0.0, angle].map(|angle| leaning(angle, [0.0, -5.0], elasticity)));
+                let [x, y] = after(&rows, before, law);
+                assert!((y - 5.0 * elasticity).abs() < 1e-12 && x.abs() < 1e-8, "{angle:e}: {x:e}, {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bob_on_two_rods_is_fixed_until_they_count_as_one() {
+        // The rods' anchors lie an angle apart, seen from the bob; a ball hits the bob across both.
+        for (angle, is_fixed) in [(1e-2, true), (2e-6, true), (2e-7, true), (2e-8, false), (1e-12, false)] {
+            let ball = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
+            let rod = |lean: f64| CollisionRow { bilateral: true, elasticity: 0.0, ..leaning(lean, [0.0; 2], 0.0) };
+            let hit = CollisionRow {
+                elasticity: 1.0,
+                velocity_tol: 1e-6,
+                ..CollisionRow::new([BodyId(1), BodyId(0)], [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [ball, DISC], -2.0)
+            };
+            let rows = [rod(-0.5 * angle), rod(0.5 * angle), hit];
+            for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid, ImpactLaw::SerialGrouped] {
+                let mut impact = Impact::new();
+                impact.set_rows(rows);
+                law.resolve(&mut impact, ImpactOrder::Fastest, 0).expect("an answer");
+                let impulse = if is_fixed { 4.0 } else { 2.0 };
+                let off = impact.impulses()[2] - impulse;
+                assert!(off.abs() < 1e-7, "{law:?}, {angle:e}: off by {off:e} N s");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_without_an_answer_are_left_to_others() {
+        // Two fixed jaws that close on a disc at 1 m/s each.
+        let jaw = |angle: f64| CollisionRow { rate: -1.0, ..leaning(angle, [0.0; 2], 0.0) };
+        let mut near = NearRows::default();
+        for row in [jaw(0.0), jaw(std::f64::consts::PI)] {
+            near.push(&row, -1.0);
+        }
+        assert!(!near.solve());
+    }
+
+    proptest! {
+        #[test]
+        fn the_answer_is_complementary(
+            angles in prop::collection::vec((-8.0..0.0f64, any::<bool>()), 2..8),
+            offsets in prop::array::uniform8(-1.0..0.2f64),
+            arms in prop::array::uniform8(-1.0..1.0f64),
+        ) {
+            // Rows of one body that push upwards, of angles from 1e-8 to 1 rad: they always have an answer.
+            let mut near = NearRows::default();
+            let body = InverseInertia { inverse_mass: 1.0, inverse_moment: 3.0 };
+            for (place, &(power, left)) in angles.iter().enumerate() {
+                let angle = 10f64.powf(power) * if left { -1.0 } else { 1.0 };
+                let (sin, cos) = angle.sin_cos();
+                let jacobian = [sin, cos, arms[place], 0.0, 0.0, 0.0];
+                near.push(&CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, FIXED], 0.0), offsets[place]);
+            }
+            prop_assert!(near.solve());
+            for row in 0..angles.len() {
+                let (rate, force) = (near.rate[row].nearest(), near.force[row].nearest());
+                prop_assert!(force >= 0.0 && rate >= -1e-5, "{rate:e}, {force:e}");
+                prop_assert!(force == 0.0 || rate.abs() < 1e-13, "{rate:e}, {force:e}");
+            }
+        }
     }
 }
