@@ -70,24 +70,28 @@ impl Source {
 impl EventQueue {
     /// An empty queue.
     #[must_use]
+    #[inline]
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Number of sources that have an event.
     #[must_use]
+    #[inline]
     pub fn len(&self) -> usize {
         self.len
     }
 
     /// True if no source has an event.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
     /// The earliest event; among equal times that of the least source. `None` if no source has an event.
     #[must_use]
+    #[inline]
     pub fn first(&self) -> Option<Scheduled> {
         let key = (self.len > 0).then(|| self.key(0))?;
         Some(Scheduled { time: self.time(key), source: SourceId(key.source) })
@@ -95,6 +99,7 @@ impl EventQueue {
 
     /// Predicted time of the source's event; `None` if it has none.
     #[must_use]
+    #[inline]
     pub fn time_of(&self, source: SourceId) -> Option<Time> {
         Some(self.time(self.key(self.place_of(source)?)))
     }
@@ -120,6 +125,7 @@ impl EventQueue {
     }
 
     /// Removes the source's event, if it has one.
+    #[inline]
     pub fn clear(&mut self, source: SourceId) {
         let Some(place) = self.place_of(source) else { return };
         self.sources[source.0 as usize].place = ABSENT;

@@ -29,6 +29,7 @@ pub trait EventDriven {
 ///
 /// # Errors
 /// The first event that cannot be handled; events reported before it stay handled.
+#[inline]
 pub fn advance_until<S: EventDriven>(
     system: &mut S,
     until: Time,
@@ -47,6 +48,7 @@ pub fn advance_until<S: EventDriven>(
 ///
 /// # Errors
 /// The first event that cannot be handled; events reported before it stay handled.
+#[inline]
 pub fn advance_while<S: EventDriven>(
     system: &mut S,
     until: Time,

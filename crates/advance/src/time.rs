@@ -22,6 +22,7 @@ impl Time {
 
     /// The time of a number of seconds, exactly; [`NEVER`](Self::NEVER) for NaN.
     #[must_use]
+    #[inline]
     pub fn from_seconds(seconds: f64) -> Self {
         if seconds.is_nan() { Self::NEVER } else { Self { seconds, rest: 0.0 } }
     }

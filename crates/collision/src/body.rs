@@ -54,6 +54,7 @@ pub struct Body {
 impl Body {
     /// True for a fixed body: both its inverse mass and its inverse moment are 0.
     #[must_use]
+    #[inline]
     pub fn is_fixed(&self) -> bool {
         self.inverse_mass == 0.0 && self.inverse_moment == 0.0
     }
@@ -61,6 +62,7 @@ impl Body {
     /// Kinetic energy \[J\] in a state. Translation counts as 0 if the inverse mass is 0, rotation if the inverse
     /// moment is.
     #[must_use]
+    #[inline]
     pub fn kinetic_energy(&self, state: &BodyState) -> f64 {
         let part = |square: f64, inverse: f64| if inverse > 0.0 { 0.5 * square / inverse } else { 0.0 };
         part(state.velocity.length_squared(), self.inverse_mass)

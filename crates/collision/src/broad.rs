@@ -123,18 +123,21 @@ pub struct BroadPhase {
 impl BroadPhase {
     /// A tree without bodies.
     #[must_use]
+    #[inline]
     pub fn new() -> Self {
         Self::default()
     }
 
     /// The box [m] of a body; `None` if it has none.
     #[must_use]
+    #[inline]
     pub fn bounds(&self, body: BodyId) -> Option<&Aabb> {
         self.leaves.get(body.index())?.as_ref().map(|leaf| &leaf.bounds)
     }
 
     /// Sets the box [m] of a body, in place of the one it had, if any. A side that is not a number counts as infinitely
     /// far out.
+    #[inline]
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
         let bounds = without_nan(bounds);
         if self.leaves.len() <= body.index() {
@@ -147,6 +150,7 @@ impl BroadPhase {
 
     /// Removes the box of a body, such as one that leaves the scene (which none does in the layers above). Does nothing
     /// if the body has no box.
+    #[inline]
     pub fn remove(&mut self, body: BodyId) {
         self.take_out(body);
     }

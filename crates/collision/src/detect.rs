@@ -73,6 +73,7 @@ pub fn detect_features_of_pair(
 /// two vertices and the direction between them lies outside of a normal cone by more than 0.1 rad: between vertices that
 /// nearly coincide the direction is all rounding.
 #[must_use]
+#[inline]
 pub fn record_features(
     [a, b]: [&Moment<'_>; 2],
     features: [FeatureId; 2],
@@ -144,6 +145,7 @@ fn detector(kinds: [FeatureKind; 2]) -> Detector {
 /// Returns the thresholds of a pair of features: the given ones, or lesser ones for a vertex or convex arc in a barely
 /// larger concave arc (see [`Tolerances::for_clearance`]).
 #[must_use]
+#[inline]
 pub fn pair_tolerances(a: &Feature, b: &Feature, tolerances: &Tolerances) -> Tolerances {
     match (a, b) {
         (Feature::Round(a), Feature::Round(b)) if a.radius < 0.0 || b.radius < 0.0 => {
@@ -173,6 +175,7 @@ fn is_within(sample: &GapSample, sides: [(&Shape, FeatureId); 2], tolerances: &T
 /// [`Shape::lever`]s of both, except that the lever of a vertex on a line is at most the line's length, over which the
 /// two bodies can lie flat on each other.
 #[must_use]
+#[inline]
 pub fn contact_levers(sides: [(&Shape, FeatureId); 2]) -> [f64; 2] {
     let [own, other] = sides.map(|(shape, id)| shape.lever(id));
     match sides.map(|(shape, id)| shape.feature(id)) {

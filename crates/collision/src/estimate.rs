@@ -20,6 +20,7 @@ pub struct EstimatePoint {
 /// The distance at `later` is not used. `None` if by this estimate the target is not reached in between,
 /// which can happen although the later distance is below it; the event search then brackets.
 #[must_use]
+#[inline]
 pub fn estimate_target_time(earlier: EstimatePoint, later: EstimatePoint, target_gap: f64) -> Option<f64> {
     let span = later.time - earlier.time;
     if span <= 0.0 {

@@ -146,6 +146,7 @@ fn are_known<A: Motion, B: Motion>(
 /// It may pause early, with proof for the part it has searched. Every call makes progress, but for one with a number that
 /// is not finite (see [`first_contact`]): it returns `NoneBefore(from)`.
 #[must_use]
+#[inline]
 pub fn search_step<A: Motion, B: Motion>(
     a: &MovingShape<'_, A>,
     b: &MovingShape<'_, B>,
@@ -236,6 +237,7 @@ impl<A: Motion, B: Motion> PairSearch<'_, A, B> {
     /// Continues the search from a time `from` [s], before which there must be no contact, up to `span` [s]; see
     /// [`search_step`].
     #[must_use]
+    #[inline]
     pub fn step(&self, from: f64, span: f64) -> Search {
         if self.is_left_alone() {
             return Search::NoneBefore(span);

@@ -40,6 +40,7 @@ impl Flight {
     /// linear and the angular velocity. A rate that is negative or not a number counts as 0: damping never adds energy.
     /// An infinite one makes bounds that are not finite, with which nothing can be proven.
     #[must_use]
+    #[inline]
     pub fn new(start: BodyState, acceleration: DVec2, linear_rate: f64, angular_rate: f64) -> Self {
         let [linear_rate, angular_rate] = [linear_rate, angular_rate].map(|rate| rate.max(0.0));
         let start_rotation = Rotation::from_angle(start.angle);
@@ -47,6 +48,7 @@ impl Flight {
     }
 
     /// Sets another start state; acceleration and rates stay. The rotation is computed again only if the angle differs.
+    #[inline]
     pub fn restart(&mut self, start: BodyState) {
         if start.angle != self.start.angle {
             self.start_rotation = Rotation::from_angle(start.angle);
@@ -56,30 +58,35 @@ impl Flight {
 
     /// The motion of a body that stays at a position [m] and an angle [rad].
     #[must_use]
+    #[inline]
     pub fn fixed(position: DVec2, angle: f64) -> Self {
         Self::new(BodyState { position, angle, ..BodyState::default() }, DVec2::ZERO, 0.0, 0.0)
     }
 
     /// State at offset 0.
     #[must_use]
+    #[inline]
     pub fn start(&self) -> &BodyState {
         &self.start
     }
 
     /// Acceleration [m/s^2] of the centre of mass without damping.
     #[must_use]
+    #[inline]
     pub fn acceleration(&self) -> DVec2 {
         self.acceleration
     }
 
     /// Rates [1/s], not negative, at which damping reduces the linear and the angular velocity.
     #[must_use]
+    #[inline]
     pub fn rates(&self) -> [f64; 2] {
         [self.linear_rate, self.angular_rate]
     }
 
     /// The parabola of the centre of mass from the start on; `None` if damping bends it.
     #[must_use]
+    #[inline]
     pub fn parabola(&self) -> Option<Polynomial> {
         let (position, velocity) = (self.start.position, self.start.velocity);
         (self.linear_rate == 0.0).then_some(Polynomial {
@@ -91,12 +98,14 @@ impl Flight {
 
     /// Acceleration of the centre of mass [m/s^2] at an offset [s], damping included.
     #[must_use]
+    #[inline]
     pub fn acceleration_at(&self, offset: f64) -> DVec2 {
         self.acceleration - self.velocity_at(offset) * self.linear_rate
     }
 
     /// Angular acceleration [rad/s^2] at an offset [s], which is due to damping alone.
     #[must_use]
+    #[inline]
     pub fn angular_acceleration_at(&self, offset: f64) -> f64 {
         -self.angular_rate * self.angular_velocity_at(offset)
     }

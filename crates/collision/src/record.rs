@@ -59,6 +59,7 @@ impl Participant {
     /// # Panics
     /// If the feature is not one of the shape's.
     #[must_use]
+    #[inline]
     pub fn new(body: BodyId, shape: &Shape, feature: FeatureId) -> Self {
         let source = shape.source(feature);
         let site = Site { feature, kind: source.kind, path: source.path, edge: source.edge };
@@ -67,12 +68,14 @@ impl Participant {
 
     /// The side of a body to which a connector is tied.
     #[must_use]
+    #[inline]
     pub fn of_connector(body: BodyId) -> Self {
         Self { body, site: None }
     }
 
     /// The feature of the body's shape that touches; `None` in a connector.
     #[must_use]
+    #[inline]
     pub fn feature(&self) -> Option<FeatureId> {
         self.site.map(|site| site.feature)
     }
@@ -123,6 +126,7 @@ pub struct ContactGeometry {
 impl ContactGeometry {
     /// Unit tangent: the normal turned +90 degrees.
     #[must_use]
+    #[inline]
     pub fn tangent(&self) -> DVec2 {
         self.normal.perp()
     }
@@ -205,6 +209,7 @@ pub struct Collision {
 impl Collision {
     /// The connector that the record is a row of; `None` for bodies that touch.
     #[must_use]
+    #[inline]
     pub fn connector(&self) -> Option<ConnectorId> {
         match self.parties.detector {
             Detector::Connector { id, .. } => Some(id),
@@ -215,6 +220,7 @@ impl Collision {
     /// The record of a measured gap, given with the signed radii [m] of the primary and the normal feature (`None` for
     /// a line), at a time [s]. `bodies` are the primary and the normal body.
     #[must_use]
+    #[inline]
     pub fn new(
         parties: Parties,
         measured: (&GapSample, [Option<f64>; 2]),
@@ -270,12 +276,14 @@ impl Collision {
 
     /// Distance [m] beyond the target gap; negative when nearer.
     #[must_use]
+    #[inline]
     pub fn distance_to_target(&self) -> f64 {
         self.geometry.distance - self.tolerances.target_gap
     }
 
     /// State at first detection, if it has been noted.
     #[must_use]
+    #[inline]
     pub fn detection(&self) -> Option<&Detection> {
         self.detection.as_ref()
     }
@@ -283,6 +291,7 @@ impl Collision {
     /// Time [s] at which the distance reaches the target gap, as the last update estimated it; `None` without a noted
     /// detection, or if the target is not reached by the estimate.
     #[must_use]
+    #[inline]
     pub fn estimate(&self) -> Option<f64> {
         self.estimate
     }
@@ -291,6 +300,7 @@ impl Collision {
     ///
     /// # Errors
     /// If a detection was noted before, which then stays.
+    #[inline]
     pub fn note_detection(&mut self) -> Result<(), CollisionError> {
         if let Some(detection) = self.detection {
             let [BodyId(primary), BodyId(normal)] = self.bodies();
@@ -308,11 +318,13 @@ impl Collision {
     /// [`Collision::new`], and estimates anew the time at which the distance reaches the target gap.
     ///
     /// `must_handle`, once true, stays true: the collision happened, even though the bodies are apart again.
+    #[inline]
     pub fn update(&mut self, measured: (&GapSample, [Option<f64>; 2]), bodies: [&Moving; 2], time: f64) {
         self.update_parts(describe(measured.0, measured.1, bodies), time);
     }
 
     /// Updates the record of a connector's row to another time [s], as [`Collision::update`] does that of a contact.
+    #[inline]
     pub fn update_connector(
         &mut self,
         connector: &Connector,
@@ -351,18 +363,21 @@ impl Collision {
 
     /// True if the body takes part.
     #[must_use]
+    #[inline]
     pub fn involves_body(&self, body: BodyId) -> bool {
         self.bodies().contains(&body)
     }
 
     /// True if the given edge of the body takes part.
     #[must_use]
+    #[inline]
     pub fn involves_edge(&self, body: BodyId, path: u32, edge: u32) -> bool {
         self.involves(body, path, edge, |kind| kind != FeatureKind::Vertex)
     }
 
     /// True if the vertex of the body at which the given edge starts takes part.
     #[must_use]
+    #[inline]
     pub fn involves_vertex(&self, body: BodyId, path: u32, edge: u32) -> bool {
         self.involves(body, path, edge, |kind| kind == FeatureKind::Vertex)
     }

@@ -26,12 +26,14 @@ impl Tolerances {
 
     /// Distance [m] by which a contact without force may sink before it fires again.
     #[must_use]
+    #[inline]
     pub fn sink(&self) -> f64 {
         Self::SINK_SHARE * self.accuracy
     }
 
     /// Distance [m] within which two features can be in contact.
     #[must_use]
+    #[inline]
     pub fn distance_tol(&self) -> f64 {
         2.0 * self.target_gap
     }
@@ -45,6 +47,7 @@ impl Tolerances {
     ///
     /// They are unchanged if the clearance is at least [`TIGHT_FIT`](Self::TIGHT_FIT) target gaps.
     #[must_use]
+    #[inline]
     pub fn for_clearance(&self, clearance: f64) -> Self {
         if clearance >= Self::TIGHT_FIT * self.target_gap {
             return *self;

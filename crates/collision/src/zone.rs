@@ -21,6 +21,7 @@ pub enum Zone {
 impl Zone {
     /// The zone of a distance [m], negative for overlap.
     #[must_use]
+    #[inline]
     pub fn of(distance: f64, tolerances: &Tolerances) -> Self {
         let Tolerances { target_gap, accuracy, .. } = *tolerances;
         if distance < (target_gap - accuracy).min(0.0) {
@@ -41,12 +42,14 @@ impl Zone {
 impl Collision {
     /// The zone of the record's distance.
     #[must_use]
+    #[inline]
     pub fn zone(&self) -> Zone {
         Zone::of(self.geometry.distance, &self.tolerances)
     }
 
     /// True for a contact: in range, not overlapping and slower than `velocity_tol`, or bilateral.
     #[must_use]
+    #[inline]
     pub fn is_contact(&self) -> bool {
         let in_range = matches!(self.zone(), Zone::BeyondTarget | Zone::Target | Zone::Near);
         self.parties.bilateral
@@ -55,6 +58,7 @@ impl Collision {
 
     /// True within `distance_tol`, or if bilateral.
     #[must_use]
+    #[inline]
     pub fn is_touching(&self) -> bool {
         self.parties.bilateral || self.zone() != Zone::OutOfRange
     }
@@ -62,6 +66,7 @@ impl Collision {
     /// True if the record may be handled now: a contact, or in the target zone. `allow_tiny` also admits distances
     /// nearer than the target zone.
     #[must_use]
+    #[inline]
     pub fn is_close_enough(&self, allow_tiny: bool) -> bool {
         let zone = self.zone();
         self.is_contact() || zone == Zone::Target || (allow_tiny && zone == Zone::Near)
@@ -69,6 +74,7 @@ impl Collision {
 
     /// True if overlapping, or nearer than the target zone and closing by more than `velocity_tol`; never if bilateral.
     #[must_use]
+    #[inline]
     pub fn is_colliding(&self) -> bool {
         let closing = self.motion.normal_velocity < -self.tolerances.velocity_tol;
         !self.parties.bilateral
@@ -81,6 +87,7 @@ impl Collision {
 
     /// True if overlapping and not bilateral.
     #[must_use]
+    #[inline]
     pub fn is_illegal(&self) -> bool {
         !self.parties.bilateral && self.zone() == Zone::Penetrating
     }

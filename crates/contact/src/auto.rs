@@ -78,6 +78,7 @@ impl Auto {
     /// # Errors
     ///
     /// [`SettingsError`] names a setting that is not positive and finite.
+    #[inline]
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         let methods = Methods::new(settings)?;
         Ok(Auto { settings, methods, ..Self::default() })

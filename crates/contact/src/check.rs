@@ -40,6 +40,7 @@ impl Residuals {
     ///
     /// If there is not one force per row.
     #[must_use]
+    #[inline]
     pub fn of(problem: &Problem, force: &[f64]) -> Self {
         let mut acceleration = vec![0.0; problem.len()];
         Checker::default().check(problem, force, &mut acceleration)
@@ -51,6 +52,7 @@ impl Residuals {
     /// ([`Solution::inconsistency`](crate::Solution::inconsistency)). It is taken off the natural residual, and must
     /// not exceed [`Settings::inconsistency`].
     #[must_use]
+    #[inline]
     pub fn accepted(&self, settings: &Settings, inconsistency: f64) -> bool {
         let natural = self.natural - inconsistency;
         if !natural.is_finite() || inconsistency > settings.inconsistency {
@@ -70,6 +72,7 @@ impl Problem {
     ///
     /// If there is not one force per row.
     #[must_use]
+    #[inline]
     pub fn accelerations(&self, force: &[f64]) -> Vec<f64> {
         let mut acceleration = vec![0.0; self.len()];
         Checker::default().check(self, force, &mut acceleration);

@@ -154,6 +154,7 @@ impl DualActiveSet {
     /// # Errors
     ///
     /// [`SettingsError`] names a setting that is not positive and finite.
+    #[inline]
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(DualActiveSet { settings, ..Self::default() })

@@ -145,6 +145,7 @@ pub enum SolveError {
 impl SolveError {
     /// Index of the row at which a contradiction showed; `None` for other errors.
     #[must_use]
+    #[inline]
     pub fn row(&self) -> Option<usize> {
         match self {
             Self::Infeasible(infeasibility) => Some(infeasibility.row),
@@ -181,6 +182,7 @@ impl Infeasibility {
     /// Least growth that any solution would have, as far as the certificate can tell: smaller forces cannot make up for
     /// the contradiction through the leakage in Aᵀz. See [`Residuals::growth`].
     #[must_use]
+    #[inline]
     pub fn least_growth(&self) -> f64 {
         self.contradiction / self.leakage.max(f64::EPSILON)
     }

@@ -137,12 +137,14 @@ impl HeldRows {
 
     /// Number of rows.
     #[must_use]
+    #[inline]
     pub fn len(&self) -> usize {
         self.root.len()
     }
 
     /// Whether there are no rows.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.root.is_empty()
     }
@@ -227,6 +229,7 @@ impl HeldRows {
     /// # Panics
     ///
     /// If there is not one offset and one force per row.
+    #[inline]
     pub fn solve(&mut self, offset: &[f64], force: &mut [f64]) {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
@@ -249,6 +252,7 @@ impl HeldRows {
     /// # Panics
     ///
     /// If there is not one offset and one force per row.
+    #[inline]
     pub fn solve_roughly(&mut self, offset: &[f64], force: &mut [f64]) {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
@@ -271,6 +275,7 @@ impl HeldRows {
     /// # Panics
     ///
     /// If there is not one force per row and one acceleration per body.
+    #[inline]
     pub fn respond(&self, force: &[f64], change: &mut [[f64; 3]]) {
         assert_eq!(force.len(), self.len(), "one force per row");
         assert_eq!(change.len(), self.body_count, "one acceleration per body");

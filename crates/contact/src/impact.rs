@@ -99,6 +99,7 @@ struct Scratch {
 impl Impact {
     /// Makes an impact without rows. Its buffers are kept from impact to impact.
     #[must_use]
+    #[inline]
     pub fn new() -> Self {
         Self::default()
     }
@@ -129,6 +130,7 @@ impl Impact {
     ///
     /// # Panics
     /// If there is not one impulse per row.
+    #[inline]
     pub fn unload(&mut self, impulses: &[f64]) {
         assert_eq!(impulses.len(), self.rows.len(), "one impulse per row");
         self.scratch.carried.resize(self.rows.len(), 0.0);
@@ -140,12 +142,14 @@ impl Impact {
 
     /// The rows, in the order of [`set_rows`](Self::set_rows).
     #[must_use]
+    #[inline]
     pub fn rows(&self) -> &[CollisionRow] {
         &self.rows
     }
 
     /// Rate of each row after the impulses [m/s], negative when closing.
     #[must_use]
+    #[inline]
     pub fn rates(&self) -> &[f64] {
         &self.rates
     }
@@ -153,6 +157,7 @@ impl Impact {
     /// Impulse of each row [N s]: of either sign for a bilateral row, else at least 0, less the impulse that the row
     /// was [unloaded](Self::unload) by. Redundant rows leave a choice of impulses, on which the rates do not depend.
     #[must_use]
+    #[inline]
     pub fn impulses(&self) -> &[f64] {
         &self.impulses
     }
@@ -162,12 +167,14 @@ impl Impact {
     /// dependent that rounding makes them contradict each other, it is what that contradiction leaves, at most 1e-5 of
     /// the fastest rate.
     #[must_use]
+    #[inline]
     pub fn bound(&self) -> f64 {
         self.bound
     }
 
     /// Number of complementarity problems solved since [`set_rows`](Self::set_rows).
     #[must_use]
+    #[inline]
     pub fn solves(&self) -> u64 {
         self.solves
     }

@@ -160,6 +160,7 @@ impl ContactFile {
     ///
     /// [`FileError::Json`], [`FileError::NotANumber`], [`FileError::WrongValue`], [`FileError::Missing`] or
     /// [`FileError::Format`]. The numbers are checked by [`problem`](Self::problem).
+    #[inline]
     pub fn parse(text: &str) -> Result<Self, FileError> {
         // Some editors put a byte order mark before the text.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -177,6 +178,7 @@ impl ContactFile {
     /// Lists the fields of a file's text that the format does not have; [`parse`](Self::parse) ignores them. Empty if
     /// the text is not a JSON object.
     #[must_use]
+    #[inline]
     pub fn unknown_fields(text: &str) -> Vec<String> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let Ok(fields) = serde_json::from_str::<BTreeMap<String, IgnoredAny>>(text) else {
@@ -215,6 +217,7 @@ impl ContactFile {
     /// # Errors
     ///
     /// [`FileError::Json`] if a number cannot be written.
+    #[inline]
     pub fn to_json(&self) -> Result<String, FileError> {
         Ok(serde_json::to_string(self)?)
     }
@@ -224,6 +227,7 @@ impl ContactFile {
     /// # Errors
     ///
     /// [`FileError`] names the field or row that is wrong.
+    #[inline]
     pub fn problem(&self) -> Result<Problem, FileError> {
         let mut problem = match (&self.a, &self.j) {
             (Some(_), Some(_)) => return Err(FileError::Both),

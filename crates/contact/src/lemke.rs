@@ -92,6 +92,7 @@ impl Lemke {
     /// # Errors
     ///
     /// [`SettingsError`] names a setting that is not positive and finite.
+    #[inline]
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(Lemke { settings, ..Self::default() })

@@ -97,12 +97,14 @@ impl Row {
     /// Makes a unilateral row between `body` and something immovable: coefficients for x, y \[1\] and rotation \[m\],
     /// offset b [m/s²] (or [m/s] in impact problems).
     #[must_use]
+    #[inline]
     pub fn new(body: ProblemBody, coefficients: [f64; 3], offset: f64) -> Self {
         Row { primary: (body, coefficients), normal: None, offset, bilateral: false, key: None }
     }
 
     /// Adds the normal body, with its coefficients for x, y \[1\] and rotation \[m\].
     #[must_use]
+    #[inline]
     pub fn against(self, body: ProblemBody, coefficients: [f64; 3]) -> Self {
         Row { normal: Some((body, coefficients)), ..self }
     }
@@ -111,6 +113,7 @@ impl Row {
     /// those for x, y \[1\] and rotation \[m\] of the primary, then of the normal side. Returns `None` if both are
     /// immovable.
     #[must_use]
+    #[inline]
     pub fn between(sides: [Option<ProblemBody>; 2], coefficients: &[f64; 6], offset: f64) -> Option<Self> {
         let [c0, c1, c2, c3, c4, c5] = *coefficients;
         let (primary, normal) = ([c0, c1, c2], [c3, c4, c5]);
@@ -124,12 +127,14 @@ impl Row {
 
     /// Makes the row bilateral: a = 0 with a force of either sign.
     #[must_use]
+    #[inline]
     pub fn bilateral(self) -> Self {
         Row { bilateral: true, ..self }
     }
 
     /// Gives the row an identity for warm starts.
     #[must_use]
+    #[inline]
     pub fn with_key(self, key: ContactKey) -> Self {
         Row { key: Some(key), ..self }
     }
@@ -139,6 +144,7 @@ impl Problem {
     /// Makes a problem without bodies and rows, to be filled by [`add_body`](Self::add_body) and
     /// [`add_row`](Self::add_row).
     #[must_use]
+    #[inline]
     pub fn new() -> Self {
         Problem {
             matrix: Matrix::Bodies(BodyRows::new()),
@@ -154,6 +160,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError`] names the row, column or list that is wrong.
+    #[inline]
     pub fn from_rows(
         triplets: &[(usize, usize, f64)],
         inverse_mass: &[f64],
@@ -174,6 +181,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError`] names the row that is wrong. For an unsymmetric matrix use [`Problem::from_general`].
+    #[inline]
     pub fn from_symmetric(triplets: &[(usize, usize, f64)], offset: &[f64]) -> Result<Self, ProblemError> {
         let matrix = SparseMatrix::from_triplets(offset.len(), offset.len(), triplets)?;
         matrix.check_symmetric()?;
@@ -186,6 +194,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError`] names the row that is wrong.
+    #[inline]
     pub fn from_general(triplets: &[(usize, usize, f64)], offset: &[f64]) -> Result<Self, ProblemError> {
         let matrix = SparseMatrix::from_triplets(offset.len(), offset.len(), triplets)?;
         Self::checked(Matrix::General(matrix), offset)
@@ -197,6 +206,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError`] names the row that is wrong.
+    #[inline]
     pub fn from_dense(rows: &[Vec<f64>], offset: &[f64]) -> Result<Self, ProblemError> {
         Self::from_symmetric(&dense_triplets(rows, offset.len())?, offset)
     }
@@ -206,6 +216,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError`] names the row that is wrong.
+    #[inline]
     pub fn from_general_dense(rows: &[Vec<f64>], offset: &[f64]) -> Result<Self, ProblemError> {
         Self::from_general(&dense_triplets(rows, offset.len())?, offset)
     }
@@ -223,6 +234,7 @@ impl Problem {
 
     /// Removes all rows and bodies and keeps the memory of the buffers. A problem given by the entries of A becomes one
     /// that takes bodies.
+    #[inline]
     pub fn clear(&mut self) {
         if let Matrix::Bodies(bodies) = &mut self.matrix {
             bodies.rows.start.truncate(1);
@@ -242,6 +254,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError::BadInverseMass`]; [`ProblemError::NoBodies`] if the problem was made from a matrix A.
+    #[inline]
     pub fn add_body(&mut self, inertia: InverseInertia) -> Result<ProblemBody, ProblemError> {
         let Matrix::Bodies(bodies) = &mut self.matrix else {
             return Err(ProblemError::NoBodies);
@@ -292,6 +305,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError`] names the row that is not finite, or the wrong length; b is unchanged then.
+    #[inline]
     pub fn set_offset(&mut self, offset: &[f64]) -> Result<(), ProblemError> {
         check_length("b", offset.len(), self.offset.len())?;
         for (row, &value) in offset.iter().enumerate() {
@@ -306,6 +320,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError::BadLength`] if there is not one flag per row.
+    #[inline]
     pub fn set_bilateral(&mut self, bilateral: &[bool]) -> Result<(), ProblemError> {
         check_length("bilateral", bilateral.len(), self.offset.len())?;
         self.bilateral.copy_from_slice(bilateral);
@@ -317,6 +332,7 @@ impl Problem {
     /// # Errors
     ///
     /// [`ProblemError::BadLength`] if there is not one key per row.
+    #[inline]
     pub fn set_keys(&mut self, keys: &[ContactKey]) -> Result<(), ProblemError> {
         check_length("keys", keys.len(), self.offset.len())?;
         self.keys.clear();
@@ -326,12 +342,14 @@ impl Problem {
 
     /// Number of rows n.
     #[must_use]
+    #[inline]
     pub fn len(&self) -> usize {
         self.offset.len()
     }
 
     /// Whether there are no rows.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.offset.is_empty()
     }
@@ -339,12 +357,14 @@ impl Problem {
     /// The offset b of a = A f + b by row, negative when closing: accelerations of the gaps without contact forces
     /// [m/s²], or in impact problems their rates less the rates to be reached [m/s].
     #[must_use]
+    #[inline]
     pub fn offset(&self) -> &[f64] {
         &self.offset
     }
 
     /// One flag per row: true if it is bilateral.
     #[must_use]
+    #[inline]
     pub fn bilateral(&self) -> &[bool] {
         &self.bilateral
     }
@@ -352,18 +372,21 @@ impl Problem {
     /// Identities of the rows for warm starts, [`ContactKey::NONE`] for a row without one. The list ends at the last
     /// row that was given one, so it may be shorter than the problem.
     #[must_use]
+    #[inline]
     pub fn keys(&self) -> &[ContactKey] {
         &self.keys
     }
 
     /// Whether the rows are given as J and inverse masses.
     #[must_use]
+    #[inline]
     pub fn has_bodies(&self) -> bool {
         matches!(self.matrix, Matrix::Bodies(_))
     }
 
     /// Whether the problem was given with a symmetric, positive semidefinite A, so that forces minimise an energy.
     #[must_use]
+    #[inline]
     pub fn is_symmetric(&self) -> bool {
         !matches!(self.matrix, Matrix::General(_))
     }
@@ -377,6 +400,7 @@ impl Problem {
     ///
     /// If there is no such row.
     #[must_use]
+    #[inline]
     pub fn row(&self, row: usize) -> (&[usize], &[f64]) {
         match &self.matrix {
             Matrix::Bodies(bodies) => bodies.rows.row(row),
@@ -387,6 +411,7 @@ impl Problem {
     /// Inverse mass of each column of J: [1/kg] for x and y, [1/(kg m²)] for rotation. `None` if the problem was given
     /// by A.
     #[must_use]
+    #[inline]
     pub fn inverse_mass(&self) -> Option<&[f64]> {
         match &self.matrix {
             Matrix::Bodies(bodies) => Some(&bodies.inverse_mass),
@@ -396,6 +421,7 @@ impl Problem {
 
     /// The dense matrix A by rows [1/kg], for inspection and checks; O(n²).
     #[must_use]
+    #[inline]
     pub fn dense(&self) -> Vec<Vec<f64>> {
         let n = self.len();
         (0..n).map(|i| (0..n).map(|j| self.entry(i, j)).collect()).collect()

@@ -108,6 +108,7 @@ impl ProximalNewton {
     /// # Errors
     ///
     /// [`SettingsError`] names a setting that is not positive and finite.
+    #[inline]
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(ProximalNewton { settings, ..Self::default() })

@@ -48,6 +48,7 @@ impl Qp {
     /// # Errors
     ///
     /// [`SettingsError`] names a setting that is not positive and finite.
+    #[inline]
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         Ok(Qp { settings, polish: DualActiveSet::new(settings)?, ..Self::default() })
     }

@@ -31,6 +31,7 @@ pub struct CollisionRow {
 impl CollisionRow {
     /// Makes the row of a collision record, with the `inertia` of its primary and normal body.
     #[must_use]
+    #[inline]
     pub fn of_collision(collision: &Collision, inertia: [InverseInertia; 2]) -> Self {
         let motion = &collision.motion;
         Self {
@@ -48,6 +49,7 @@ impl CollisionRow {
     /// [`CollisionRow`] tell; the other fields can be set. The background ([`BodyId::WORLD`]) and other immovable bodies
     /// have an inertia of zeros.
     #[must_use]
+    #[inline]
     pub fn new(bodies: [BodyId; 2], jacobian: [f64; 6], inertia: [InverseInertia; 2], rate: f64) -> Self {
         Self {
             bodies,
@@ -70,6 +72,7 @@ impl CollisionRow {
     /// Change of this row's rate [m/s] by a unit impulse [N s] along another row: an entry of the Delassus matrix
     /// J M^-1 J^T [1/kg].
     #[must_use]
+    #[inline]
     pub fn coupling(&self, other: &CollisionRow) -> f64 {
         let mut sum = 0.0;
         for (side, body) in self.bodies.iter().enumerate() {

@@ -29,6 +29,7 @@ pub struct Solution {
 impl Solution {
     /// Makes an empty solution, to be filled by a solver.
     #[must_use]
+    #[inline]
     pub fn new() -> Self {
         Solution {
             force: Vec::new(),
@@ -43,12 +44,14 @@ impl Solution {
 
     /// Number of rows answered.
     #[must_use]
+    #[inline]
     pub fn len(&self) -> usize {
         self.force.len()
     }
 
     /// Whether the problem had no rows.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.force.is_empty()
     }

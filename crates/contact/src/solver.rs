@@ -133,6 +133,7 @@ pub enum Method {
 impl Method {
     /// The name used on the command line and in files.
     #[must_use]
+    #[inline]
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto => "auto",

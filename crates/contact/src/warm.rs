@@ -37,6 +37,7 @@ pub struct Earlier {
 impl WarmStart {
     /// Makes a warm start that knows no rows.
     #[must_use]
+    #[inline]
     pub fn new() -> Self {
         Self::default()
     }
@@ -47,6 +48,7 @@ impl WarmStart {
     ///
     /// If `solution` has more rows than `problem` and all rows of `problem` have keys, or if `solution.active` names a
     /// row that `solution` does not have.
+    #[inline]
     pub fn remember(&mut self, problem: &Problem, solution: &Solution) {
         (self.by_key, self.is_guess, self.has_forces) = (has_keys(problem), false, false);
         self.entries.clear();
@@ -64,6 +66,7 @@ impl WarmStart {
 
     /// Stores a guess of the closed rows in place of all that was stored before: one flag per row, in the order of
     /// rows; `None` for a row of which nothing is known. A problem all of whose rows have keys ignores it.
+    #[inline]
     pub fn guess(&mut self, closed: impl IntoIterator<Item = Option<bool>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, false);
         self.entries.clear();
@@ -78,6 +81,7 @@ impl WarmStart {
     /// Stores a guess of the forces \[N\] (or impulses [N·s]) in place of all that was stored before: one per row, in
     /// the order of rows; `None` for a row of which nothing is known, as a number that is not finite. Rows with a positive
     /// force count as closed. A problem all of whose rows have keys ignores the guess.
+    #[inline]
     pub fn guess_forces(&mut self, forces: impl IntoIterator<Item = Option<f64>>) {
         (self.by_key, self.is_guess, self.has_forces) = (false, true, true);
         self.entries.clear();
@@ -94,6 +98,7 @@ impl WarmStart {
     ///
     /// If there is no such row and rows are found by their keys.
     #[must_use]
+    #[inline]
     pub fn of_row(&self, problem: &Problem, row: usize) -> Option<Earlier> {
         self.lookup(problem).find(row)
     }

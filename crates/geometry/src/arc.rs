@@ -47,6 +47,7 @@ impl Arc {
     ///
     /// # Errors
     /// A radius (the distance of the two points) that is not positive, or a number that is not finite.
+    #[inline]
     pub fn circle(center: DVec2, from: DVec2, clockwise: bool) -> Result<Self, ArcError> {
         if !(center.is_finite() && from.is_finite()) {
             return Err(ArcError::NotFinite);
@@ -108,60 +109,70 @@ impl Arc {
 
     /// Center of the circle [m].
     #[must_use]
+    #[inline]
     pub fn center(&self) -> DVec2 {
         self.center
     }
 
     /// Radius of the circle [m], positive.
     #[must_use]
+    #[inline]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
     /// Direction [rad] of the first point as seen from the center.
     #[must_use]
+    #[inline]
     pub fn start_angle(&self) -> f64 {
         self.start_angle
     }
 
     /// Signed turn [rad] from the first point to the last, positive counter-clockwise.
     #[must_use]
+    #[inline]
     pub fn sweep_angle(&self) -> f64 {
         self.sweep_angle
     }
 
     /// First point [m].
     #[must_use]
+    #[inline]
     pub fn from(&self) -> DVec2 {
         self.from
     }
 
     /// Last point [m].
     #[must_use]
+    #[inline]
     pub fn to(&self) -> DVec2 {
         self.to
     }
 
     /// True for an arc that is a whole circle.
     #[must_use]
+    #[inline]
     pub fn is_circle(&self) -> bool {
         self.sweep_angle.abs() == TAU
     }
 
     /// True if the arc runs counter-clockwise, which makes an edge with the solid on its left convex.
     #[must_use]
+    #[inline]
     pub fn is_convex(&self) -> bool {
         self.sweep_angle > 0.0
     }
 
     /// Length [m].
     #[must_use]
+    #[inline]
     pub fn length(&self) -> f64 {
         self.radius * self.sweep_angle.abs()
     }
 
     /// Unit vector from the center to the middle of the arc.
     #[must_use]
+    #[inline]
     pub fn middle_direction(&self) -> DVec2 {
         let (sin, cos) = libm::sincos(self.start_angle + 0.5 * self.sweep_angle);
         DVec2::new(cos, sin)
@@ -169,6 +180,7 @@ impl Arc {
 
     /// Range of directions, seen from the center, in which the arc has points.
     #[must_use]
+    #[inline]
     pub fn directions(&self) -> DirectionRange {
         if self.is_circle() {
             return DirectionRange::Full;
@@ -181,18 +193,21 @@ impl Arc {
 
     /// Unit vector of travel at the first point.
     #[must_use]
+    #[inline]
     pub fn start_direction(&self) -> DVec2 {
         self.direction_at(self.from)
     }
 
     /// Unit vector of travel at the last point.
     #[must_use]
+    #[inline]
     pub fn end_direction(&self) -> DVec2 {
         self.direction_at(self.to)
     }
 
     /// The arc run the other way.
     #[must_use]
+    #[inline]
     pub fn reversed(&self) -> Self {
         Self {
             start_angle: self.start_angle + self.sweep_angle,
@@ -205,12 +220,14 @@ impl Arc {
 
     /// The arc shifted by `shift` [m].
     #[must_use]
+    #[inline]
     pub fn translated(&self, shift: DVec2) -> Self {
         Self { center: self.center + shift, from: self.from + shift, to: self.to + shift, ..*self }
     }
 
     /// The arc in world coordinates, as a body at the given pose carries it.
     #[must_use]
+    #[inline]
     pub fn posed(&self, pose: &Pose) -> Self {
         Self {
             center: pose.point_to_world(self.center),
@@ -224,6 +241,7 @@ impl Arc {
     /// Signed distance [m] of a point [m] from the whole circle, positive on the side away from the solid: outside of a
     /// convex arc's circle, inside of a concave one's.
     #[must_use]
+    #[inline]
     pub fn signed_distance(&self, point: DVec2) -> f64 {
         let from_circle = (point - self.center).length() - self.radius;
         if self.is_convex() { from_circle } else { -from_circle }
@@ -231,6 +249,7 @@ impl Arc {
 
     /// Point of the arc nearest to `point` [m]; its first point if all are equally near.
     #[must_use]
+    #[inline]
     pub fn nearest(&self, point: DVec2) -> DVec2 {
         let offset = point - self.center;
         let distance = offset.length();

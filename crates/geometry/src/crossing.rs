@@ -30,6 +30,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// assert!((crossings[0] - DVec2::new(-0.8, 0.6)).length() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[inline]
 pub fn edge_crossings(a: &Edge, b: &Edge) -> impl Iterator<Item = DVec2> {
     let found = match (a, b) {
         (Edge::Line(a), Edge::Line(b)) => [line_line(a, b), None],

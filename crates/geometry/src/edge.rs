@@ -18,6 +18,7 @@ pub enum Edge {
 impl Edge {
     /// First point [m].
     #[must_use]
+    #[inline]
     pub fn from(&self) -> DVec2 {
         match self {
             Edge::Line(line) => line.from(),
@@ -27,6 +28,7 @@ impl Edge {
 
     /// Last point [m].
     #[must_use]
+    #[inline]
     pub fn to(&self) -> DVec2 {
         match self {
             Edge::Line(line) => line.to(),
@@ -36,6 +38,7 @@ impl Edge {
 
     /// Length [m].
     #[must_use]
+    #[inline]
     pub fn length(&self) -> f64 {
         match self {
             Edge::Line(line) => line.length(),
@@ -45,6 +48,7 @@ impl Edge {
 
     /// Unit vector of travel at the first point.
     #[must_use]
+    #[inline]
     pub fn start_direction(&self) -> DVec2 {
         match self {
             Edge::Line(line) => line.direction(),
@@ -54,6 +58,7 @@ impl Edge {
 
     /// Unit vector of travel at the last point.
     #[must_use]
+    #[inline]
     pub fn end_direction(&self) -> DVec2 {
         match self {
             Edge::Line(line) => line.direction(),
@@ -63,6 +68,7 @@ impl Edge {
 
     /// Signed curvature [1/m]: positive for a convex arc, negative for a concave one, 0 for a line.
     #[must_use]
+    #[inline]
     pub fn curvature(&self) -> f64 {
         match self {
             Edge::Line(_) => 0.0,
@@ -73,6 +79,7 @@ impl Edge {
 
     /// The edge run the other way.
     #[must_use]
+    #[inline]
     pub fn reversed(&self) -> Self {
         match self {
             Edge::Line(line) => Edge::Line(line.reversed()),
@@ -82,6 +89,7 @@ impl Edge {
 
     /// The edge shifted by `shift` [m].
     #[must_use]
+    #[inline]
     pub fn translated(&self, shift: DVec2) -> Self {
         match self {
             Edge::Line(line) => Edge::Line(line.translated(shift)),
@@ -91,6 +99,7 @@ impl Edge {
 
     /// The edge in world coordinates, as a body at the given pose carries it.
     #[must_use]
+    #[inline]
     pub fn posed(&self, pose: &Pose) -> Self {
         match self {
             Edge::Line(line) => Edge::Line(line.posed(pose)),
@@ -100,6 +109,7 @@ impl Edge {
 
     /// Outward unit normal at a point [m] of the edge.
     #[must_use]
+    #[inline]
     pub fn normal_at(&self, point: DVec2) -> DVec2 {
         match self {
             Edge::Line(line) => line.normal(),
@@ -112,6 +122,7 @@ impl Edge {
 
     /// Signed distance [m] of a point [m] from the edge's infinite line or whole circle, positive away from the solid.
     #[must_use]
+    #[inline]
     pub fn signed_distance(&self, point: DVec2) -> f64 {
         match self {
             Edge::Line(line) => line.signed_distance(point),
@@ -121,6 +132,7 @@ impl Edge {
 
     /// Point of the edge nearest to `point` [m].
     #[must_use]
+    #[inline]
     pub fn nearest(&self, point: DVec2) -> DVec2 {
         match self {
             Edge::Line(line) => line.nearest(point),
@@ -130,6 +142,7 @@ impl Edge {
 
     /// Smallest axis-aligned box [m] around the edge.
     #[must_use]
+    #[inline]
     pub fn bounds(&self) -> Aabb {
         let ends = Aabb::around(self.from()).including(self.to());
         let Edge::Arc(arc) = self else { return ends };

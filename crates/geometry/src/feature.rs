@@ -108,6 +108,7 @@ pub enum Feature {
 impl Feature {
     /// Kind of this feature.
     #[must_use]
+    #[inline]
     pub fn kind(&self) -> FeatureKind {
         match self {
             Feature::Line(_) => FeatureKind::Line,
@@ -119,6 +120,7 @@ impl Feature {
 
     /// Signed radius of curvature [m]: vertex 0, convex arc positive, concave arc negative; `None` for a straight edge.
     #[must_use]
+    #[inline]
     pub fn radius(&self) -> Option<f64> {
         match self {
             Feature::Line(_) => None,
@@ -180,6 +182,7 @@ pub enum DirectionRange {
 impl DirectionRange {
     /// The range from one unit vector counter-clockwise to another, which are `sweep` [rad] apart.
     #[must_use]
+    #[inline]
     pub fn between(from: DVec2, to: DVec2, sweep: f64) -> Self {
         use std::f64::consts::{FRAC_PI_2, PI};
         if sweep <= FRAC_PI_2 {

@@ -62,6 +62,7 @@ pub fn touching_distance(a: &RoundFeature, b: &RoundFeature) -> f64 {
 /// Returns the kind of contact that two features can have inside their ranges; `None` if they cannot touch there, or if
 /// end vertices carry their contact.
 #[must_use]
+#[inline]
 pub fn pair_kind(a: &Feature, b: &Feature) -> Option<PairKind> {
     match (a, b) {
         (Feature::Line(_), Feature::Line(_)) => None,
@@ -158,6 +159,7 @@ impl LineGap {
 
     /// Foot of the centre on the line [m, world coordinates].
     #[must_use]
+    #[inline]
     pub fn foot(&self, line: &LineFeature, pose_line: &Pose) -> DVec2 {
         pose_line.position + self.normal * line.offset + self.normal.perp() * self.along
     }
@@ -193,6 +195,7 @@ pub struct GapSample {
 impl GapSample {
     /// Measures the gap of two features of two bodies; `None` if the two cannot touch inside their ranges.
     #[must_use]
+    #[inline]
     pub fn measure(a: &Feature, pose_a: &Pose, b: &Feature, pose_b: &Pose) -> Option<Self> {
         let mut sample = Self::measure_unbounded(a, pose_a, b, pose_b)?;
         sample.find_excess([(a, pose_a), (b, pose_b)]);
@@ -229,6 +232,7 @@ impl GapSample {
 
     /// Sets the angles [rad] by which the contact lies outside the ranges of the features `a` and `b`, which must be
     /// those that were measured, at their poses.
+    #[inline]
     pub fn find_excess(&mut self, [a, b]: [(&Feature, &Pose); 2]) {
         let (primary, other) = if self.primary_is_a { (a, b) } else { (b, a) };
         let Feature::Round(round) = primary.0 else { return };
@@ -245,6 +249,7 @@ impl GapSample {
 
     /// True if the contact lies within both features: no excess and no overrun.
     #[must_use]
+    #[inline]
     pub fn is_valid(&self) -> bool {
         self.excess_primary <= 0.0 && self.excess_normal <= 0.0 && self.overrun <= 0.0
     }

@@ -25,6 +25,7 @@ impl Shape {
     /// # Ok::<(), halfgap_geometry::ShapeError>(())
     /// ```
     #[must_use]
+    #[inline]
     pub fn contains(&self, point: DVec2) -> bool {
         let is_met = |node: &Node| {
             let bounds = &node.bounds;

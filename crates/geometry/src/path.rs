@@ -22,6 +22,7 @@ pub struct PathSpec {
 impl PathSpec {
     /// The closed polygon through the given vertices [m].
     #[must_use]
+    #[inline]
     pub fn polygon(vertices: &[DVec2]) -> Self {
         let Some((&start, rest)) = vertices.split_first() else {
             return Self { start: DVec2::ZERO, edges: Vec::new() };
@@ -32,6 +33,7 @@ impl PathSpec {
 
     /// The full counter-clockwise circle about `center` [m] of the given radius [m].
     #[must_use]
+    #[inline]
     pub fn circle(center: DVec2, radius: f64) -> Self {
         let start = center + DVec2::X * radius;
         Self { start, edges: vec![EdgeSpec::Arc { to: start, center, clockwise: false }] }
@@ -75,12 +77,14 @@ pub struct Path {
 impl Path {
     /// The edges in order.
     #[must_use]
+    #[inline]
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
 
     /// Smallest axis-aligned box [m] around the path.
     #[must_use]
+    #[inline]
     pub fn bounds(&self) -> Aabb {
         let start = Aabb::around(self.edges[0].from());
         self.edges.iter().fold(start, |bounds, edge| bounds.union(edge.bounds()))
@@ -88,6 +92,7 @@ impl Path {
 
     /// True if the path runs around the point [m], in either direction. On the path itself the answer is either.
     #[must_use]
+    #[inline]
     pub fn surrounds(&self, point: DVec2) -> bool {
         self.edges.iter().map(|edge| winding(edge, point)).sum::<i32>() != 0
     }

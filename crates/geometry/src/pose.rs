@@ -18,6 +18,7 @@ impl Rotation {
 
     /// The rotation by `angle` [rad], counter-clockwise.
     #[must_use]
+    #[inline]
     pub fn from_angle(angle: f64) -> Self {
         // Most bodies of most scenes do not turn: spare them the reduction of the argument.
         if angle == 0.0 {
@@ -85,6 +86,7 @@ impl Pose {
 
     /// This pose in the body coordinates of another pose.
     #[must_use]
+    #[inline]
     pub fn seen_from(&self, other: &Pose) -> Self {
         let (own, its) = (self.rotation, other.rotation);
         let direction = its.unapply(DVec2::new(own.cos, own.sin));

@@ -59,6 +59,7 @@ impl Shape {
     /// # Ok::<(), halfgap_geometry::ShapeError>(())
     /// ```
     #[must_use]
+    #[inline]
     pub fn cast_ray(&self, ray: &Ray, max_distance: f64) -> Option<RayHit> {
         let ray = ray.of_unit_direction()?;
         let inverse = ray.direction.recip();
@@ -78,6 +79,7 @@ impl Ray {
     /// Distance [m] along the ray at which it first meets an edge; `None` if it misses, or if its direction is zero or
     /// not finite.
     #[must_use]
+    #[inline]
     pub fn distance_to(&self, edge: &Edge) -> Option<f64> {
         self.of_unit_direction()?.along_to(edge)
     }

@@ -51,6 +51,7 @@ impl Shape {
     /// # Errors
     /// No paths; open, empty, crossing or degenerate paths: the error names path and edge. Shapes so small or so large
     /// that the fourth power of their size under- or overflows.
+    #[inline]
     pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
         let shape = Self::from_oriented(build_outline(specs)?);
         if shape.parts.mass.is_sound() {
@@ -62,6 +63,7 @@ impl Shape {
 
     /// The shape moved by `shift` [m] in body coordinates.
     #[must_use]
+    #[inline]
     pub fn translated(&self, shift: DVec2) -> Self {
         if shift == DVec2::ZERO {
             return self.clone();
@@ -77,29 +79,34 @@ impl Shape {
 
     /// The closed paths, each with the solid on its left.
     #[must_use]
+    #[inline]
     pub fn paths(&self) -> &[Path] {
         &self.parts.paths
     }
 
     /// All edges of all paths, in the order of [`paths`](Self::paths).
+    #[inline]
     pub fn edges(&self) -> impl Iterator<Item = &Edge> {
         self.parts.paths.iter().flat_map(Path::edges)
     }
 
     /// Area, centroid and second moment of the solid.
     #[must_use]
+    #[inline]
     pub fn mass_properties(&self) -> MassProperties {
         self.parts.mass
     }
 
     /// Smallest axis-aligned box [m] around the shape in body coordinates.
     #[must_use]
+    #[inline]
     pub fn bounds(&self) -> Aabb {
         self.parts.bounds
     }
 
     /// Smallest axis-aligned box [m] around the shape at `pose`, in world coordinates.
     #[must_use]
+    #[inline]
     pub fn bounds_at(&self, pose: &Pose) -> Aabb {
         let x_axis = pose.vector_to_body(DVec2::X);
         let y_axis = pose.vector_to_body(DVec2::Y);
@@ -111,6 +118,7 @@ impl Shape {
     /// Radius [m] of a shape that is a single disc about the body's origin, whose angle does not matter; `None` for all
     /// other shapes.
     #[must_use]
+    #[inline]
     pub fn centered_disc(&self) -> Option<f64> {
         match self.features() {
             [Feature::Round(round)] if round.center == DVec2::ZERO && round.range == DirectionRange::Full => {
@@ -122,6 +130,7 @@ impl Shape {
 
     /// Largest distance [m] of a point of the shape from the body's origin.
     #[must_use]
+    #[inline]
     pub fn reach(&self) -> f64 {
         self.parts.reach
     }
@@ -129,6 +138,7 @@ impl Shape {
     /// Signed distance [m] from the body's origin, along a unit vector [body coordinates], of the shape's farthest
     /// point along it (the support function); negative if the whole shape lies behind the origin.
     #[must_use]
+    #[inline]
     pub fn extent(&self, direction: DVec2) -> f64 {
         let bound = |node: &Node| -(node.center.dot(direction) + node.radius);
         let farthest = self.parts.tree.find_least(f64::INFINITY, &bound, &mut |id| {
@@ -142,6 +152,7 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
+    #[inline]
     pub fn edge_of(&self, id: FeatureId) -> &Edge {
         let source = self.source(id);
         self.edge(EdgeId { path: source.path, edge: source.edge })
@@ -152,6 +163,7 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's edges.
     #[must_use]
+    #[inline]
     pub fn edge(&self, id: EdgeId) -> &Edge {
         &self.parts.paths[id.path as usize].edges()[id.edge as usize]
     }
@@ -164,6 +176,7 @@ impl Shape {
 
     /// The parts of the shape that can touch others: vertices, arcs and lines, in the order of the edges.
     #[must_use]
+    #[inline]
     pub fn features(&self) -> &[Feature] {
         &self.parts.features
     }
@@ -194,6 +207,7 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
+    #[inline]
     pub fn source(&self, id: FeatureId) -> FeatureSource {
         self.parts.sources[id.0 as usize]
     }
@@ -204,6 +218,7 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
+    #[inline]
     pub fn ends_of(&self, feature: FeatureId) -> [Option<FeatureId>; 2] {
         let Some(EdgeId { path, edge }) = self.whole_edge(feature) else { return [None; 2] };
         let count = self.parts.paths[path as usize].edges().len();
@@ -222,6 +237,7 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
+    #[inline]
     pub fn goes_on_straight(&self, arc: FeatureId, direction: DVec2) -> bool {
         let FeatureSource { path, edge, kind } = self.source(arc);
         let Feature::Round(round) = self.feature(arc) else { return false };
@@ -243,6 +259,7 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
+    #[inline]
     pub fn sides_of(&self, feature: FeatureId) -> Option<[FeatureId; 2]> {
         let FeatureSource { path, edge, kind } = self.source(feature);
         if kind != FeatureKind::Vertex {
@@ -259,6 +276,7 @@ impl Shape {
 
     /// The bounding tree over the features.
     #[must_use]
+    #[inline]
     pub fn tree(&self) -> &FeatureTree {
         &self.parts.tree
     }

@@ -68,6 +68,7 @@ impl FeatureTree {
 
     /// The root: `None` only for a shape without features.
     #[must_use]
+    #[inline]
     pub fn root(&self) -> Option<&Node> {
         self.nodes.first()
     }

@@ -2,6 +2,7 @@
 //!
 //! `docs/stability.md` lists the errors reached: run with `-- --nocapture --test-threads 1` to see the numbers.
 
+mod blows;
 mod branches;
 mod cams;
 mod chains;

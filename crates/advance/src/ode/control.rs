@@ -29,6 +29,7 @@ pub struct Accepted {
 
 /// True if a step of this error norm is kept, rather than repeated.
 #[must_use]
+#[inline]
 pub fn is_kept(error_norm: f64) -> bool {
     error_norm <= KEPT
 }
@@ -39,6 +40,7 @@ impl Method {
     /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short. Methods
     /// with fixed steps return 1; a norm that is not finite asks for the smallest factor.
     #[must_use]
+    #[inline]
     pub fn step_factor(self, error_norm: f64) -> f64 {
         let Some(order) = self.error_order() else { return 1.0 };
         if !error_norm.is_finite() {
@@ -57,6 +59,7 @@ impl Method {
     /// Source: Gustafsson's predictive controller as in Hairer and Wanner, "Solving Ordinary Differential Equations
     /// II", IV.8, (8.25).
     #[must_use]
+    #[inline]
     pub fn factor_after(self, step: Accepted, before: Option<Accepted>) -> f64 {
         let plain = self.step_factor(step.error);
         let (Some(before), Some(order)) = (before, self.error_order()) else { return plain };
@@ -68,6 +71,7 @@ impl Method {
     /// Factor from the length of a rejected step, or of one that was accepted only on another try, to that of the next:
     /// at most 1.
     #[must_use]
+    #[inline]
     pub fn step_factor_after_rejection(self, error_norm: f64) -> f64 {
         self.step_factor(error_norm).min(1.0)
     }

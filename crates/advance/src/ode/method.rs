@@ -28,12 +28,14 @@ pub enum Method {
 impl Method {
     /// True if the method estimates its error, so that its steps can follow a tolerance.
     #[must_use]
+    #[inline]
     pub fn is_adaptive(self) -> bool {
         self.error_order().is_some()
     }
 
     /// Order of the method: the error over a fixed time falls with this power of the step.
     #[must_use]
+    #[inline]
     pub fn order(self) -> u32 {
         match self {
             Method::Dop853 => 8,
@@ -47,6 +49,7 @@ impl Method {
     /// Order of the error estimate, which for one step falls with this power of the step plus one; `None` for a method
     /// without an estimate.
     #[must_use]
+    #[inline]
     pub fn error_order(self) -> Option<u32> {
         match self {
             Method::Dop853 => Some(7),
@@ -63,6 +66,7 @@ impl Method {
     /// Source: the boundaries on the real axis of the stability domains, HNW II.4 and E. Hairer, G. Wanner, Solving
     /// Ordinary Differential Equations II, IV.2.
     #[must_use]
+    #[inline]
     pub fn stability_limit(self) -> Option<f64> {
         match self {
             Method::Dop853 => Some(6.1),
@@ -76,6 +80,7 @@ impl Method {
     /// Middle, as a fraction of a step, of the widest interval in which none of the step's rates is evaluated, dense
     /// output included; `None` for methods without error estimate and implicit ones.
     #[must_use]
+    #[inline]
     pub fn middle_between_stages(self) -> Option<f64> {
         let tableau = self.tableau().filter(|_| self.is_adaptive())?;
         let stages = tableau.stages.iter().chain(tableau.dense_stages);

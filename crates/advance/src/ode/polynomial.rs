@@ -115,6 +115,7 @@ impl SegmentPolynomial {
 
     /// The first derivative with respect to time, as a polynomial [1/s].
     #[must_use]
+    #[inline]
     pub fn derivative(&self) -> Self {
         let mut coefficients = [0.0; DEGREE + 1];
         for (power, coefficient) in coefficients[..DEGREE].iter_mut().enumerate() {
@@ -125,12 +126,14 @@ impl SegmentPolynomial {
 
     /// Monomial coefficients in `s = 2 offset / step - 1`, the constant first.
     #[must_use]
+    #[inline]
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
     /// Length of the step [s].
     #[must_use]
+    #[inline]
     pub fn step(&self) -> f64 {
         self.step
     }
@@ -208,24 +211,28 @@ impl SegmentPolynomial {
 
     /// Bounds of the value along the step, by the sizes of the coefficients.
     #[must_use]
+    #[inline]
     pub fn value_spread(&self) -> Spread {
         self.spread(0, |_| 1.0, 1.0)
     }
 
     /// Bounds of the first derivative with respect to time along the step.
     #[must_use]
+    #[inline]
     pub fn derivative_spread(&self) -> Spread {
         self.spread(1, |power| POWERS[power], self.rate)
     }
 
     /// Bounds of the second derivative with respect to time along the step.
     #[must_use]
+    #[inline]
     pub fn second_derivative_spread(&self) -> Spread {
         self.spread(2, |power| POWERS[power] * POWERS[power - 1], self.rate * self.rate)
     }
 
     /// Bounds of the third derivative with respect to time along the step.
     #[must_use]
+    #[inline]
     pub fn third_derivative_spread(&self) -> Spread {
         let factor = |power: usize| POWERS[power] * POWERS[power - 1] * POWERS[power - 2];
         self.spread(3, factor, self.rate * self.rate * self.rate)

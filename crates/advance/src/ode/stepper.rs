@@ -49,6 +49,7 @@ impl Default for Stepper {
 impl Stepper {
     /// Makes a stepper; its buffers are still empty.
     #[must_use]
+    #[inline]
     pub fn new(method: Method) -> Self {
         let kind = match method.tableau() {
             Some(tableau) => Kind::Explicit(Explicit::new(tableau)),
@@ -59,6 +60,7 @@ impl Stepper {
 
     /// Method of the steps.
     #[must_use]
+    #[inline]
     pub fn method(&self) -> Method {
         self.method
     }
@@ -67,6 +69,7 @@ impl Stepper {
     /// implicit method: it solves its equations to a small fraction of them. Components beyond the scales are
     /// integrals, on which no rates depend. Without scales, or with more of them than components, it solves to a small
     /// fraction of the state. Explicit methods ignore them.
+    #[inline]
     pub fn set_scales(&mut self, scales: &[f64]) {
         if let Kind::Implicit(radau) = &mut self.kind {
             radau.set_scales(scales);
@@ -113,6 +116,7 @@ impl Stepper {
     ///
     /// # Panics
     /// If the states and rates differ in length.
+    #[inline]
     pub fn step_open<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,
@@ -128,6 +132,7 @@ impl Stepper {
 
     /// True if the error estimate of the method takes the rates at the end of the step.
     #[must_use]
+    #[inline]
     pub fn needs_end_rates(&self) -> bool {
         matches!(&self.kind, Kind::Explicit(explicit) if explicit.tableau.needs_end_rates)
     }
@@ -137,6 +142,7 @@ impl Stepper {
     ///
     /// # Panics
     /// If they do not fit the state of the last step.
+    #[inline]
     pub fn close(&mut self, end_rates: &[f64]) {
         if let Kind::Explicit(explicit) = &mut self.kind {
             explicit.close(end_rates);
@@ -152,6 +158,7 @@ impl Stepper {
     /// # Panics
     /// If there are more scales than components, where the method has an estimate.
     #[must_use]
+    #[inline]
     pub fn error_norm(&self, scales: &[f64]) -> f64 {
         if scales.is_empty() {
             return 0.0;
@@ -169,6 +176,7 @@ impl Stepper {
     /// # Panics
     /// If there are fewer components than scales from there on, where an explicit method has an estimate.
     #[must_use]
+    #[inline]
     pub fn error_norm_from(&self, first: usize, scales: &[f64]) -> f64 {
         match &self.kind {
             Kind::Explicit(explicit) if !scales.is_empty() => explicit.error_norm(first, scales),
@@ -182,6 +190,7 @@ impl Stepper {
     /// # Panics
     /// If there are more scales than components, for an explicit method.
     #[must_use]
+    #[inline]
     pub fn stiffness(&mut self, end: Point<'_>, scales: &[f64]) -> StiffnessEstimate {
         match &mut self.kind {
             Kind::Explicit(explicit) => explicit.stiffness(end, scales),
@@ -201,6 +210,7 @@ impl Stepper {
     ///
     /// # Panics
     /// If `end` or the components do not fit the state of the last step.
+    #[inline]
     pub fn dense<S: Ode + ?Sized>(
         &mut self,
         system: &mut S,

@@ -34,6 +34,7 @@ impl RigidSystem {
     ///
     /// # Panics
     /// If there is no such body.
+    #[inline]
     pub fn intervene(
         &mut self,
         time: Time,

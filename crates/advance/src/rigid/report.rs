@@ -66,6 +66,7 @@ pub struct ContactChanges {
 impl ContactChanges {
     /// True if nothing begins or ends.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.begin.is_empty() && self.end.is_empty()
     }
@@ -100,12 +101,14 @@ impl ContactChanges {
 impl RigidSystem {
     /// Unilateral rows whose holding began or ended in the last event.
     #[must_use]
+    #[inline]
     pub fn contact_changes(&self) -> &ContactChanges {
         &self.told.changes
     }
 
     /// Evaluates the forces of all held rows at a time within the present segments. Allocates.
     #[must_use]
+    #[inline]
     pub fn row_forces(&self, time: Time) -> Vec<RowForce> {
         let mut stage = self.stage.clone();
         let mut found = Vec::new();

@@ -49,6 +49,7 @@ pub struct Scales {
 
 impl Scales {
     /// Sets `coordinate` and `extent` to those of a scene within the given bounds [m].
+    #[inline]
     pub fn set_bounds(&mut self, bounds: Aabb) {
         self.coordinate = bounds.min.abs().max(bounds.max.abs()).max_element();
         self.extent = bounds.size().length().min(self.coordinate);
@@ -56,12 +57,14 @@ impl Scales {
 
     /// Raises `coordinate` to a distance [m], after the bounds are set: the radius of an arc, whose gaps are measured from
     /// its centre however short it is, or the way that all bodies will go together.
+    #[inline]
     pub fn include_distance(&mut self, distance: f64) {
         self.coordinate = self.coordinate.max(distance);
     }
 
     /// Smallest target gap [m] that can be told from the rounding of coordinates.
     #[must_use]
+    #[inline]
     pub fn smallest_gap(&self) -> f64 {
         GAP_ROUNDINGS * f64::EPSILON * self.coordinate
     }
@@ -69,12 +72,14 @@ impl Scales {
     /// Largest coordinate [m] at which the smallest target gap is no larger than the smallest movable body; `None` if
     /// nothing moves.
     #[must_use]
+    #[inline]
     pub fn largest_coordinate(&self) -> Option<f64> {
         self.smallest_radius.map(|radius| radius / (GAP_ROUNDINGS * f64::EPSILON))
     }
 
     /// Target gap [m] that a relative tolerance asks for; [`Self::smallest_gap`] may exceed it.
     #[must_use]
+    #[inline]
     pub fn wanted_gap(&self, tolerance: f64) -> f64 {
         tolerance * GAP_SHARE * self.smallest_radius.unwrap_or(self.coordinate)
     }
@@ -82,6 +87,7 @@ impl Scales {
     /// Characteristic speed [m/s] of the scene: the larger of `speed` and sqrt(`acceleration` x `extent`), about the
     /// speed of a fall across the scene from rest, wherever it lies.
     #[must_use]
+    #[inline]
     pub fn speed_scale(&self) -> f64 {
         self.speed.max((self.acceleration * self.extent).sqrt())
     }
@@ -97,6 +103,7 @@ impl Scales {
 
     /// Thresholds of touching for a relative tolerance.
     #[must_use]
+    #[inline]
     pub fn tolerances(&self, tolerance: f64) -> Tolerances {
         let target_gap = self.wanted_gap(tolerance).max(self.smallest_gap());
         let told_from_rounding =
@@ -113,6 +120,7 @@ impl RigidSettings {
     /// Settings for a relative tolerance in a scene of the given scales, with the default method: contacts carry
     /// forces, the hybrid law resolves impacts, and ends of steps are projected.
     #[must_use]
+    #[inline]
     pub fn new(tolerance: f64, scales: &Scales) -> Self {
         Self::with_tolerances(tolerance, scales.tolerances(tolerance), scales, Method::default())
     }

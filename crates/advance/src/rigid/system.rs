@@ -201,6 +201,7 @@ impl RigidSystem {
 
     /// Number of bodies.
     #[must_use]
+    #[inline]
     pub fn body_count(&self) -> usize {
         self.flyers.len()
     }
@@ -210,12 +211,14 @@ impl RigidSystem {
     /// # Panics
     /// If there is no such body.
     #[must_use]
+    #[inline]
     pub fn flyer(&self, body: BodyId) -> &Flyer {
         &self.flyers[body.index()]
     }
 
     /// Counts and extremes of the system since its start.
     #[must_use]
+    #[inline]
     pub fn counts(&self) -> Counts {
         let (evaluations, solves) = (self.stage.evaluations, self.stage.solves);
         Counts { evaluations, contact_solves: self.counts.contact_solves + solves, ..self.counts }
@@ -223,30 +226,35 @@ impl RigidSystem {
 
     /// The settings of the system.
     #[must_use]
+    #[inline]
     pub fn settings(&self) -> &RigidSettings {
         &self.settings
     }
 
     /// Report of the last impact; empty if there was none.
     #[must_use]
+    #[inline]
     pub fn last_impact(&self) -> &ImpactReport {
         &self.told.last_impact
     }
 
     /// The impact of the event that then failed, if it got that far: booked in the ledger, not reported.
     #[must_use]
+    #[inline]
     pub fn untold_impact(&self) -> Option<&ImpactReport> {
         (self.told.failure.is_some() && self.told.has_hit).then_some(&self.told.last_impact)
     }
 
     /// Error of the last event, if it could not be handled: the system cannot go on from it.
     #[must_use]
+    #[inline]
     pub fn failure(&self) -> Option<&AdvanceError> {
         self.told.failure.as_ref()
     }
 
     /// Time of the last event handled.
     #[must_use]
+    #[inline]
     pub fn now(&self) -> Time {
         self.now
     }
@@ -256,6 +264,7 @@ impl RigidSystem {
     /// # Panics
     /// If there is no such law.
     #[must_use]
+    #[inline]
     pub fn has_potential(&self, law: usize) -> bool {
         self.laws.has_potential[law]
     }
@@ -269,12 +278,14 @@ impl RigidSystem {
     /// Place on its path near which the point of a rail or of a rail's stop is sought at a time, which must not be
     /// before the last event; `None` for other connectors.
     #[must_use]
+    #[inline]
     pub fn rail_hint(&self, connector: ConnectorId, time: Time) -> Option<RailHint> {
         self.hint_at(connector, 0, time)
     }
 
     /// Pairs of bodies that never collide with each other, the lesser id first, sorted.
     #[must_use]
+    #[inline]
     pub fn excluded(&self) -> &[(BodyId, BodyId)] {
         &self.search.excluded
     }

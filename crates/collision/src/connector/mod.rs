@@ -148,6 +148,7 @@ impl Connector {
     ///
     /// # Errors
     /// Ends on the same body, or a number out of its range.
+    #[inline]
     pub fn new(mut kind: ConnectorKind, elasticity: f64) -> Result<Self, ConnectorError> {
         if let ConnectorKind::Slot { normal, .. } = &mut kind {
             // By its larger component first, so that no square overflows or vanishes.
@@ -165,6 +166,7 @@ impl Connector {
     ///
     /// # Errors
     /// The errors of [`new`](Self::new); also a normal of a slot that is not a unit vector.
+    #[inline]
     pub fn check(&self) -> Result<(), ConnectorError> {
         if !(0.0..=1.0).contains(&self.elasticity) {
             return Err(ConnectorError::BadElasticity(self.elasticity));
@@ -200,6 +202,7 @@ impl Connector {
 
     /// The points that the connector ties together: `a`, and `b` if there is one (not for rails and their stops).
     #[must_use]
+    #[inline]
     pub fn anchors(&self) -> (&Anchor, Option<&Anchor>) {
         match &self.kind {
             ConnectorKind::Pin { a, b }
@@ -212,6 +215,7 @@ impl Connector {
 
     /// Ids of the primary body a and of the normal body b; the latter is the background for rails and their stops.
     #[must_use]
+    #[inline]
     pub fn bodies(&self) -> [BodyId; 2] {
         let (a, b) = self.anchors();
         [a.body, b.map_or(BodyId::WORLD, |b| b.body)]
@@ -233,12 +237,14 @@ impl Connector {
 
     /// True for a rail stop, of whichever rail.
     #[must_use]
+    #[inline]
     pub fn is_stop(&self) -> bool {
         matches!(self.kind, ConnectorKind::RailStop { .. })
     }
 
     /// True for a stop of the given rail: of the same point, and on the same path.
     #[must_use]
+    #[inline]
     pub fn is_stop_of(&self, rail: &Self) -> bool {
         match (&self.kind, &rail.kind) {
             (ConnectorKind::RailStop { a: end, path: ends, .. }, ConnectorKind::Rail { a, path }) => {
@@ -250,6 +256,7 @@ impl Connector {
 
     /// The path of a rail or of a rail stop; `None` for other connectors.
     #[must_use]
+    #[inline]
     pub fn path(&self) -> Option<&Arc<RailPath>> {
         match &self.kind {
             ConnectorKind::Rail { path, .. } | ConnectorKind::RailStop { path, .. } => Some(path),
@@ -354,6 +361,7 @@ impl Connector {
     /// hint, a rail's point may be on any continuation of the path; without one, as at a start, only where the nearest
     /// place is an end.
     #[must_use]
+    #[inline]
     pub fn error(&self, a: &Moving, b: &Moving, hint: Option<&RailHint>) -> f64 {
         if let (ConnectorKind::Rail { a: on_a, path }, Some(_)) = (&self.kind, hint) {
             return path.distance(a.pose.point_to_world(on_a.point));

@@ -104,6 +104,7 @@ impl RailPath {
     ///
     /// # Errors
     /// No edges, numbers that are not finite, or an edge that cannot be built.
+    #[inline]
     pub fn from_edges(start: DVec2, edges: &[EdgeSpec]) -> Result<Self, RailError> {
         Ok(Self { curve: Curve::Edges(EdgePath::new(start, edges)?) })
     }
@@ -115,12 +116,14 @@ impl RailPath {
     ///
     /// # Errors
     /// Fewer than two points (closed: three), numbers that are not finite, neighbours that coincide, or a cusp.
+    #[inline]
     pub fn through(points: &[DVec2], closed: bool) -> Result<Self, RailError> {
         Ok(Self { curve: Curve::Spline(Spline::new(points, closed)?) })
     }
 
     /// Length [m] of the path, without the continuations beyond open ends.
     #[must_use]
+    #[inline]
     pub fn length(&self) -> f64 {
         match &self.curve {
             Curve::Edges(path) => path.length(),
@@ -130,6 +133,7 @@ impl RailPath {
 
     /// True if the path ends at its start and goes on from there.
     #[must_use]
+    #[inline]
     pub fn is_closed(&self) -> bool {
         match &self.curve {
             Curve::Edges(path) => path.is_closed(),
@@ -139,6 +143,7 @@ impl RailPath {
 
     /// A box [m] around the path, without the continuations beyond open ends.
     #[must_use]
+    #[inline]
     pub fn bounds(&self) -> Aabb {
         match &self.curve {
             Curve::Edges(path) => path.bounds(),
@@ -148,6 +153,7 @@ impl RailPath {
 
     /// True for a spline through points, whose third derivative jumps at each of them.
     #[must_use]
+    #[inline]
     pub fn is_spline(&self) -> bool {
         matches!(self.curve, Curve::Spline(_))
     }
@@ -155,6 +161,7 @@ impl RailPath {
     /// The joints of lines and arcs, and of an open path with its continuations, in the order of arc lengths; none for
     /// a spline.
     #[must_use]
+    #[inline]
     pub fn knots(&self) -> &[RailKnot] {
         match &self.curve {
             Curve::Edges(path) => path.knots(),
@@ -164,6 +171,7 @@ impl RailPath {
 
     /// The joint at an end of a piece of lines and arcs, forward or backward; `None` at an open end, and for a spline.
     #[must_use]
+    #[inline]
     pub fn knot_at_end(&self, piece: u32, forward: bool) -> Option<&RailKnot> {
         match &self.curve {
             Curve::Edges(path) => path.knot_at_end(piece as usize, forward),
@@ -174,6 +182,7 @@ impl RailPath {
     /// The next joint of a spline along a velocity [m/s], from the place of a hint. A joint that is all but
     /// reached counts as passed. `None` if there is no joint before an open end, and on a path of edges.
     #[must_use]
+    #[inline]
     pub fn joint_ahead(&self, hint: &RailHint, velocity: DVec2) -> Option<SplineJoint> {
         match &self.curve {
             Curve::Edges(_) => None,
@@ -183,6 +192,7 @@ impl RailPath {
 
     /// The hint to search from a knot forward or backward, along the piece that comes next.
     #[must_use]
+    #[inline]
     pub fn hint_past(&self, knot: &RailKnot, forward: bool) -> RailHint {
         let piece = if forward { knot.after } else { knot.before };
         let parameter = match &self.curve {
@@ -195,6 +205,7 @@ impl RailPath {
     /// The two sides of a corner, before and after a knot: hints to stay on its pieces, whose rows face into the
     /// angle between them. Both gaps are zero at the corner; on either piece the gap to the other is positive.
     #[must_use]
+    #[inline]
     pub fn corner_sides(&self, knot: &RailKnot) -> [RailHint; 2] {
         [false, true].map(|forward| RailHint {
             faces_right: knot.turn < 0.0,
@@ -204,6 +215,7 @@ impl RailPath {
 
     /// The two sides of a corner that lies within a distance [m] of a point; `None` if there is none so near.
     #[must_use]
+    #[inline]
     pub fn corner_at(&self, point: DVec2, within: f64) -> Option<[RailHint; 2]> {
         let is_near = |knot: &RailKnot| self.place_at(knot.arc_length).point().distance(point) <= within;
         let mut corners = self.knots().iter().filter(|knot| knot.turn != 0.0);
@@ -212,6 +224,7 @@ impl RailPath {
 
     /// True if the piece of a hint ends, forward or backward, in a corner at the given arc length [m], to rounding.
     #[must_use]
+    #[inline]
     pub fn ends_in_corner(&self, hint: &RailHint, forward: bool, arc_length: f64) -> bool {
         let is_there = |knot: &RailKnot| {
             let way = (knot.arc_length - arc_length).abs();
@@ -225,6 +238,7 @@ impl RailPath {
     /// the hint, or the one on the hint's piece if the hint stays there. Beyond an open end it lies on the straight
     /// continuation.
     #[must_use]
+    #[inline]
     pub fn nearest(&self, point: DVec2, hint: Option<&RailHint>) -> RailPlace {
         match &self.curve {
             Curve::Edges(path) => path.nearest(point, hint),
@@ -238,6 +252,7 @@ impl RailPath {
     /// The hint to search near the place that [`RailPath::nearest`] finds, at less cost: arc lengths on splines are not
     /// computed.
     #[must_use]
+    #[inline]
     pub fn hint_near(&self, point: DVec2, hint: Option<&RailHint>) -> RailHint {
         match &self.curve {
             Curve::Edges(path) => path.nearest(point, hint).hint(),
@@ -248,6 +263,7 @@ impl RailPath {
     /// The place at an arc length [m]: beyond the ends of an open path on its continuations, of a closed path in
     /// another lap.
     #[must_use]
+    #[inline]
     pub fn place_at(&self, arc_length: f64) -> RailPlace {
         match &self.curve {
             Curve::Edges(path) => path.place_at(arc_length),
@@ -257,6 +273,7 @@ impl RailPath {
 
     /// Distance [m] of a point from the path or, beyond its open ends, from its straight continuations.
     #[must_use]
+    #[inline]
     pub fn distance(&self, point: DVec2) -> f64 {
         let to_path = self.foot(point, None).gap.abs();
         if self.is_closed() {
@@ -291,48 +308,56 @@ impl RailPlace {
 
     /// Index of the piece of the path; the continuations of an open path of edges count as its first and last piece.
     #[must_use]
+    #[inline]
     pub fn piece(&self) -> u32 {
         self.foot.piece
     }
 
     /// The point of the path [m].
     #[must_use]
+    #[inline]
     pub fn point(&self) -> DVec2 {
         self.foot.point
     }
 
     /// Unit vector of travel.
     #[must_use]
+    #[inline]
     pub fn tangent(&self) -> DVec2 {
         self.foot.tangent
     }
 
     /// Unit normal, on the left of the direction of travel.
     #[must_use]
+    #[inline]
     pub fn normal(&self) -> DVec2 {
         self.foot.normal
     }
 
     /// Curvature [1/m], positive to the left.
     #[must_use]
+    #[inline]
     pub fn curvature(&self) -> f64 {
         self.foot.curvature
     }
 
     /// Derivative of the curvature by the arc length [1/m^2].
     #[must_use]
+    #[inline]
     pub fn curvature_rate(&self) -> f64 {
         self.foot.curvature_rate
     }
 
     /// Signed distance [m] of the query point from the path, positive to the left; 0 for a place at an arc length.
     #[must_use]
+    #[inline]
     pub fn gap(&self) -> f64 {
         self.foot.gap
     }
 
     /// A hint to search near this place.
     #[must_use]
+    #[inline]
     pub fn hint(&self) -> RailHint {
         self.foot.hint()
     }
@@ -350,6 +375,7 @@ impl RailHint {
     /// may be nearer: no gap then jumps before an event at the joint is handled. It has no effect on a spline, where
     /// nothing jumps.
     #[must_use]
+    #[inline]
     pub fn staying(self) -> Self {
         Self { stays: true, ..self }
     }
@@ -358,24 +384,28 @@ impl RailHint {
     /// gaps that differ by laps, the one nearest to it is measured. `None` if it is not known: the point then is before
     /// the stop, or just at it.
     #[must_use]
+    #[inline]
     pub fn with_before_stop(self, before_stop: Option<f64>) -> Self {
         Self { before_stop, ..self }
     }
 
     /// True if the hint stays on its piece.
     #[must_use]
+    #[inline]
     pub fn is_staying(&self) -> bool {
         self.stays
     }
 
     /// Arc length [m] that the point last had left before a stop, if it is known.
     #[must_use]
+    #[inline]
     pub fn before_stop(&self) -> Option<f64> {
         self.before_stop
     }
 
     /// The hint with the row of a rail facing left again, as everywhere but in a corner.
     #[must_use]
+    #[inline]
     pub fn facing_left(self) -> Self {
         Self { faces_right: false, ..self }
     }

@@ -23,6 +23,7 @@ impl HeldRows {
     /// force by refinement. Forces therefore do not jump when the dependence among these rows changes along a motion,
     /// and a motion that violates the rows by rounding causes no forces from their disagreement alone. A violation by
     /// more than about 1e-7 of a length does: callers farther off must move the bodies onto the rows first.
+    #[inline]
     pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
         for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
             *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
@@ -32,6 +33,7 @@ impl HeldRows {
 
     /// Whether any rows share their load by [`soften`](Self::soften).
     #[must_use]
+    #[inline]
     pub fn is_soft(&self) -> bool {
         self.is_soft
     }
@@ -39,6 +41,7 @@ impl HeldRows {
     /// Whether the row with index `row` depends on others by the last [`factorize`](Self::factorize), and so takes no
     /// force.
     #[must_use]
+    #[inline]
     pub fn is_dependent(&self, row: usize) -> bool {
         let place = self.order.rows.iter().position(|&other| other as usize == row);
         place.is_some_and(|place| !self.factor.has_pivot(place))
@@ -56,6 +59,7 @@ impl HeldRows {
     /// were held: the least of all rows after the `aside` rows that kept even less. 1 if there are no more rows. Where
     /// it falls to 0, rows of loops depend on each other for a moment.
     #[must_use]
+    #[inline]
     pub fn kept_beyond(&mut self, aside: usize) -> f64 {
         if aside >= self.len() {
             return 1.0;

@@ -95,6 +95,7 @@ pub enum ImpactError {
 impl ImpactError {
     /// Index of the row that the error is about; `None` if it is about all of them.
     #[must_use]
+    #[inline]
     pub fn row(&self) -> Option<usize> {
         match *self {
             Self::BadRow { row, .. }
@@ -190,6 +191,7 @@ impl Impact {
     ///
     /// # Errors
     /// Those of [`ImpactLaw::resolve`].
+    #[inline]
     pub fn resolve_inelastic(&mut self) -> Result<(), ImpactError> {
         let small = self.begin()?;
         self.solve_all_inelastic(small)?;
@@ -201,6 +203,7 @@ impl Impact {
     ///
     /// # Errors
     /// Those of [`ImpactLaw::resolve`]; [`ImpactError::Unsolved`] also when the pivots run out.
+    #[inline]
     pub fn try_inelastic(&mut self) -> Result<(), ImpactError> {
         self.is_trial = true;
         let outcome = self.resolve_inelastic();

@@ -238,7 +238,10 @@ mod tests {
         let mut impact = Impact::new();
         impact.set_rows(rows.iter().copied());
         impact.find_locked(1e-9, between_walls);
-        assert!(impact.rates().iter().chain(impact.impulses()).all(|&x| x == 0.0), "the impact stays as it was");
+        assert!(
+            impact.rates().iter().chain(impact.impulses()).all(|&x| x == 0.0),
+            "the impact stays as it was"
+        );
         (0..rows.len()).map(|row| impact.is_locked(row)).collect()
     }
 
@@ -254,7 +257,9 @@ mod tests {
     fn bodies_that_all_can_move_lock_each_other_but_not_at_walls() {
         // Two discs fill a frame from side to side.
         let disc = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
-        let row = |a: u32, b: u32| CollisionRow::new([BodyId(a), BodyId(b)], [1.0, 0.0, 0.0, -1.0, 0.0, 0.0], [disc; 2], 0.0);
+        let row = |a: u32, b: u32| {
+            CollisionRow::new([BodyId(a), BodyId(b)], [1.0, 0.0, 0.0, -1.0, 0.0, 0.0], [disc; 2], 0.0)
+        };
         let rows = [row(1, 0), row(2, 1), row(0, 2)];
         assert_eq!(locked(&rows, false), [true; 3]);
         assert_eq!(locked(&rows, true), [false; 3]);
@@ -284,7 +289,11 @@ mod tests {
                 assert!((impact.impulses()[4] - impulse).abs() < 1e-12, "{law:?}: {:?}", impact.impulses());
                 // The walls turn back what the blow would turn, by one corner on each side.
                 let walls: f64 = impact.impulses()[..4].iter().sum();
-                assert!((walls - 2.0 * 0.3 * impulse / 0.5).abs() < 1e-12, "{law:?}: {:?}", impact.impulses());
+                assert!(
+                    (walls - 2.0 * 0.3 * impulse / 0.5).abs() < 1e-12,
+                    "{law:?}: {:?}",
+                    impact.impulses()
+                );
             }
         }
     }

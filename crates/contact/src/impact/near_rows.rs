@@ -408,7 +408,8 @@ mod tests {
         let mut impact = Impact::new();
         impact.set_rows(rows.iter().copied());
         law.resolve(&mut impact, ImpactOrder::Fastest, 0).expect("an answer");
-        let sum = |k: usize| rows.iter().zip(impact.impulses()).map(|(row, j)| row.response[k] * j).sum::<f64>();
+        let sum =
+            |k: usize| rows.iter().zip(impact.impulses()).map(|(row, j)| row.response[k] * j).sum::<f64>();
         [x + sum(0), y + sum(1)]
     }
 
@@ -419,7 +420,8 @@ mod tests {
             for (law, elasticity) in
                 [(ImpactLaw::Simultaneous, 1.0), (ImpactLaw::Hybrid, 1.0), (ImpactLaw::Hybrid, 0.5)]
             {
-                let (before, rows) = ([0.0, -5.0], [0.0, angle].map(|angle| leaning(angle, [0.0, -5.0], elasticity)));
+                let (before, rows) =
+                    ([0.0, -5.0], [0.0, angle].map(|angle| leaning(angle, [0.0, -5.0], elasticity)));
                 let [x, y] = after(&rows, before, law);
                 assert!((y - 5.0 * elasticity).abs() < 1e-12 && x.abs() < 1e-8, "{angle:e}: {x:e}, {y}");
             }
@@ -431,11 +433,17 @@ mod tests {
         // The rods' anchors lie an angle apart, seen from the bob; a ball hits the bob across both.
         for (angle, is_fixed) in [(1e-2, true), (2e-6, true), (2e-7, true), (2e-8, false), (1e-12, false)] {
             let ball = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
-            let rod = |lean: f64| CollisionRow { bilateral: true, elasticity: 0.0, ..leaning(lean, [0.0; 2], 0.0) };
+            let rod =
+                |lean: f64| CollisionRow { bilateral: true, elasticity: 0.0, ..leaning(lean, [0.0; 2], 0.0) };
             let hit = CollisionRow {
                 elasticity: 1.0,
                 velocity_tol: 1e-6,
-                ..CollisionRow::new([BodyId(1), BodyId(0)], [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [ball, DISC], -2.0)
+                ..CollisionRow::new(
+                    [BodyId(1), BodyId(0)],
+                    [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+                    [ball, DISC],
+                    -2.0,
+                )
             };
             let rows = [rod(-0.5 * angle), rod(0.5 * angle), hit];
             for law in [ImpactLaw::Simultaneous, ImpactLaw::Hybrid, ImpactLaw::SerialGrouped] {

@@ -123,6 +123,7 @@ impl RigidSystem {
     /// # Panics
     /// If there is no such body.
     #[must_use]
+    #[inline]
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         let Some(step) = self.settings.impulse_step else { return 0.0 };
         let reach = bodies.map(|body| self.flyer(body).reach());

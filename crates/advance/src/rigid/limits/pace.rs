@@ -65,6 +65,7 @@ impl<const STEPS: u32> Count<STEPS> {
 impl RigidSystem {
     /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] and [`AdvanceError::TooFast`] are
     /// never returned. These errors leave the system valid: with a lesser duration set, it can be advanced further.
+    #[inline]
     pub fn set_duration(&mut self, duration: f64) {
         self.limits.duration = duration;
     }

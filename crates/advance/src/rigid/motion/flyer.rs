@@ -24,6 +24,7 @@ pub struct FlightLaw {
 impl FlightLaw {
     /// True if the body is damped.
     #[must_use]
+    #[inline]
     pub fn is_damped(&self) -> bool {
         self.linear_rate != 0.0 || self.angular_rate != 0.0
     }
@@ -62,12 +63,14 @@ impl Flyer {
 
     /// The body.
     #[must_use]
+    #[inline]
     pub fn body(&self) -> &Body {
         &self.body
     }
 
     /// Acceleration and damping of the body in free flight.
     #[must_use]
+    #[inline]
     pub fn law(&self) -> FlightLaw {
         let (acceleration, [linear_rate, angular_rate]) = (self.flight.acceleration(), self.flight.rates());
         FlightLaw { acceleration, linear_rate, angular_rate }
@@ -75,6 +78,7 @@ impl Flyer {
 
     /// State of the body at a time of the present segment, in the world frame; its angle [rad] includes whole turns.
     #[must_use]
+    #[inline]
     pub fn state_at(&self, time: Time) -> BodyState {
         let state = self.unwound_at(time);
         BodyState { angle: self.with_turns(state.angle), ..state }
@@ -106,6 +110,7 @@ impl Flyer {
 
     /// State at the start of the present segment, if it is a flight in closed form.
     #[must_use]
+    #[inline]
     pub fn flight_start(&self) -> Option<&BodyState> {
         (!self.is_integrated).then(|| self.flight.start())
     }

@@ -24,6 +24,7 @@ pub struct Snapshot<'a> {
 impl<'a> Snapshot<'a> {
     /// Makes a snapshot of all bodies, in the order of their ids, at a time [s].
     #[must_use]
+    #[inline]
     pub fn new(time: f64, bodies: &'a [Moving]) -> Self {
         Self { time, bodies, flyers: &[] }
     }
@@ -67,6 +68,7 @@ pub struct Wrenches<'a>(&'a mut [Wrench]);
 
 impl<'a> Wrenches<'a> {
     /// Wraps sums to which a law adds, in the order of the bodies' ids.
+    #[inline]
     pub fn new(sums: &'a mut [Wrench]) -> Self {
         Self(sums)
     }
