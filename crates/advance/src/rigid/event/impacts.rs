@@ -2,6 +2,7 @@
 
 use super::region::Region;
 use crate::rigid::error::{AdvanceError, Between};
+use crate::rigid::held::squeezed::LARGEST_MASS_RATIO;
 use crate::rigid::limits::bounces::closes_fast;
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
@@ -212,7 +213,7 @@ impl RigidSystem {
 
     fn impact_error(&self, region: &Region, time: Time, source: ImpactError) -> AdvanceError {
         let touching = region.records.iter().map(Collision::bodies);
-        if let Err(squeezed) = self.refuse_squeezed(touching, time) {
+        if let Err(squeezed) = self.refuse_squeezed(touching, LARGEST_MASS_RATIO, time) {
             return squeezed;
         }
         let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();

@@ -6,6 +6,7 @@
 //! from the others.
 
 use super::settling::{SMALL_CONTRADICTION, Settling};
+use super::squeezed::{HOPELESS_MASS_RATIO, LARGEST_MASS_RATIO};
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::event::cause::{Cause, EventWork};
 use crate::rigid::event::jams::JAM;
@@ -111,7 +112,7 @@ impl RigidSystem {
             self.spare_redundant(region, settling, stage);
         }
         self.choose_rows(region, settling, time);
-        self.refuse_squeezed(settling.held.iter().map(|(_, row)| row.bodies), time)
+        self.refuse_squeezed(settling.held.iter().map(|(_, row)| row.bodies), HOPELESS_MASS_RATIO, time)
     }
 
     /// Finds the forces of the candidates; leaves some of them out if they jam or no solution is found.
@@ -389,7 +390,7 @@ impl RigidSystem {
         source: SolveError,
     ) -> AdvanceError {
         let touching = region.records.iter().map(Collision::bodies);
-        if let Err(squeezed) = self.refuse_squeezed(touching, time) {
+        if let Err(squeezed) = self.refuse_squeezed(touching, LARGEST_MASS_RATIO, time) {
             return squeezed;
         }
         let mut bodies: Vec<BodyId> =
