@@ -26,9 +26,10 @@ fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
             advance(&mut world, f64::from(second));
             assert!(connector_error(&world) < 1e-6, "{} m at {second} s", connector_error(&world));
         }
-        // A constant force drives it round.
+        // A constant force drives it round, how far is chance: of 150 such nudges at 6b6615a eight led to 79 to 99 rad, half
+        // to 220 and more.
         let turned = world.state(handle).angle.abs();
-        assert!(turned > 16.0 * std::f64::consts::TAU, "turned by {turned}");
+        assert!(turned > 10.0 * std::f64::consts::TAU, "turned by {turned}");
     }
 }
 

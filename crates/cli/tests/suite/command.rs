@@ -631,7 +631,7 @@ fn tables_show_no_digits_below_what_a_run_can_know() {
     assert!(powers.clone().all(|power| power != 0 && power > -20), "{text}");
     let speeds = text.lines().skip(3).take(25).filter_map(|line| line.split_whitespace().rev().nth(2));
     assert!(speeds.clone().count() == 25 && speeds.filter(|&speed| speed == "0").count() == 25, "{text}");
-    assert!(text.contains("at the end       kinetic 0 J, potential 50.36"), "{text}");
+    assert!(text.contains("at the end       kinetic 0 J, potential 50.3"), "{text}");
     // What programs read has all digits.
     let result = json(&halfgap(&["run", &heap, "--json"]));
     assert!(
