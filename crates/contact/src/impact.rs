@@ -84,7 +84,7 @@ struct Scratch {
     /// Rates [m/s] and impulses [N s] before a round, to which a failed round goes back.
     rates: Vec<f64>,
     impulses: Vec<f64>,
-    /// Rates [m/s] and impulses [N s] before rows were solved one after another.
+    /// Rates [m/s] and impulses [N s] to go back to.
     start_rates: Vec<f64>,
     start_impulses: Vec<f64>,
     /// Impulse [N s] that each row was unloaded by, until a problem without elasticity starts from it; empty if none

@@ -161,7 +161,7 @@ impl ImpactLaw {
                     impact.start_again();
                     impact.solve_all(rest, &mut Patience::short(impact.rows.len(), small.max(quiet)))?;
                 }
-                impact.relieve_locked()?;
+                impact.relieve_locked();
             }
         }
         if self.has_last_pass() {
@@ -250,13 +250,13 @@ impl Impact {
     }
 
     /// Keeps the rates and impulses with which the rows begin.
-    fn keep_start(&mut self) {
+    pub(super) fn keep_start(&mut self) {
         self.scratch.start_rates.clone_from(&self.rates);
         self.scratch.start_impulses.clone_from(&self.impulses);
     }
 
     /// Goes back to the rates and impulses that were kept.
-    fn start_again(&mut self) {
+    pub(super) fn start_again(&mut self) {
         self.rates.clone_from(&self.scratch.start_rates);
         self.impulses.clone_from(&self.scratch.start_impulses);
     }

@@ -10,7 +10,6 @@
 //! them are locked. If not, those that open are none, and the others are tried again: each round drops one at least.
 
 use super::Impact;
-use super::law::ImpactError;
 use super::pair_problem::DEPENDENT;
 use crate::row::CollisionRow;
 use halfgap_collision::BodyId;
@@ -80,36 +79,34 @@ impl Impact {
 
     /// Drops the locked rows that do not reach anything immovable through each other.
     fn keep_those_at_walls(&self, locked: &mut Locked) {
-        let Locked { rows, at_rest: reached, .. } = locked;
+        let Locked { rows, parts, at_rest: reached, .. } = locked;
         reached.clear();
-        reached.extend(
-            (0..rows.len()).filter(|&row| rows[row] && self.rows[row].movable_bodies().contains(&None)),
-        );
-        let locked_rows = std::mem::take(&mut locked.parts);
+        let is_at_wall = |&row: &usize| rows[row] && self.rows[row].movable_bodies().contains(&None);
+        reached.extend((0..rows.len()).filter(is_at_wall));
         rows.fill(false);
         reached.iter().for_each(|&row| rows[row] = true);
         let mut next = 0;
         while next < reached.len() {
             for (other, _) in self.couplings.row(reached[next]) {
-                if locked_rows[other] == Part::Pressed && !rows[other] {
+                if parts[other] == Part::Pressed && !rows[other] {
                     rows[other] = true;
                     reached.push(other);
                 }
             }
             next += 1;
         }
-        locked.parts = locked_rows;
         if reached.is_empty() {
-            locked.rows.clear();
+            rows.clear();
         }
     }
 
     /// Takes the impulses of locked rows that press on each other without moving a body out of them: blow after blow may
-    /// have left some, in one direction and in the other.
-    pub(super) fn relieve_locked(&mut self) -> Result<(), ImpactError> {
+    /// have left some, in one direction and in the other. Where no others are found, they stay.
+    pub(super) fn relieve_locked(&mut self) {
         if !self.has_locked() {
-            return Ok(());
+            return;
         }
+        self.keep_start();
         let mut set = std::mem::take(&mut self.scratch.set);
         set.clear();
         set.extend((0..self.rows.len()).filter(|&row| self.is_locked(row)));
@@ -117,9 +114,10 @@ impl Impact {
             self.apply(row, -self.impulses[row]);
         }
         self.aim_at_rest();
-        let outcome = self.solve_together(&set);
+        if self.solve_together(&set).is_err() {
+            self.start_again();
+        }
         self.scratch.set = set;
-        outcome
     }
 
     fn list_at_rest(&self, locked: &mut Locked, rest: f64) {

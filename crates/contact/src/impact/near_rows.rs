@@ -6,7 +6,8 @@
 //! rates is left. It moves a body by its share 1e-16/x of the speed, across the two directions. Rows closer than
 //! [`DEPENDENT`] count as one: told apart, rounding would move bodies by more than the angle between them does.
 //!
-//! The method is that of Goldfarb and Idnani (see `dual_active_set`), with the factor made anew at each pivot.
+//! The method is that of Goldfarb and Idnani (see `dual_active_set`), with the factor made anew at each pivot: it serves
+//! the few rows of `few_rows`.
 
 use super::Impact;
 use super::pair_problem::DEPENDENT;
@@ -14,16 +15,12 @@ use crate::problem::pushing;
 use crate::row::CollisionRow;
 use crate::twofold::{Number, Twofold};
 
-/// Largest number of rows. A pivot takes about n^3/3 products of twice as many digits: 0.1 ms with 24 rows.
-pub(super) const MOST: usize = 24;
-
 /// Rounding of a scaled rate, as a fraction of the largest: that of the products it was made from.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Fraction of a contact's square: if others leave less of it, it counts as one with them. Two contacts 1e-5 rad from
-/// opposite each other would hold a body that slides between them like a vice, but where they lie is known no better
-/// than the gap, over which their directions change by more. With 64 roundings instead (1e-7 rad), blocks that fit from
-/// wall to wall sink into the walls (variation 14724), and a grinder with 7 mm of play stops.
+/// Fraction of a contact's square: if others leave less of it, it counts as one with them, as in larger problems
+/// (`Settings::dependence`). Two contacts 3e-6 rad from opposite each other hold a body between them like a vice, though
+/// where they lie is known no better than the gap, over which their directions change by more.
 const CONTACTS: f64 = 1e-11;
 
 /// Cap on pivots, per row.
@@ -51,10 +48,10 @@ pub(super) struct NearRows {
     /// The connectors in the order in which they are closed, the most independent ones first: forces through a bad lever
     /// would be large.
     connectors: Vec<usize>,
+    /// What each of them left of its square, while they are listed.
+    pivot: Vec<Twofold>,
     /// Whether a row counts as one with closed ones, which may contradict it by as little as they are told apart.
     is_same: Vec<bool>,
-    /// What each listed connector left of its square, while they are listed.
-    pivot: Vec<Twofold>,
     /// The largest violation of such a row, as a scaled rate [sqrt(kg) m/s].
     left: f64,
     /// The factor L D L^T of A on the closed rows, by rows, with D on the diagonal.
@@ -329,12 +326,9 @@ enum Step {
 }
 
 impl Impact {
-    /// Solves rows that may nearly depend on each other, each to reach its target rate, and applies the impulses; false
-    /// if they contradict each other or are too many.
+    /// Solves a few rows that may nearly depend on each other, each to reach its target rate, and applies the impulses;
+    /// false if they contradict each other.
     pub(super) fn solve_near(&mut self, set: &[usize]) -> bool {
-        if set.len() > MOST {
-            return false;
-        }
         let mut near = self.scratch.near.take().unwrap_or_default();
         near.clear();
         for &row in set {
