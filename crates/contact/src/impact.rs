@@ -87,6 +87,9 @@ struct Scratch {
     /// Rates [m/s] and impulses [N s] to go back to.
     start_rates: Vec<f64>,
     start_impulses: Vec<f64>,
+    /// Number of turns that each row has had as the focus, empty before the first, and whether one has had many.
+    turns: Vec<u8>,
+    has_returned: bool,
     /// Impulse [N s] that each row was unloaded by, until a problem without elasticity starts from it; empty if none
     /// was.
     carried: Vec<f64>,
@@ -122,6 +125,8 @@ impl Impact {
         self.solves = 0;
         self.scratch.carried.clear();
         self.scratch.locked.clear();
+        self.scratch.turns.clear();
+        self.scratch.has_returned = false;
     }
 
     /// Subtracts from each row an impulse [N s] that it carries anyway, such as the force of a contact times a

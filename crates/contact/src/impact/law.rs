@@ -2,7 +2,7 @@
 
 use super::many_rows::NEARLY;
 use super::patience::{Patience, QUIET, RICOCHET};
-use super::serial::Grouping;
+use super::serial::{Grouping, Ricochet};
 use super::shuffle::Shuffle;
 use super::{Impact, NOISE};
 use crate::check::Residuals;
@@ -152,10 +152,14 @@ impl ImpactLaw {
         match self.grouping() {
             None => impact.solve_all(rest, &mut patience)?,
             Some(grouping) => {
-                // A last pass is meant to stop what would go to and fro between bodies that all can move.
-                impact.find_locked(rest, self.has_last_pass());
                 impact.keep_start();
-                impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?;
+                let begun = patience;
+                while impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)? == Ricochet::Returns {
+                    // A last pass is meant to stop what would go to and fro between bodies that all can move.
+                    if impact.find_locked_at_start(rest, self.has_last_pass()) {
+                        patience = begun;
+                    }
+                }
                 if impact.has_few_contacts() && impact.still_rebounds(rest.max(NEARLY * impact.fastest)) {
                     // Walls at too small an angle. Together the rows turn the body back as that many blows would.
                     impact.start_again();

@@ -59,6 +59,18 @@ impl Impact {
         !self.scratch.locked.rows.is_empty()
     }
 
+    /// Flags the locked rows among those that rested as the impact began (see [`find_locked`](Self::find_locked)), and goes
+    /// back to that start if there are any; the impact stays as it is if not.
+    pub(super) fn find_locked_at_start(&mut self, rest: f64, between_walls: bool) -> bool {
+        std::mem::swap(&mut self.rates, &mut self.scratch.start_rates);
+        self.find_locked(rest, between_walls);
+        std::mem::swap(&mut self.rates, &mut self.scratch.start_rates);
+        if self.has_locked() {
+            self.start_again();
+        }
+        self.has_locked()
+    }
+
     /// Flags the locked rows among those whose rate is at most `rest` [m/s]; if `between_walls`, those alone that press,
     /// directly or through other locked rows, on something immovable.
     pub(super) fn find_locked(&mut self, rest: f64, between_walls: bool) {

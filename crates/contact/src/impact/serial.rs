@@ -20,6 +20,19 @@ pub(super) enum Grouping {
     Closing,
 }
 
+/// Outcome of a round of rows that are solved one after another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ricochet {
+    /// No row is violated any more, or the patience has ended.
+    Over,
+    /// An impulse has come back to one row time and again, for the first time in the impact.
+    Returns,
+}
+
+/// Number of times that a row is the focus before locked rows are looked for. Locked rows drive each other again and again,
+/// but for those that no impulse reaches; in heaps most rows have their turn once or twice.
+const RETURNS: u8 = 3;
+
 /// Fraction of the greatest violation: rows within it of the fastest tie with it, so that rounding does not decide
 /// between them.
 const TIE: f64 = 1e-9;
@@ -30,13 +43,13 @@ const TIE: f64 = 1e-9;
 const COMPARABLE: f64 = 1.0 / 32.0;
 
 impl Impact {
-    /// Solves focus after focus until no row is violated or the patience ends.
+    /// Solves focus after focus until no row is violated or the patience ends; stops once as an impulse comes back to a row.
     pub(super) fn solve_serially(
         &mut self,
         grouping: Grouping,
         mut shuffle: Option<&mut Shuffle>,
         patience: &mut Patience,
-    ) -> Result<(), ImpactError> {
+    ) -> Result<Ricochet, ImpactError> {
         while let Some(focus) = self.focus(shuffle.as_deref_mut(), patience.small()) {
             let solved = if grouping == Grouping::One && !self.has_locked() {
                 self.solve_alone(focus, self.rebound_alone(focus));
@@ -47,8 +60,24 @@ impl Impact {
             if !patience.spend(solved) {
                 break;
             }
+            if self.comes_back(focus) {
+                return Ok(Ricochet::Returns);
+            }
         }
-        Ok(())
+        Ok(Ricochet::Over)
+    }
+
+    /// Counts the turns of a row; true once in an impact, when one has had as many as [`RETURNS`].
+    fn comes_back(&mut self, focus: usize) -> bool {
+        let turns = &mut self.scratch.turns;
+        if turns.is_empty() {
+            turns.resize(self.rows.len(), 0);
+        }
+        // No more is counted than decides.
+        turns[focus] = turns[focus].saturating_add(1);
+        let returns = turns[focus] == RETURNS && !self.scratch.has_returned;
+        self.scratch.has_returned |= returns;
+        returns
     }
 
     /// The next focus among the violated rows: the fastest, the last of several that tie, or a random one if there is a
