@@ -14,23 +14,27 @@ fn world(scene: &Scene) -> World {
 /// The reference's grinder works only while its start is exactly aligned. Its shuttles fit into their slots so closely
 /// that they are held on both sides; once they were held for good where corners of both sides came to lie opposite
 /// each other.
+/// A constant force drives it round, how far is chance: of 150 nudges 9 led to 79 to 99 rad, half to 221 and more (and
+/// 8 at 6b6615a, before near rows were solved with more digits).
 #[test]
 fn the_grinder_runs_on_for_a_hundred_seconds_when_it_is_nudged() {
-    for (body, nudge) in [(0, 1e-9), (1, 1e-9), (2, -1e-9), (1, 1e-8)] {
-        let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
-        scene.bodies[body].angle += nudge;
-        scene.set_duration(100.0, "duration").expect("a fine duration");
-        let mut world = world(&scene);
-        let handle = world.find("handle").expect("it is there");
-        for second in 1..=100 {
-            advance(&mut world, f64::from(second));
-            assert!(connector_error(&world) < 1e-6, "{} m at {second} s", connector_error(&world));
+    let mut turned = Vec::new();
+    for (body, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)] {
+        for size in [1e-9, 1e-8] {
+            let mut scene = reference_scene("do_nothing__do_nothing_grinder_test1");
+            scene.bodies[body].angle += sign * size;
+            scene.set_duration(100.0, "duration").expect("a fine duration");
+            let mut world = world(&scene);
+            let handle = world.find("handle").expect("it is there");
+            for second in 1..=100 {
+                advance(&mut world, f64::from(second));
+                assert!(connector_error(&world) < 1e-6, "{} m at {second} s", connector_error(&world));
+            }
+            turned.push(world.state(handle).angle.abs() / std::f64::consts::TAU);
         }
-        // A constant force drives it round, how far is chance: of 150 such nudges at 6b6615a eight led to 79 to 99 rad, half
-        // to 220 and more.
-        let turned = world.state(handle).angle.abs();
-        assert!(turned > 10.0 * std::f64::consts::TAU, "turned by {turned}");
     }
+    let mean = turned.iter().sum::<f64>() / turned.len() as f64;
+    assert!(mean > 24.0 && turned.iter().all(|&turns| turns > 10.0), "turned by {turned:?}");
 }
 
 #[test]

@@ -506,10 +506,11 @@ mod tests {
             direct.aim_at_rest();
             let mut pivoted = direct.clone();
             let set: Vec<usize> = (0..direct.rows.len()).collect();
-            if direct.solve_few(&set) {
+            // Where rows depend on each other, the forces of the other method are rounding: see `near_rows`.
+            if direct.solve_few(&set) && direct.scratch.near.is_none() {
                 pivoted.solve_with(&mut ManyRows::default(), &set)?;
                 for (p, q) in direct.rates.iter().zip(&pivoted.rates) {
-                    prop_assert!((p - q).abs() < 1e-9 * (1.0 + p.abs()), "{p}, {q}");
+                    prop_assert!((p - q).abs() < 1e-9, "{p}, {q}");
                 }
             }
         }
