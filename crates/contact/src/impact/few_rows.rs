@@ -5,14 +5,11 @@
 //! (Portugal, Júdice and Vicente 1994; see `start`). A row that nearly depends on those before it gets no force, as
 //! long as these hold it too. Problems that do not end so are left to `many_rows`.
 
+use super::pair_problem::IN_DOUBLES;
 use crate::settings::Settings;
 
 /// Largest number of rows that are solved directly.
 pub(super) const FEW: usize = 8;
-
-/// Fraction of a row's square that the rows before it must leave to hold it: connectors that nearly depend on each other
-/// move a body across them by 1e-16 over this fraction. What leaves less and is violated is solved by `near_rows`.
-const WELL: f64 = 1e-5;
 
 /// Rounding of a rate, as a fraction of the scale plus the sum of its absolute terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -126,7 +123,7 @@ impl FewRows {
                 square -= factor[count][j] * row[j];
                 right -= factor[count][j] * value[j];
             }
-            if square > WELL {
+            if square > IN_DOUBLES {
                 (rows[count], pivot[count], value[count]) = (candidate, square, right);
                 count += 1;
             } else {

@@ -9,7 +9,8 @@ use crate::check::Residuals;
 use crate::row::CollisionRow;
 use halfgap_collision::geometry::Rounded;
 
-/// Rule by which the rows of an impact are solved together or one after another.
+/// Rule by which the rows of an impact are solved together or one after another. Rows at rest that no motion can open, those
+/// of a body that fits exactly between others, are solved with each row that reaches them, by every law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImpactLaw {
     /// All rows that close or rest in one problem, with all connectors; repeated while rows still close.
@@ -154,11 +155,12 @@ impl ImpactLaw {
             Some(grouping) => {
                 impact.keep_start();
                 let begun = patience;
-                while impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)? == Ricochet::Returns {
+                if impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)? == Ricochet::Returns {
                     // A last pass is meant to stop what would go to and fro between bodies that all can move.
                     if impact.find_locked_at_start(rest, self.has_last_pass()) {
                         patience = begun;
                     }
+                    impact.solve_serially(grouping, shuffle.as_mut(), &mut patience)?;
                 }
                 if impact.has_few_contacts() && impact.still_rebounds(rest.max(NEARLY * impact.fastest)) {
                     // Walls at too small an angle. Together the rows turn the body back as that many blows would.
@@ -267,10 +269,8 @@ impl Impact {
 
     /// Whether a contact closes faster than `slow` [m/s] and would rebound.
     fn still_rebounds(&self, slow: f64) -> bool {
-        let rebounds = |row: usize| {
-            let CollisionRow { bilateral, elasticity, .. } = self.rows[row];
-            !bilateral && elasticity > 0.0 && self.rows[row].rebounds_at(-self.rates[row])
-        };
+        let rebounds =
+            |row: usize| self.rows[row].elasticity > 0.0 && self.rows[row].rebounds_at(-self.rates[row]);
         (0..self.rows.len()).any(|row| self.is_violated(row, slow) && rebounds(row))
     }
 

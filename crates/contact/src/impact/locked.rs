@@ -163,16 +163,22 @@ impl Impact {
         left > 0
     }
 
-    /// Whether pressed rows and connectors may balance a pressed row on a body: no direction in which all of them push, the
-    /// row itself or the mean of all, is left.
+    /// Whether pressed rows and connectors may balance a pressed row on a body. A connector may always; pressed rows if one
+    /// pushes against this row, and if the mean push of all is not along both this row and every other.
     fn is_opposed(&self, row: usize, body: BodyId, parts: &[Part]) -> bool {
         let on_body = || self.couplings.rows_of_body(body).filter(|&other| parts[other] != Part::None);
         if on_body().any(|other| parts[other] == Part::Connector) {
             return true;
         }
-        let product = |p: usize, q: usize| product_on(&self.rows[p], &self.rows[q], body) / self.length(q);
-        let along_mean = |p: usize| on_body().map(|q| product(p, q)).sum::<f64>();
-        on_body().any(|other| product(row, other) < 0.0)
+        let mut mean = [0.0; 3];
+        let mut is_faced = false;
+        for other in on_body() {
+            let push = push_on(&self.rows[other], body).map(|entry| entry / self.length(other));
+            is_faced |= along(&self.rows[row], body, push) < 0.0;
+            mean = std::array::from_fn(|k| mean[k] + push[k]);
+        }
+        let along_mean = |row: usize| along(&self.rows[row], body, mean);
+        is_faced
             && (along_mean(row) <= DEPENDENT * self.length(row)
                 || on_body().any(|other| along_mean(other) < 0.0))
     }
@@ -184,8 +190,10 @@ impl Impact {
         locked.impulses.clone_from(&self.impulses);
         let kept = (self.noise, self.largest_change, self.solves);
         self.rates.fill(0.0);
+        (self.noise, self.largest_change) = (0.0, 0.0);
+        // The rates become as large as those of the impact, whose bounds serve here too.
         for (row, _) in locked.parts.iter().enumerate().filter(|&(_, &part)| part == Part::Pressed) {
-            self.apply(row, 1.0 / self.length(row));
+            self.apply(row, self.fastest / self.couplings.diagonal(row));
         }
         let scaled = |impact: &Self, row: usize| impact.rates[row] / impact.length(row);
         let fastest = locked.at_rest.iter().fold(0.0f64, |most, &row| most.max(scaled(self, row).abs()));
@@ -206,16 +214,20 @@ impl Impact {
     }
 }
 
-/// Change of the rate of a row by an impulse along another, through one body alone [1/kg].
-fn product_on(row: &CollisionRow, other: &CollisionRow, body: BodyId) -> f64 {
-    let mut sum = 0.0;
-    for side in (0..2).filter(|&side| row.bodies[side] == body) {
-        for other_side in (0..2).filter(|&side| other.bodies[side] == body) {
-            let (own, theirs) = (&row.jacobian[3 * side..], &other.response[3 * other_side..]);
-            sum += own[0] * theirs[0] + own[1] * theirs[1] + own[2] * theirs[2];
-        }
-    }
-    sum
+/// Change of the velocity of one body per impulse along a row: x, y [1/kg], turn [rad/(kg m)].
+fn push_on(row: &CollisionRow, body: BodyId) -> [f64; 3] {
+    sum_on(row, body, &row.response)
+}
+
+/// Rate of a row by the velocity of one body alone.
+fn along(row: &CollisionRow, body: BodyId, velocity: [f64; 3]) -> f64 {
+    sum_on(row, body, &row.jacobian).iter().zip(velocity).map(|(entry, velocity)| entry * velocity).sum()
+}
+
+/// The three entries of a row that belong to one body.
+fn sum_on(row: &CollisionRow, body: BodyId, entries: &[f64; 6]) -> [f64; 3] {
+    let is_on = |side: usize| row.bodies[side] == body;
+    std::array::from_fn(|k| (0..2).filter(|&side| is_on(side)).map(|side| entries[3 * side + k]).sum())
 }
 
 #[cfg(test)]
@@ -247,6 +259,7 @@ mod tests {
     fn locked(rows: &[CollisionRow], between_walls: bool) -> Vec<bool> {
         let mut impact = Impact::new();
         impact.set_rows(rows.iter().copied());
+        impact.fastest = 1.0;
         impact.find_locked(1e-9, between_walls);
         assert!(
             impact.rates().iter().chain(impact.impulses()).all(|&x| x == 0.0),

@@ -506,7 +506,7 @@ mod tests {
             direct.aim_at_rest();
             let mut pivoted = direct.clone();
             let set: Vec<usize> = (0..direct.rows.len()).collect();
-            // Where rows depend on each other, the forces of the other method are rounding: see `near_rows`.
+            // Where rows nearly depend on each other, and `near_rows` is called, the pivoted method's forces are rounding.
             if direct.solve_few(&set) && direct.scratch.near.is_none() {
                 pivoted.solve_with(&mut ManyRows::default(), &set)?;
                 for (p, q) in direct.rates.iter().zip(&pivoted.rates) {

@@ -23,17 +23,15 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// where they lie is known no better than the gap, over which their directions change by more.
 const CONTACTS: f64 = 1e-11;
 
-/// Cap on pivots, per row.
+/// Cap on pivots, per row: without rounding each set of closed rows comes once at most, and one or two exchanges a row are
+/// what problems take. It ends a search that rounding would send round for ever.
 const PIVOTS: usize = 8;
 
 /// A small problem A f + b >= 0, f >= 0, f.(A f + b) = 0, with A f + b = 0 on bilateral rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NearRows {
-    /// Number of rows, n.
-    count: usize,
-    /// J M^-1/2 of each row [1/sqrt(kg)], with its two bodies.
-    directions: Vec<([u32; 2], [f64; 6])>,
-    /// A (n, n) [1/kg], by rows.
+    directions: Vec<Direction>,
+    /// A (n, n) [1/kg], by rows, of n rows.
     matrix: Vec<Twofold>,
     /// sqrt(A_ii) [1/sqrt(kg)].
     length: Vec<f64>,
@@ -45,11 +43,6 @@ pub(super) struct NearRows {
     force: Vec<Twofold>,
     /// The closed rows, whose rates are held at 0.
     closed: Vec<usize>,
-    /// The connectors in the order in which they are closed, the most independent ones first: forces through a bad lever
-    /// would be large.
-    connectors: Vec<usize>,
-    /// What each of them left of its square, while they are listed.
-    pivot: Vec<Twofold>,
     /// Whether a row counts as one with closed ones, which may contradict it by as little as they are told apart.
     is_same: Vec<bool>,
     /// The largest violation of such a row, as a scaled rate [sqrt(kg) m/s].
@@ -60,40 +53,52 @@ pub(super) struct NearRows {
     shares: Vec<Twofold>,
 }
 
-/// J M^-1/2 of a row: of coefficient and response, J and J/m, the geometric mean with the sign of J.
-fn direction(row: &CollisionRow) -> [f64; 6] {
-    std::array::from_fn(|k| (row.jacobian[k] * row.response[k]).max(0.0).sqrt().copysign(row.jacobian[k]))
+/// Direction in which a row moves its two bodies.
+#[derive(Clone, Copy, Debug)]
+struct Direction {
+    bodies: [u32; 2],
+    /// J M^-1/2 [1/sqrt(kg)].
+    entries: [f64; 6],
 }
 
-/// Entry of A of two rows.
-fn product(p: &([u32; 2], [f64; 6]), q: &([u32; 2], [f64; 6])) -> Twofold {
-    let mut sum = Twofold::default();
-    for (side, body) in p.0.iter().enumerate() {
-        for other_side in (0..2).filter(|&other_side| q.0[other_side] == *body) {
-            for k in 0..3 {
-                let (own, theirs) = (p.1[3 * side + k], q.1[3 * other_side + k]);
-                sum = sum + Twofold::from(own) * Twofold::from(theirs);
+impl Direction {
+    /// Of coefficient and response, J and J/m, each entry is the geometric mean with the sign of J.
+    fn new(row: &CollisionRow) -> Self {
+        let entry = |k: usize| (row.jacobian[k] * row.response[k]).max(0.0).sqrt().copysign(row.jacobian[k]);
+        Self { bodies: row.bodies.map(|body| body.0), entries: std::array::from_fn(entry) }
+    }
+
+    /// Entry of A of two rows [1/kg].
+    fn product(&self, other: &Self) -> Twofold {
+        let mut sum = Twofold::default();
+        for (side, body) in self.bodies.iter().enumerate() {
+            for other_side in (0..2).filter(|&other_side| other.bodies[other_side] == *body) {
+                for k in 0..3 {
+                    let (own, theirs) = (self.entries[3 * side + k], other.entries[3 * other_side + k]);
+                    sum = sum + Twofold::from(own) * Twofold::from(theirs);
+                }
             }
         }
+        sum
     }
-    sum
 }
 
 impl NearRows {
     fn clear(&mut self) {
-        self.count = 0;
         self.directions.clear();
-        self.length.clear();
         self.offset.clear();
         self.bilateral.clear();
     }
 
     /// Adds a row whose rate is to change by -`offset` [m/s].
     fn push(&mut self, row: &CollisionRow, offset: f64) {
-        self.count += 1;
-        self.directions.push((row.bodies.map(|body| body.0), direction(row)));
+        self.directions.push(Direction::new(row));
         self.offset.push(offset);
         self.bilateral.push(row.bilateral);
+    }
+
+    fn count(&self) -> usize {
+        self.offset.len()
     }
 
     /// Finds the forces; false if rows contradict each other or the pivots run out.
@@ -101,13 +106,8 @@ impl NearRows {
         self.begin();
         let scaled = self.offset.iter().zip(&self.length).map(|(b, length)| (b / length).abs());
         let scale = scaled.fold(0.0, f64::max);
-        self.order_connectors();
-        for place in 0..self.connectors.len() {
-            // Nothing gives way to a connector but contacts, and none is closed yet.
-            self.step(self.connectors[place]);
-            self.update_rates();
-        }
-        let mut pivots = PIVOTS * self.count;
+        self.close_connectors();
+        let mut pivots = PIVOTS * self.count();
         while let Some(row) = self.most_violated(ROUNDING * scale) {
             loop {
                 match self.step(row) {
@@ -126,9 +126,14 @@ impl NearRows {
             pivots -= 1;
             self.update_rates();
         }
-        let same = || (0..self.count).filter(|&row| self.is_same[row]);
-        self.left = same().map(|row| self.violation(row)).fold(0.0, f64::max);
-        same().all(|row| self.violation(row) <= self.dependence(row).sqrt() * scale)
+        self.left = 0.0;
+        let mut fits = true;
+        for row in (0..self.count()).filter(|&row| self.is_same[row]) {
+            let violation = self.violation(row);
+            self.left = self.left.max(violation);
+            fits &= violation <= self.dependence(row).sqrt() * scale;
+        }
+        fits
     }
 
     /// Fraction of a row's square up to which what others leave of it counts as nothing.
@@ -138,18 +143,19 @@ impl NearRows {
 
     /// Forms the matrix, with all forces 0 and all rows open.
     fn begin(&mut self) {
-        let n = self.count;
+        let n = self.count();
         self.matrix.clear();
         for i in 0..n {
             for j in 0..n {
                 let known = if j < i {
                     self.matrix[j * n + i]
                 } else {
-                    product(&self.directions[i], &self.directions[j])
+                    self.directions[i].product(&self.directions[j])
                 };
                 self.matrix.push(known);
             }
         }
+        self.length.clear();
         self.length.extend((0..n).map(|i| self.matrix[i * n + i].nearest().sqrt()));
         self.closed.clear();
         self.force.clear();
@@ -158,39 +164,27 @@ impl NearRows {
         self.rate.extend(self.offset.iter().map(|&b| Twofold::from(b)));
     }
 
-    /// Lists the connectors that do not depend on each other, each next one that of which those before leave most; the
-    /// others count as one with these.
-    fn order_connectors(&mut self) {
-        let n = self.count;
-        self.connectors.clear();
+    /// Closes the connectors that do not depend on each other, each next one that of whose square those before leave most:
+    /// forces through a bad lever would be large. The others count as one with these.
+    fn close_connectors(&mut self) {
         self.is_same.clear();
         self.is_same.extend_from_slice(&self.bilateral);
-        // The factor's rows of all connectors; what the listed ones leave of their squares.
-        let (rows, rest) = (&mut self.factor, &mut self.shares);
-        rows.clear();
-        rows.resize(n * n, Twofold::default());
-        rest.clear();
-        rest.extend((0..n).map(|row| self.matrix[row * n + row]));
         loop {
-            let share = |row: usize| rest[row].nearest() / (self.length[row] * self.length[row]);
-            let left = (0..n).filter(|&row| self.is_same[row]);
-            let Some(next) = left.max_by(|&p, &q| share(p).total_cmp(&share(q))) else { return };
-            if share(next) <= DEPENDENT {
-                return;
+            let mut next = None;
+            let mut most = DEPENDENT;
+            for row in 0..self.count() {
+                if self.is_same[row] {
+                    let share = self.consider(row).nearest() / (self.length[row] * self.length[row]);
+                    if share > most {
+                        (next, most) = (Some(row), share);
+                    }
+                }
             }
-            let place = self.connectors.len();
-            self.connectors.push(next);
+            let Some(next) = next else { return };
             self.is_same[next] = false;
-            let square = rest[next];
-            for row in (0..n).filter(|&row| self.is_same[row]) {
-                let known = (0..place).fold(self.matrix[row * n + next], |sum, k| {
-                    sum - rows[row * n + k] * rows[next * n + k] * self.pivot[k]
-                });
-                rows[row * n + place] = known / square;
-                rest[row] = rest[row] - known * known / square;
-            }
-            self.pivot.truncate(place);
-            self.pivot.push(square);
+            // Nothing gives way to a connector but contacts, and none is closed yet.
+            self.step(next);
+            self.update_rates();
         }
     }
 
@@ -204,7 +198,7 @@ impl NearRows {
     fn most_violated(&self, noise: f64) -> Option<usize> {
         let is_free =
             |row: &usize| !self.bilateral[*row] && !self.is_same[*row] && !self.closed.contains(row);
-        let violated = (0..self.count).filter(|row| is_free(row) && self.violation(*row) > noise);
+        let violated = (0..self.count()).filter(|row| is_free(row) && self.violation(*row) > noise);
         violated.max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)))
     }
 
@@ -260,7 +254,7 @@ impl NearRows {
 
     /// Finds the shares of the closed rows in an open one, and returns what they leave of its square.
     fn consider(&mut self, row: usize) -> Twofold {
-        let (n, count) = (self.count, self.closed.len());
+        let (n, count) = (self.count(), self.closed.len());
         self.factorize();
         let factor = &self.factor;
         let shares = &mut self.shares;
@@ -286,7 +280,7 @@ impl NearRows {
     }
 
     fn factorize(&mut self) {
-        let (n, count) = (self.count, self.closed.len());
+        let (n, count) = (self.count(), self.closed.len());
         let factor = &mut self.factor;
         factor.clear();
         factor.resize(count * count, Twofold::default());
@@ -307,7 +301,7 @@ impl NearRows {
 
     /// Brings all rates up to date with the forces.
     fn update_rates(&mut self) {
-        let n = self.count;
+        let n = self.count();
         for i in 0..n {
             let products = (0..n).map(|j| self.matrix[i * n + j] * self.force[j]);
             self.rate[i] = products.fold(Twofold::from(self.offset[i]), |sum, term| sum + term);
@@ -353,20 +347,21 @@ impl Impact {
             let impulse = near.force[place].nearest();
             self.impulses[row] += if self.rows[row].bilateral { impulse } else { pushing(impulse) };
         }
-        for other in 0..self.rows.len() {
-            if self.couplings.row(other).all(|(row, _)| set.binary_search(&row).is_err()) {
-                continue;
-            }
-            let own = (self.rows[other].bodies.map(|body| body.0), direction(&self.rows[other]));
-            let changes = near
-                .directions
-                .iter()
-                .zip(&near.force)
-                .map(|(direction, &force)| product(&own, direction) * force);
+        let mut reached = std::mem::take(&mut self.scratch.listed);
+        reached.clear();
+        reached.resize(self.rows.len(), false);
+        for &row in set {
+            self.couplings.row(row).for_each(|(other, _)| reached[other] = true);
+        }
+        for other in (0..self.rows.len()).filter(|&other| reached[other]) {
+            let own = Direction::new(&self.rows[other]);
+            let pairs = near.directions.iter().zip(&near.force);
+            let changes = pairs.map(|(direction, &force)| own.product(direction) * force);
             let change = changes.fold(Twofold::default(), |sum, term| sum + term).nearest();
             self.largest_change = self.largest_change.max(change.abs());
             self.rates[other] += change;
         }
+        self.scratch.listed = reached;
         self.noise = self.noise.max(super::NOISE * self.largest_change);
     }
 }

@@ -8,7 +8,7 @@ use super::law::ImpactError;
 use super::patience::Patience;
 use super::shuffle::Shuffle;
 
-/// The rows that are solved together with the focus.
+/// The rows that are solved together with the focus, beside the locked ones that they reach (see `locked`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Grouping {
     /// No others.
@@ -51,13 +51,7 @@ impl Impact {
         patience: &mut Patience,
     ) -> Result<Ricochet, ImpactError> {
         while let Some(focus) = self.focus(shuffle.as_deref_mut(), patience.small()) {
-            let solved = if grouping == Grouping::One && !self.has_locked() {
-                self.solve_alone(focus, self.rebound_alone(focus));
-                1
-            } else {
-                self.solve_around(focus, grouping, patience.small())?
-            };
-            if !patience.spend(solved) {
+            if !patience.spend(self.solve_around(focus, grouping, patience.small())?) {
                 break;
             }
             if self.comes_back(focus) {
