@@ -1,7 +1,7 @@
 //! Ctrl-C and SIGTERM: the run stops, and what it has found up to then is printed and written.
 //!
-//! A run stops at its next event or output, or within a few steps. A second Ctrl-C ends the command at once; a second SIGTERM does not, as
-//! some programs send each of them twice.
+//! A run stops at its next event or output, or within a few steps. A second Ctrl-C ends the command at once; a second
+//! SIGTERM does not, as some programs send each of them twice.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag::{register, register_conditional_default};

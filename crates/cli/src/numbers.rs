@@ -13,6 +13,9 @@ const OF_STATES: i32 = 10;
 const OF_ENERGIES: i32 = 15;
 /// Digits of lengths, counted from that of the largest coordinate, in which gaps are told from rounding.
 const OF_GAPS: i32 = 16;
+/// Exponent of the last digit of a number that is no sum: below that of any, and far enough from the least integer for
+/// sums with it.
+const EXACT: i32 = i32::MIN / 2;
 
 /// Returns a state in a column of numbers of a scale: all have their last digit at the same place, where that
 /// can be without a power of ten.
@@ -32,8 +35,12 @@ pub(crate) fn energy(value: f64, scale: f64) -> String {
 
 /// Returns a change of the energy [J] with its sign and four digits.
 pub(crate) fn change(value: f64, scale: f64) -> String {
-    let text = written(value, exponent_above(scale) - OF_ENERGIES, 4);
-    if value > 0.0 && text != "0" { format!("+{text}") } else { text }
+    signed(written(value, exponent_above(scale) - OF_ENERGIES, 4))
+}
+
+/// Returns a change of the energy [J] with its sign and up to ten digits, as energies have them.
+pub(crate) fn booked(value: f64, scale: f64) -> String {
+    signed(energy(value, scale))
 }
 
 /// Returns a gap or an error [m] with four digits, in a scene whose coordinates are of a scale [m].
@@ -43,12 +50,18 @@ pub(crate) fn gap(value: f64, scale: f64) -> String {
 
 /// Returns a size with three digits.
 pub(crate) fn size(value: f64) -> String {
-    written(value, i32::MIN / 2, 3)
+    written(value, EXACT, 3)
 }
 
 /// Returns a number that is known exactly, such as a given one, with up to ten digits.
 pub(crate) fn given(value: f64) -> String {
-    written(value, i32::MIN / 2, 10)
+    written(value, EXACT, 10)
+}
+
+/// Puts a sign before a written number that is positive.
+fn signed(text: String) -> String {
+    let is_positive = !text.starts_with('-') && text != "0" && text != "NaN";
+    if is_positive { format!("+{text}") } else { text }
 }
 
 /// Writes a number to the digit of 10^`last`, and to `most` digits at most, without zeros at the end.
@@ -118,7 +131,8 @@ mod tests {
             ["0", "-3e-14", "+2.5e-9"]
         );
         assert_eq!([change(-30.24, 80.0), change(1.5, 80.0)], ["-30.24", "+1.5"]);
-        assert_eq!(change(0.0, 0.0), "0");
+        assert_eq!([change(0.0, 0.0), change(f64::NAN, 1.0)], ["0", "NaN"]);
+        assert_eq!([booked(1e-35, 9.81), booked(-0.25, 9.81), booked(0.125, 9.81)], ["0", "-0.25", "+0.125"]);
     }
 
     #[test]

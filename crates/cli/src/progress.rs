@@ -1,8 +1,9 @@
 //! How far a command has come: a progress bar on a terminal, else a line on standard error every few seconds.
 
+use crate::numbers::given;
 use crate::output;
+use halfgap::Reached;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdout};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,7 +13,8 @@ use std::time::Duration;
 
 /// Number of steps of the bar.
 const STEPS: u64 = 1000;
-/// Time between two lines.
+/// Time between two lines. A choice: most runs end sooner and tell nothing, and who waits for others need not wonder
+/// whether they go on.
 const PAUSE: Duration = Duration::from_secs(3);
 
 /// What is shown of the way.
@@ -39,26 +41,24 @@ impl Shown {
 /// The way of a command, in its own unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Way {
-    /// A run, from its start for a duration [s].
-    Run { start: f64, duration: f64 },
+    /// A run, to its end [s].
+    Run { end: f64 },
     /// A number of runs.
     Runs { count: usize },
 }
 
 impl Way {
-    /// Says how far a command has come: at a fraction of its way, with a number of events so far.
-    fn tell(self, fraction: f64, events: u64) -> String {
-        let mut text = String::new();
-        let _ = match self {
-            Self::Run { start, duration } => {
-                let (now, end) = (start + fraction * duration, start + duration);
-                write!(text, "progress: at {now:.6} s of {end} s, {events} events so far")
+    /// Says how far a command has come.
+    fn tell(self, reached: &Reached) -> String {
+        let Reached { fraction, time, events } = *reached;
+        match self {
+            Self::Run { end } => {
+                format!("progress: at {} s of {} s, {events} events so far", given(time), given(end))
             }
             Self::Runs { count } => {
-                write!(text, "progress: {} of {count} runs done", (fraction * count as f64).round())
+                format!("progress: {} of {count} runs done", (fraction * count as f64).round())
             }
-        };
-        text
+        }
     }
 }
 
@@ -84,14 +84,13 @@ impl Progress {
         Self { bar, lines: has_lines.then(|| Lines::new(way)) }
     }
 
-    /// Shows the fraction done, 0 to 1, and the number of events so far.
-    pub(crate) fn set(&self, part: f64, events: u64) {
+    /// Shows how far the command has come. Where it makes many runs, only the fraction of them counts.
+    pub(crate) fn set(&self, reached: &Reached) {
         if let Some(bar) = &self.bar {
-            bar.set_position((part * STEPS as f64) as u64);
+            bar.set_position((reached.fraction * STEPS as f64) as u64);
         }
         if let Some(lines) = &self.lines {
-            lines.reached.fraction.store(part.to_bits(), Ordering::Relaxed);
-            lines.reached.events.store(events, Ordering::Relaxed);
+            lines.latest.write(reached);
         }
     }
 
@@ -106,7 +105,7 @@ impl Progress {
 /// Lines on standard error, written by a thread of their own: a command that is stuck in one place tells that, too.
 #[derive(Debug)]
 struct Lines {
-    reached: Arc<Reached>,
+    latest: Arc<Latest>,
     /// Dropped at the end, which ends the thread.
     goes_on: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -114,26 +113,43 @@ struct Lines {
 
 /// How far the command has come, for the thread to read.
 #[derive(Debug, Default)]
-struct Reached {
+struct Latest {
     /// Bits of the fraction.
     fraction: AtomicU64,
+    /// Bits of the time [s].
+    time: AtomicU64,
     events: AtomicU64,
+}
+
+impl Latest {
+    fn write(&self, reached: &Reached) {
+        self.fraction.store(reached.fraction.to_bits(), Ordering::Relaxed);
+        self.time.store(reached.time.to_bits(), Ordering::Relaxed);
+        self.events.store(reached.events, Ordering::Relaxed);
+    }
+
+    fn read(&self) -> Reached {
+        Reached {
+            fraction: f64::from_bits(self.fraction.load(Ordering::Relaxed)),
+            time: f64::from_bits(self.time.load(Ordering::Relaxed)),
+            events: self.events.load(Ordering::Relaxed),
+        }
+    }
 }
 
 impl Lines {
     fn new(way: Way) -> Self {
-        let reached = Arc::new(Reached::default());
+        let latest = Arc::new(Latest::default());
         let (goes_on, end) = channel::<()>();
-        let read = Arc::clone(&reached);
+        let reader = Arc::clone(&latest);
         let tell = move || {
             while end.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
-                let fraction = f64::from_bits(read.fraction.load(Ordering::Relaxed));
-                output::tell(&way.tell(fraction, read.events.load(Ordering::Relaxed)));
+                output::tell(&way.tell(&reader.read()));
             }
         };
         // Where no thread can be had, nothing is told.
         let thread = std::thread::Builder::new().spawn(tell).ok();
-        Self { reached, goes_on: Some(goes_on), thread }
+        Self { latest, goes_on: Some(goes_on), thread }
     }
 }
 
@@ -152,8 +168,10 @@ mod tests {
 
     #[test]
     fn a_line_tells_how_far_a_command_has_come() {
-        let run = Way::Run { start: 2.0, duration: 0.5 };
-        assert_eq!(run.tell(0.25, 17), "progress: at 2.125000 s of 2.5 s, 17 events so far");
-        assert_eq!(Way::Runs { count: 40 }.tell(0.3, 0), "progress: 12 of 40 runs done");
+        let run = |time: f64| Way::Run { end: 2.5 }.tell(&Reached { fraction: 0.25, time, events: 17 });
+        assert_eq!(run(2.125), "progress: at 2.125 s of 2.5 s, 17 events so far");
+        assert_eq!(run(1.5e-7), "progress: at 1.5e-7 s of 2.5 s, 17 events so far");
+        let runs = Reached { fraction: 0.3, ..Reached::default() };
+        assert_eq!(Way::Runs { count: 40 }.tell(&runs), "progress: 12 of 40 runs done");
     }
 }

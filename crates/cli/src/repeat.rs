@@ -17,8 +17,8 @@ pub(crate) struct Repeats {
 }
 
 impl Repeats {
-    /// Makes `count` runs in all, of which `result` is the first, and puts the least wall time and the median into it. An
-    /// interrupted run ends them and does not count.
+    /// Makes `count` runs in all, of which `result` is the first, and puts the least wall time and the median into it.
+    /// An interrupted run ends them and does not count.
     pub(crate) fn make<E>(
         result: &mut RunResult,
         count: NonZeroUsize,
@@ -65,8 +65,8 @@ fn without_times(result: &RunResult) -> String {
     result.to_json()
 }
 
-/// Returns the median of ascending numbers: the middle one of an odd number of them, the mean of the two in the middle of
-/// an even number; `None` of none.
+/// Returns the median of ascending numbers: the middle one of an odd number of them, the mean of the two in the middle
+/// of an even number; `None` of none.
 fn median(ascending: &[f64]) -> Option<f64> {
     let middle = ascending.len() / 2;
     let upper = ascending.get(middle)?;

@@ -34,10 +34,10 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     }
     let record = if everything { Record::Everything } else { Record::Ends };
     let plan = RunPlan::of_scene(&scene, record);
-    let way = Way::Run { start: scene.run.start_time, duration: scene.run.duration };
+    let way = Way::Run { end: scene.run.end_time() };
     let mut progress = Progress::new(Shown::of(options.quiet, options.json), &scene.title, way);
     let mut follow = |reached: &Reached| {
-        progress.set(reached.fraction, reached.events);
+        progress.set(reached);
         interrupt.flow()
     };
     let report = run_world(&mut world, &plan, &mut follow);

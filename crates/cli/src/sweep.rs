@@ -12,7 +12,7 @@ use crate::output;
 use crate::progress::{Progress, Shown, Way};
 use crate::rows::{QUANTITIES, Rows};
 use halfgap::scene::{Scene, SceneError, SceneSource, VariedScene};
-use halfgap::{Outcome, Record, RunPlan, RunResult, World, run};
+use halfgap::{Outcome, Reached, Record, RunPlan, RunResult, World, run};
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -125,7 +125,8 @@ fn run_all(
             is_over(index, &run);
             runs.push((index, run));
             let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.set(count as f64 / values.len() as f64, 0);
+            let fraction = count as f64 / values.len() as f64;
+            progress.set(&Reached { fraction, ..Reached::default() });
         }
         runs
     });

@@ -1,6 +1,6 @@
 //! The table that `halfgap run` prints.
 
-use crate::numbers::{change, energy, gap, given, size, state};
+use crate::numbers::{booked, change, energy, gap, given, size, state};
 use halfgap::{Difference, ErrorEstimate, Ledger, RunResult, short_names, short_text};
 use std::fmt::Write;
 
@@ -11,8 +11,8 @@ const LONGEST_NAME: usize = 24;
 /// Largest length of a title; longer ones lose their end.
 const LONGEST_TITLE: usize = 200;
 
-/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate; `repeats` is the
-/// number of runs that were timed.
+/// Returns final states, energies, counters, the energy ledger and, if there is one, the error estimate; `repeats` is
+/// the number of runs that were timed.
 pub(crate) fn of_result(result: &RunResult, repeats: usize) -> String {
     let title = short_text(&result.scene, LONGEST_TITLE);
     let mut text = format!("{}: {} at t = {} s\n\n", title, result.status.name(), given(result.time));
@@ -94,7 +94,8 @@ fn push_summary(text: &mut String, result: &RunResult, repeats: usize) {
     }
 }
 
-/// Adds the changes of the energy that are not 0, and the error of the integration; `scale` is that of the energies [J].
+/// Adds the changes of the energy that are not 0, and the error of the integration; `scale` is that of the energies
+/// [J].
 fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
     let fixed = [
         ("impacts", ledger.impacts),
@@ -106,10 +107,8 @@ fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
     let laws = ledger.laws.iter().map(|law| (law.law.as_str(), law.work));
     text.push_str("\nenergy ledger\n");
     let mut push = |name: &str, joules: f64, is_told: bool| {
-        let joules = energy(joules, scale);
+        let joules = booked(joules, scale);
         if is_told || joules != "0" {
-            let sign = if joules.starts_with('-') || joules == "0" { "" } else { "+" };
-            let joules = format!("{sign}{joules}");
             let _ = writeln!(text, "  {name:30} {joules:>16} J");
         }
     };

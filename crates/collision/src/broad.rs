@@ -137,7 +137,6 @@ impl BroadPhase {
 
     /// Sets the box [m] of a body, in place of the one it had, if any. A side that is not a number counts as infinitely
     /// far out.
-    #[inline]
     pub fn set(&mut self, body: BodyId, bounds: Aabb) {
         let bounds = without_nan(bounds);
         if self.leaves.len() <= body.index() {

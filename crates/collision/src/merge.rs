@@ -73,7 +73,6 @@ fn lean(a: &Collision, b: &Collision) -> f64 {
 /// Drops records of the same physical collision as a more exact one ([`is_same_collision`]): the one within its edges
 /// wins, then edge-edge over vertex-edge over corner-corner, then the lesser distance, then the earlier place in the
 /// list. Keeps the order.
-#[inline]
 pub fn merge_collisions(records: &mut Vec<Collision>) {
     let mut kept = 0;
     for index in 0..records.len() {

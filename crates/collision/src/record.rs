@@ -300,7 +300,6 @@ impl Collision {
     ///
     /// # Errors
     /// If a detection was noted before, which then stays.
-    #[inline]
     pub fn note_detection(&mut self) -> Result<(), CollisionError> {
         if let Some(detection) = self.detection {
             let [BodyId(primary), BodyId(normal)] = self.bodies();

@@ -47,7 +47,6 @@ impl Arc {
     ///
     /// # Errors
     /// A radius (the distance of the two points) that is not positive, or a number that is not finite.
-    #[inline]
     pub fn circle(center: DVec2, from: DVec2, clockwise: bool) -> Result<Self, ArcError> {
         if !(center.is_finite() && from.is_finite()) {
             return Err(ArcError::NotFinite);

@@ -11,7 +11,6 @@ impl Shape {
     ///
     /// # Errors
     /// A radius [m] that is not positive and finite.
-    #[inline]
     pub fn disc(radius: f64) -> Result<Self, ShapeError> {
         check_length("radius", radius)?;
         Self::from_paths(&[PathSpec::circle(DVec2::ZERO, radius)])
@@ -21,7 +20,6 @@ impl Shape {
     ///
     /// # Errors
     /// A side [m] that is not positive and finite.
-    #[inline]
     pub fn block(width: f64, height: f64) -> Result<Self, ShapeError> {
         check_length("width", width)?;
         check_length("height", height)?;
@@ -68,7 +66,6 @@ impl Shape {
     ///
     /// # Errors
     /// Fewer than three vertices, coincident vertices, or edges that cross.
-    #[inline]
     pub fn polygon(vertices: &[DVec2]) -> Result<Self, ShapeError> {
         if vertices.len() < 3 {
             return Err(ShapeError::TooFewVertices(vertices.len()));
@@ -80,7 +77,6 @@ impl Shape {
     ///
     /// # Errors
     /// A radius [m] that is not positive and finite, or an inner one that is not less than the outer one.
-    #[inline]
     pub fn ring(outer: f64, inner: f64) -> Result<Self, ShapeError> {
         check_length("outer", outer)?;
         check_length("inner", inner)?;

@@ -14,7 +14,6 @@ impl Shape {
     ///
     /// # Errors
     /// A length between the centers or a radius [m] that is not positive and finite.
-    #[inline]
     pub fn capsule(length: f64, radius: f64) -> Result<Self, ShapeError> {
         check_length("length", length)?;
         check_length("radius", radius)?;
@@ -26,7 +25,6 @@ impl Shape {
     ///
     /// # Errors
     /// Fewer than three sides, or a radius [m] that is not positive and finite.
-    #[inline]
     pub fn regular_polygon(sides: usize, circumradius: f64) -> Result<Self, ShapeError> {
         check_length("circumradius", circumradius)?;
         #[expect(clippy::cast_precision_loss, reason = "nobody draws 2^53 sides")]
@@ -40,7 +38,6 @@ impl Shape {
     /// # Errors
     /// A radius [m] that is not positive and finite, a sweep [rad] that is not positive or more than a full
     /// turn, or one so near to a full turn that the straight edges touch.
-    #[inline]
     pub fn sector(radius: f64, sweep: f64) -> Result<Self, ShapeError> {
         check_length("radius", radius)?;
         if !(sweep > 0.0 && sweep <= TAU) {

@@ -96,7 +96,6 @@ impl Shape {
     /// [`distance`](Self::distance), in less time, since edges that do not meet need not be measured. Shapes at poses
     /// that are not finite are apart.
     #[must_use]
-    #[inline]
     pub fn relation(&self, pose: &Pose, other: &Shape, other_pose: &Pose) -> Relation {
         let relative = pose.seen_from(other_pose);
         if !relative.is_finite() {

@@ -42,7 +42,6 @@ impl ClosestPair {
 /// # Ok::<(), halfgap_geometry::ArcError>(())
 /// ```
 #[must_use]
-#[inline]
 pub fn edge_distance(a: &Edge, b: &Edge) -> ClosestPair {
     if let Some(point) = edge_crossings(a, b).next() {
         return ClosestPair { distance: 0.0, point_a: point, point_b: point };

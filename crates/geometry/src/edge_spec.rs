@@ -87,7 +87,6 @@ impl EdgeSpec {
     /// # Errors
     ///
     /// [`EdgeError`] if the points coincide, a number is not finite, or an arc does not fit.
-    #[inline]
     pub fn edge_between(&self, from: DVec2, to: DVec2, fit_tol: f64) -> Result<Edge, EdgeError> {
         let arc = match *self {
             EdgeSpec::Line { .. } => return Ok(Edge::Line(Line::new(from, to)?)),

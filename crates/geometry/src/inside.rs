@@ -25,7 +25,6 @@ impl Shape {
     /// # Ok::<(), halfgap_geometry::ShapeError>(())
     /// ```
     #[must_use]
-    #[inline]
     pub fn contains(&self, point: DVec2) -> bool {
         let is_met = |node: &Node| {
             let bounds = &node.bounds;

@@ -19,7 +19,6 @@ impl Line {
     /// # Errors
     /// A point that is not finite, two points that coincide, or points so far apart that the square of their distance
     /// overflows.
-    #[inline]
     pub fn new(from: DVec2, to: DVec2) -> Result<Self, LineError> {
         if !(from.is_finite() && to.is_finite()) {
             return Err(LineError::NotFinite);

@@ -38,7 +38,6 @@ impl Shape {
     /// # Panics
     /// If a coordinate of the point is not a number, or the square of its distance overflows (from about 1e150 m on).
     #[must_use]
-    #[inline]
     pub fn nearest(&self, point: DVec2) -> NearestPoint {
         let bound =
             |node: &Node| node.bounds.distance_to(point).max((node.center - point).length() - node.radius);

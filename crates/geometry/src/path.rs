@@ -22,7 +22,6 @@ pub struct PathSpec {
 impl PathSpec {
     /// The closed polygon through the given vertices [m].
     #[must_use]
-    #[inline]
     pub fn polygon(vertices: &[DVec2]) -> Self {
         let Some((&start, rest)) = vertices.split_first() else {
             return Self { start: DVec2::ZERO, edges: Vec::new() };
@@ -33,7 +32,6 @@ impl PathSpec {
 
     /// The full counter-clockwise circle about `center` [m] of the given radius [m].
     #[must_use]
-    #[inline]
     pub fn circle(center: DVec2, radius: f64) -> Self {
         let start = center + DVec2::X * radius;
         Self { start, edges: vec![EdgeSpec::Arc { to: start, center, clockwise: false }] }

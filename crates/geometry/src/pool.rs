@@ -12,7 +12,6 @@ pub struct ShapePool {
 
 impl ShapePool {
     /// Returns a shape passed before whose edges are exactly equal, else `shape` itself, which the pool then keeps.
-    #[inline]
     pub fn share(&mut self, shape: Shape) -> Shape {
         let size = (shape.features().len(), shape.reach().to_bits(), shape.mass_properties().area.to_bits());
         let alike = self.by_size.entry(size).or_default();

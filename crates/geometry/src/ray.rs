@@ -59,7 +59,6 @@ impl Shape {
     /// # Ok::<(), halfgap_geometry::ShapeError>(())
     /// ```
     #[must_use]
-    #[inline]
     pub fn cast_ray(&self, ray: &Ray, max_distance: f64) -> Option<RayHit> {
         let ray = ray.of_unit_direction()?;
         let inverse = ray.direction.recip();

@@ -51,7 +51,6 @@ impl Shape {
     /// # Errors
     /// No paths; open, empty, crossing or degenerate paths: the error names path and edge. Shapes so small or so large
     /// that the fourth power of their size under- or overflows.
-    #[inline]
     pub fn from_paths(specs: &[PathSpec]) -> Result<Self, ShapeError> {
         let shape = Self::from_oriented(build_outline(specs)?);
         if shape.parts.mass.is_sound() {
@@ -63,7 +62,6 @@ impl Shape {
 
     /// The shape moved by `shift` [m] in body coordinates.
     #[must_use]
-    #[inline]
     pub fn translated(&self, shift: DVec2) -> Self {
         if shift == DVec2::ZERO {
             return self.clone();
@@ -218,7 +216,6 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
-    #[inline]
     pub fn ends_of(&self, feature: FeatureId) -> [Option<FeatureId>; 2] {
         let Some(EdgeId { path, edge }) = self.whole_edge(feature) else { return [None; 2] };
         let count = self.parts.paths[path as usize].edges().len();
@@ -237,7 +234,6 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
-    #[inline]
     pub fn goes_on_straight(&self, arc: FeatureId, direction: DVec2) -> bool {
         let FeatureSource { path, edge, kind } = self.source(arc);
         let Feature::Round(round) = self.feature(arc) else { return false };
@@ -259,7 +255,6 @@ impl Shape {
     /// # Panics
     /// If the id is not that of one of this shape's features.
     #[must_use]
-    #[inline]
     pub fn sides_of(&self, feature: FeatureId) -> Option<[FeatureId; 2]> {
         let FeatureSource { path, edge, kind } = self.source(feature);
         if kind != FeatureKind::Vertex {

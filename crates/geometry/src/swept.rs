@@ -41,7 +41,6 @@ impl Shape {
     /// # Ok::<(), halfgap_geometry::ShapeError>(())
     /// ```
     #[must_use]
-    #[inline]
     pub fn swept_bounds(&self, motion: &MotionBound) -> Aabb {
         let turn = motion.to_angle - motion.from_angle;
         let (first, last) = (Rotation::from_angle(motion.to_angle), Rotation::from_angle(motion.from_angle));

@@ -204,9 +204,11 @@ impl Findings {
     /// Notes force laws whose point has left its body, each once, when that is first seen.
     pub(crate) fn look_at_points(&mut self, world: &World) {
         let mut found = Vec::new();
-        world.find_points_left(&mut found);
-        found.retain(|finding| !self.found.iter().any(|known| known.is_of_same(finding)));
-        self.found.append(&mut found);
+        let is_told = |name: &str| {
+            self.found.iter().any(|known| matches!(known, Finding::PointLeft { law, .. } if law == name))
+        };
+        world.find_points_left(is_told, &mut found);
+        found.into_iter().for_each(|finding| self.add(finding));
     }
 
     /// Returns all findings, with those at the end and in the energy books.

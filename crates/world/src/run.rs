@@ -110,8 +110,8 @@ pub struct RunReport {
     pub error: Option<RunError>,
     /// Broken invariants at the end, or where the run stopped; with [`Record::Everything`] also those seen on the way.
     pub findings: Vec<Finding>,
-    /// Energy in play [J]: the largest sum seen of the kinetic energy, the change of the potential energy and the work of
-    /// force laws.
+    /// Energy in play [J]: the largest sum seen of the kinetic energy, the change of the potential energy and the work
+    /// of force laws.
     pub energy_in_play: f64,
     /// Wall time of stepping alone [s]; `None` on platforms without a clock, such as wasm32-unknown-unknown.
     pub wall_seconds: Option<f64>,

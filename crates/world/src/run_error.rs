@@ -156,7 +156,7 @@ pub enum RunError {
         laws: Vec<String>,
     },
     /// Steps have become so short that the planned time would take hopelessly many, and no events happen meanwhile. The
-    /// state at that time is sound: an advance over a shorter duration may go on.
+    /// state at that time is sound: an advance over a shorter duration may go on, unless a longer one is planned.
     #[error(
         "at {} s the steps of {} are only {} s long{}; the {} s asked for would take {} of them (see `duration`)",
         RoundedPlace(*time),
@@ -178,8 +178,9 @@ pub enum RunError {
         /// Names of the force laws that act on them.
         laws: Vec<String>,
     },
-    /// A body turns so often in the planned time that following it is hopeless: bodies are near that it may hit, or ties
-    /// and forces act on it. The state at that time is sound: an advance over a shorter duration may go on.
+    /// A body turns so often in the planned time that following it is hopeless: bodies are near that it may hit, or
+    /// ties and forces act on it. The state at that time is sound: an advance over a shorter duration may go on, unless
+    /// a longer one is planned.
     #[error(
         "at {} s body \"{body}\" turns at {} rad/s: too fast to follow for the {} s asked for, in which it turns {} \
          times beside bodies that it may hit, or with ties or forces on it; slow it down, shorten the `duration`, or \

@@ -3,6 +3,7 @@
 
 use crate::finding::Finding;
 use crate::world::World;
+use halfgap_geometry::EdgeSpec;
 #[cfg(feature = "scene")]
 use {
     crate::force::{Snapshot, Wrench, wrenches_of},
@@ -11,21 +12,20 @@ use {
     std::slice::from_ref,
 };
 
-/// Distance of a point from a body, as a fraction of the body's reach, up to which the point counts as on it: the
-/// accuracy to which the points of outlines must be written.
-const ON_BODY: f64 = 1e-6;
-
 impl World {
-    /// Lists the force laws whose point, fixed in the world, is now outside of the body on which they push.
-    pub(crate) fn find_points_left(&self, findings: &mut Vec<Finding>) {
-        for law in self.forces() {
+    /// Lists the force laws whose point, fixed in the world, is now outside of the body on which they push, but those
+    /// of which that is known.
+    pub(crate) fn find_points_left(&self, is_known: impl Fn(&str) -> bool, findings: &mut Vec<Finding>) {
+        for law in self.forces().iter().filter(|law| !is_known(law.name())) {
             let Some((body, point)) = law.fixed_point().filter(|(body, _)| !self.is_fixed(*body)) else {
                 continue;
             };
             let shape = self.shape(body);
             let inside = self.state(body).pose().point_to_body(point);
-            // A state that is no number is another finding.
-            if !inside.is_finite() || shape.nearest(inside).signed_distance <= ON_BODY * shape.reach() {
+            // A point counts as on the body to the accuracy to which the points of outlines must be written. A state
+            // that is no number is another finding.
+            let fit = EdgeSpec::FIT * shape.reach();
+            if !inside.is_finite() || shape.nearest(inside).signed_distance <= fit {
                 continue;
             }
             let (law, body) = (law.name().to_owned(), self.name(body).to_owned());

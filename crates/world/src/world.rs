@@ -394,7 +394,8 @@ impl World {
     /// [`RunError::NotATime`] for a time that is not finite. [`RunError::Astray`] if connectors have come apart, bodies
     /// overlap or the energy books do not close at that time. Another error if an event or a step cannot be simulated:
     /// the world stays at that time. Both kinds are repeated on every further attempt, except [`RunError::Crawls`]
-    /// and [`RunError::TooFast`]: after these an advance over a shorter duration may go on.
+    /// and [`RunError::TooFast`]: after these an advance over a shorter duration may go on, unless a longer one is
+    /// planned ([`WorldSettings::duration`](crate::WorldSettings::duration)).
     pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
         let outcome = self.advance_while(time, &mut |event| {
             on_event(event);

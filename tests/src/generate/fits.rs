@@ -30,7 +30,6 @@ pub fn struck_fit_of_seed(seed: u64, law: &str, elasticity: f64) -> Value {
     let tilt = if random.chance(0.5) { 0.0 } else { random.between(-0.5, 0.5) };
     let mut bodies = Vec::new();
     let mut shape = block(width, height);
-    let mut place = [0.0, 0.0];
     let walls = |bodies: &mut Vec<Value>| {
         for (name, side) in [("left", -1.0), ("right", 1.0)] {
             bodies.push(fixed(name, block(1.0, height), [side * (0.5 * width + 0.5), 0.0], 0.0));
@@ -53,13 +52,12 @@ pub fn struck_fit_of_seed(seed: u64, law: &str, elasticity: f64) -> Value {
             for (name, side) in [("left", -1.0f64), ("right", 1.0)] {
                 let normal = [-side * half.cos(), half.sin()];
                 let center = normal.map(|n| -(0.5 * width + 0.5) * n);
-                bodies.push(fixed(name, block(1.0, 1.2 * width), center, side * (0.0 - half)));
+                bodies.push(fixed(name, block(1.0, 1.2 * width), center, -side * half));
             }
-            place = [0.0, 0.0];
         }
     }
     bodies.push(json!({
-        "name": "fit", "shape": shape, "position": place, "elasticity": elasticity,
+        "name": "fit", "shape": shape, "position": [0.0, 0.0], "elasticity": elasticity,
         "mass": random.one_of(&[1.0, 4.0, 0.1, 30.0]),
     }));
     let top = if kind == 3 { (0.25 * width * width - off * off).max(0.0).sqrt() } else { 0.5 * height };

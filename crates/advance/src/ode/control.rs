@@ -40,7 +40,6 @@ impl Method {
     /// Plain control (HNW II.4, (4.13)): it needs no memory, so it does not mind steps that events cut short. Methods
     /// with fixed steps return 1; a norm that is not finite asks for the smallest factor.
     #[must_use]
-    #[inline]
     pub fn step_factor(self, error_norm: f64) -> f64 {
         let Some(order) = self.error_order() else { return 1.0 };
         if !error_norm.is_finite() {

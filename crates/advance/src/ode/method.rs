@@ -80,7 +80,6 @@ impl Method {
     /// Middle, as a fraction of a step, of the widest interval in which none of the step's rates is evaluated, dense
     /// output included; `None` for methods without error estimate and implicit ones.
     #[must_use]
-    #[inline]
     pub fn middle_between_stages(self) -> Option<f64> {
         let tableau = self.tableau().filter(|_| self.is_adaptive())?;
         let stages = tableau.stages.iter().chain(tableau.dense_stages);

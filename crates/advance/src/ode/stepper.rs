@@ -49,7 +49,6 @@ impl Default for Stepper {
 impl Stepper {
     /// Makes a stepper; its buffers are still empty.
     #[must_use]
-    #[inline]
     pub fn new(method: Method) -> Self {
         let kind = match method.tableau() {
             Some(tableau) => Kind::Explicit(Explicit::new(tableau)),

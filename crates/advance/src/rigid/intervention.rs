@@ -34,7 +34,6 @@ impl RigidSystem {
     ///
     /// # Panics
     /// If there is no such body.
-    #[inline]
     pub fn intervene(
         &mut self,
         time: Time,

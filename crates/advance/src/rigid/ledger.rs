@@ -34,7 +34,6 @@ impl Ledger {
 impl RigidSystem {
     /// Energy ledger at a time within the present segments.
     #[must_use]
-    #[inline]
     pub fn ledger_at(&self, time: Time) -> Ledger {
         let mut ledger = Ledger::default();
         self.write_ledger(time, &mut ledger);
@@ -42,7 +41,6 @@ impl RigidSystem {
     }
 
     /// Writes the energy ledger at a time within the present segments over `ledger`, whose buffer is used again.
-    #[inline]
     pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
         let Ledger { impacts, captures, projections, interventions, damping, ref laws } = self.ledger;
         let mut room = std::mem::take(&mut ledger.laws);

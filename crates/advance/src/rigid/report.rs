@@ -108,7 +108,6 @@ impl RigidSystem {
 
     /// Evaluates the forces of all held rows at a time within the present segments. Allocates.
     #[must_use]
-    #[inline]
     pub fn row_forces(&self, time: Time) -> Vec<RowForce> {
         let mut stage = self.stage.clone();
         let mut found = Vec::new();

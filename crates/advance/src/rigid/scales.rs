@@ -103,7 +103,6 @@ impl Scales {
 
     /// Thresholds of touching for a relative tolerance.
     #[must_use]
-    #[inline]
     pub fn tolerances(&self, tolerance: f64) -> Tolerances {
         let target_gap = self.wanted_gap(tolerance).max(self.smallest_gap());
         let told_from_rounding =
@@ -120,7 +119,6 @@ impl RigidSettings {
     /// Settings for a relative tolerance in a scene of the given scales, with the default method: contacts carry
     /// forces, the hybrid law resolves impacts, and ends of steps are projected.
     #[must_use]
-    #[inline]
     pub fn new(tolerance: f64, scales: &Scales) -> Self {
         Self::with_tolerances(tolerance, scales.tolerances(tolerance), scales, Method::default())
     }

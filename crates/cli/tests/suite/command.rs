@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+#[cfg(unix)]
+use std::process::{Child, Stdio};
+use std::process::{Command, Output};
 
 /// A scene of one disc that meets nothing.
 pub(crate) const FLIGHT: &str = r#"format = "halfgap-scene-1"
@@ -325,6 +327,13 @@ fn interrupted_when(arguments: &[&str], holds: impl FnMut() -> bool) -> Output {
     signalled_when("-INT", arguments, holds)
 }
 
+/// Sends a signal to a command that runs.
+#[cfg(unix)]
+pub(crate) fn send_signal(command: &Child, signal: &str) {
+    let killed = Command::new("kill").args([signal, &command.id().to_string()]).status();
+    assert!(killed.expect("there is a kill").success());
+}
+
 #[cfg(unix)]
 fn signalled_when(signal: &str, arguments: &[&str], mut holds: impl FnMut() -> bool) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_halfgap"))
@@ -336,8 +345,7 @@ fn signalled_when(signal: &str, arguments: &[&str], mut holds: impl FnMut() -> b
     while !holds() && command.try_wait().expect("a state").is_none() {
         std::thread::sleep(std::time::Duration::from_millis(1));
     }
-    let killed = Command::new("kill").args([signal, &command.id().to_string()]).status();
-    assert!(killed.expect("there is a kill").success());
+    send_signal(&command, signal);
     command.wait_with_output().expect("the command ends")
 }
 
@@ -562,8 +570,8 @@ fn a_sweep_that_is_interrupted_prints_the_runs_that_were_made() {
     assert_eq!(message.lines().last(), Some(told.as_str()), "{message}");
     assert_eq!(rows(), made + 1);
     let table = std::fs::read_to_string(&file).expect("the table was written");
-    let values =
-        table.lines().skip(1).map(|row| row.split(',').next().and_then(|value| value.parse::<f64>().ok()));
+    let value = |row: &str| row.split(',').next().and_then(|value| value.parse::<f64>().ok());
+    let values = table.lines().skip(1).map(|row| value(row).expect("a value"));
     assert!(values.is_sorted(), "the rows are in the order of their values");
 }
 

@@ -3,5 +3,4 @@
 mod command;
 mod determinism;
 mod messages;
-#[cfg(unix)]
 mod newcomer;

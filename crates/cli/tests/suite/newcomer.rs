@@ -1,11 +1,16 @@
 //! What a newcomer sees of a command that takes long, or that is mistyped.
 
-use crate::command::{FLIGHT, Folder, halfgap, json};
-use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use crate::command::{FLIGHT, Folder, halfgap};
+#[cfg(unix)]
+use {
+    crate::command::{json, send_signal},
+    std::io::{BufRead, BufReader, Read},
+    std::path::Path,
+    std::process::{Child, Command, Stdio},
+};
 
 /// A run that goes on for hours: two discs on a stiff spring.
+#[cfg(unix)]
 fn long_run(folder: &Folder, options: &[&str]) -> Child {
     let stiff = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/faults/43_stiff.toml");
     let stiff = std::fs::read_to_string(stiff).expect("the scene is there");
@@ -13,11 +18,6 @@ fn long_run(folder: &Folder, options: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_halfgap"));
     let command = command.args(["run", &scene]).args(options).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.spawn().expect("the command starts")
-}
-
-fn press_ctrl_c(command: &Child) {
-    let pressed = Command::new("kill").args(["-INT", &command.id().to_string()]).status();
-    assert!(pressed.expect("there is a kill").success());
 }
 
 #[cfg(unix)]
@@ -31,7 +31,7 @@ fn a_long_run_tells_how_far_it_is_and_ctrl_c_prints_what_it_has() {
         messages.read_line(&mut line).expect("a line");
         assert!(line.starts_with("progress: at 0.") && line.contains(" s of 1000 s, "), "{line}");
         assert!(line.ends_with(" events so far\n") && !line.contains(" 0 events"), "{line}");
-        press_ctrl_c(&command);
+        send_signal(&command, "-INT");
         let output = command.wait_with_output().expect("the command ends");
         let mut rest = String::new();
         messages.read_to_string(&mut rest).expect("text");
@@ -54,7 +54,7 @@ fn a_quiet_run_tells_nothing_of_its_progress() {
     let folder = Folder::new("long-quiet-run");
     let command = long_run(&folder, &["--quiet"]);
     std::thread::sleep(std::time::Duration::from_secs(4));
-    press_ctrl_c(&command);
+    send_signal(&command, "-INT");
     let output = command.wait_with_output().expect("the command ends");
     let messages = folder.plain(&output.stderr);
     assert!(messages.contains("error: ") && !messages.contains("progress"), "{messages}");
@@ -73,7 +73,7 @@ fn ctrl_c_between_repetitions_keeps_those_that_were_made() {
     let mut messages = BufReader::new(command.stderr.take().expect("a pipe"));
     let mut text = String::new();
     messages.read_line(&mut text).expect("a line of progress");
-    press_ctrl_c(&command);
+    send_signal(&command, "-INT");
     let output = command.wait_with_output().expect("the command ends");
     messages.read_to_string(&mut text).expect("text");
     assert_eq!(output.status.code(), Some(3), "{text}");

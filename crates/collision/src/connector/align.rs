@@ -18,7 +18,6 @@ impl Connector {
     /// Finds the least translation of body b, or of body a if b cannot be moved, that satisfies the connector; `None`
     /// if neither can be moved. `can_move` is true for the bodies a and b that may be moved.
     #[must_use]
-    #[inline]
     pub fn align(&self, a: &Pose, b: &Pose, can_move: [bool; 2]) -> Option<Alignment> {
         let moves_b = can_move[1] && self.anchors().1.is_some();
         if !(moves_b || can_move[0]) {

@@ -148,7 +148,6 @@ impl Connector {
     ///
     /// # Errors
     /// Ends on the same body, or a number out of its range.
-    #[inline]
     pub fn new(mut kind: ConnectorKind, elasticity: f64) -> Result<Self, ConnectorError> {
         if let ConnectorKind::Slot { normal, .. } = &mut kind {
             // By its larger component first, so that no square overflows or vanishes.
@@ -166,7 +165,6 @@ impl Connector {
     ///
     /// # Errors
     /// The errors of [`new`](Self::new); also a normal of a slot that is not a unit vector.
-    #[inline]
     pub fn check(&self) -> Result<(), ConnectorError> {
         if !(0.0..=1.0).contains(&self.elasticity) {
             return Err(ConnectorError::BadElasticity(self.elasticity));
@@ -361,7 +359,6 @@ impl Connector {
     /// hint, a rail's point may be on any continuation of the path; without one, as at a start, only where the nearest
     /// place is an end.
     #[must_use]
-    #[inline]
     pub fn error(&self, a: &Moving, b: &Moving, hint: Option<&RailHint>) -> f64 {
         if let (ConnectorKind::Rail { a: on_a, path }, Some(_)) = (&self.kind, hint) {
             return path.distance(a.pose.point_to_world(on_a.point));

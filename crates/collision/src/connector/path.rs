@@ -104,7 +104,6 @@ impl RailPath {
     ///
     /// # Errors
     /// No edges, numbers that are not finite, or an edge that cannot be built.
-    #[inline]
     pub fn from_edges(start: DVec2, edges: &[EdgeSpec]) -> Result<Self, RailError> {
         Ok(Self { curve: Curve::Edges(EdgePath::new(start, edges)?) })
     }
@@ -116,7 +115,6 @@ impl RailPath {
     ///
     /// # Errors
     /// Fewer than two points (closed: three), numbers that are not finite, neighbours that coincide, or a cusp.
-    #[inline]
     pub fn through(points: &[DVec2], closed: bool) -> Result<Self, RailError> {
         Ok(Self { curve: Curve::Spline(Spline::new(points, closed)?) })
     }
@@ -273,7 +271,6 @@ impl RailPath {
 
     /// Distance [m] of a point from the path or, beyond its open ends, from its straight continuations.
     #[must_use]
-    #[inline]
     pub fn distance(&self, point: DVec2) -> f64 {
         let to_path = self.foot(point, None).gap.abs();
         if self.is_closed() {

@@ -4,12 +4,7 @@ use super::bodies::Bodies;
 use crate::builder::{WorldBuilder, center_of_mass};
 use crate::scene::{BodyData, FieldPath, ForceData, Scene, ShapeData};
 use halfgap_collision::BodyId;
-use halfgap_geometry::Pose;
-use halfgap_geometry::Rounded;
-
-/// Distance of a centroid from the origin of the shape's coordinates, as a fraction of the shape's reach, up to which
-/// the shape counts as centred: the accuracy to which the ends of an outline's edges must be written.
-const CENTRED: f64 = 1e-6;
+use halfgap_geometry::{EdgeSpec, Pose, Rounded};
 
 /// Returns the hints on a scene whose bodies are in a builder.
 pub(super) fn of(scene: &Scene, builder: &WorldBuilder) -> Vec<String> {
@@ -69,7 +64,8 @@ fn moved_drawing(body: &BodyData, id: BodyId, builder: &WorldBuilder) -> Option<
     }
     let spec = builder.body(id);
     let centroid = center_of_mass(spec);
-    (centroid.length() > CENTRED * spec.shape.reach()).then(|| {
+    // A shape counts as centred to the accuracy to which the ends of an outline's edges must be written.
+    (centroid.length() > EdgeSpec::FIT * spec.shape.reach()).then(|| {
         format!(
             "fixed body {:?} is not where it is drawn: without `position` or `origin` its centroid, ({}, {}) m in the \
              drawing, is put at (0, 0); `origin = [0.0, 0.0]` keeps the drawing in place, `position = [0.0, 0.0]` \

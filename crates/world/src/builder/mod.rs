@@ -21,8 +21,7 @@ use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{BodyPart, FlightLaw, RigidParts, RigidSystem, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
-use halfgap_geometry::Rounded;
-use halfgap_geometry::{Aabb, Edge, Pose, Shape, ShapePool};
+use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
 

@@ -11,7 +11,8 @@ const PLOT_HEIGHT: f64 = 320.0;
 /// Largest number of points of a curve; more are thinned out.
 const MOST_POINTS: usize = 4000;
 
-/// Distance of all values of an energy from 0, as a multiple of what changes in the run, from which on it is left out.
+/// Distance of all values of an energy from 0, as a multiple of what changes in the run, from which on it is left out:
+/// with it, an axis from 0 would have more room for what is constant than for what changes.
 const FAR: f64 = 1.0;
 
 /// A curve: name, colour, width, and the energy that it shows.
@@ -23,8 +24,8 @@ const CURVES: [Curve; 3] = [
     ("total", "#22272b", "2", Energy::total),
 ];
 
-/// Draws kinetic, potential and total energy of a recording over time, and returns the SVG document. Constant parts that
-/// are larger than all that changes are left out, and the name of the axis says so.
+/// Draws kinetic, potential and total energy of a recording over time, and returns the SVG document. Constant parts
+/// that are larger than all that changes are left out, and the name of the axis says so.
 #[must_use]
 pub fn energy_picture(recording: &Recording) -> String {
     let frames = &recording.frames;

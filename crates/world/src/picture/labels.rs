@@ -18,7 +18,9 @@ const SIZE: f64 = 12.0;
 const LONGEST: usize = 24;
 /// Space around a name [px].
 const SPACE: f64 = 3.0;
-/// Largest number of bodies of which each may get a name: among more there is no room, and looking for it takes long.
+/// Largest number of bodies of which each may get a name: among more there is little room, and looking for it takes a
+/// time that grows with their square. Measured with discs in a square grid: of 400, 120 get names, in 1 ms; of 5,000,
+/// 43 would, in 0.1 s, twice the time of the rest of the picture.
 const MOST: usize = 400;
 /// Height of the letters above the line on which they stand, as a fraction of the font size.
 const ASCENT: f64 = 0.75;
@@ -33,9 +35,9 @@ struct Placed<'a> {
 
 /// Draws the names of bodies, in their order, over all of them.
 pub(super) fn draw_names(svg: &mut Svg, world: &World, bodies: &[Drawn], view: &View) {
-    let bodies = &bodies[..bodies.len().min(MOST)];
+    // A body without a name is not to be covered by that of another.
     let placed: Vec<_> = bodies.iter().map(|drawn| Placed::new(world, drawn, view)).collect();
-    let names = short_names(bodies.iter().map(|drawn| world.name(drawn.body)), LONGEST);
+    let names = short_names(bodies.iter().take(MOST).map(|drawn| world.name(drawn.body)), LONGEST);
     let page = Aabb {
         min: DVec2::new(SPACE, FOOT - view.page_height() + SPACE),
         max: DVec2::new(view.page_width() - SPACE, -HEAD - SPACE),
@@ -80,8 +82,8 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// Places for the middle of a name [px, y up] with half of its size, the best first: within the body clear of its middle,
-/// where its centre of mass and its hand are, then around it.
+/// Places for the middle of a name [px, y up] with half of its size, the best first: within the body clear of its
+/// middle, where its centre of mass and its hand are, then around it.
 fn places(body: &Placed<'_>, half: DVec2, page: Aabb) -> Vec<DVec2> {
     let shown = Aabb { min: body.bounds.min.max(page.min), max: body.bounds.max.min(page.max) };
     let (middle, size) = (shown.center(), shown.size());
@@ -94,8 +96,8 @@ fn places(body: &Placed<'_>, half: DVec2, page: Aabb) -> Vec<DVec2> {
     within.into_iter().chain(around).collect()
 }
 
-/// True if a box [px, y up] lies wholly on its own body or wholly off it, and off all others, as far as nine points and the
-/// points between them tell.
+/// True if a box [px, y up] lies wholly on its own body or wholly off it, and off all others, as far as 27 points, nine
+/// in each of three lines, tell.
 fn is_clear(placed: &[Placed<'_>], own: usize, room: &Aabb, view: &View) -> bool {
     let near = |body: &&Placed<'_>| body.bounds.overlaps(room);
     let mut others =

@@ -2,7 +2,8 @@
 //!
 //! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `shown` chooses
 //! the part of the world to show and `view` maps it to the page; `scene` (with forces as `arrows`, connectors as
-//! `ties` and names as `labels`), `energy` and `events` are one picture each, the latter two on common `axes` with round `ticks`.
+//! `ties` and names as `labels`), `energy` and `events` are one picture each, the latter two on common `axes` with
+//! round `ticks`.
 
 mod arrows;
 mod axes;

@@ -201,8 +201,8 @@ fn draw_movable(svg: &mut Svg, world: &World, body: BodyId, drawn: (usize, &Body
     svg.circle(center, 2.0, &[("fill", "#22272b")]);
 }
 
-/// Length of the line that shows the angle of a body [m]: half of its extent from the middle, which is less than that from
-/// the centre of mass where that lies outside of the shape.
+/// Length of the line that shows the angle of a body [m]: half of its extent from the middle, which is less than that
+/// from the centre of mass where that lies outside of the shape.
 pub(super) fn hand_length(shape: &Shape) -> f64 {
     0.5 * shape.reach().min(0.5 * shape.bounds_at(&Pose::IDENTITY).size().max_element())
 }

@@ -1,9 +1,10 @@
 //! The part of the world that pictures of a recording show.
 //!
-//! It holds the moving bodies in all frames and impacts with the lines that show their angles, the points from which connectors and springs hang, the tips of the arrows
-//! of forces, and of the fixed bodies and rails those nearby. A point that a connector or spring ties is left out if it
-//! is farther from the moving bodies than [`FARTHEST_TIE`] times the size of the box that they cover, in which they
-//! would be lost; its connector is then drawn up to the edge of the picture.
+//! It holds the moving bodies in all frames and impacts with the lines that show their angles, the points from which
+//! connectors and springs hang, the tips of the arrows of forces, and of the fixed bodies and rails those nearby. A
+//! point that a connector or spring ties is left out if it is farther from the moving bodies than [`FARTHEST_TIE`]
+//! times the size of the box that they cover, in which they would be lost; its connector is then drawn up to the edge
+//! of the picture.
 
 use super::arrows::ForceScale;
 use super::scene::hand_length;

@@ -1,8 +1,9 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
-//! `source` reads and parses a text (`tables` refuses arrays for tables), `validate` checks the values, `locate` finds the line of a field for
-//! messages, `nearest` finds what a mistyped name may stand for, `varied` puts other numbers into one field, and `supported` refuses fields of the format that are
-//! not simulated yet. SI units, radians, counter-clockwise positive, y up.
+//! `source` reads and parses a text (`tables` refuses arrays for tables), `validate` checks the values, `locate` finds
+//! the line of a field for messages, `nearest` finds what a mistyped name may stand for, `varied` puts other numbers
+//! into one field, and `supported` refuses fields of the format that are not simulated yet. SI units, radians,
+//! counter-clockwise positive, y up.
 
 mod body;
 mod connector;

@@ -5,8 +5,8 @@ use strsim::damerau_levenshtein;
 /// Part of a word that may be mistyped, as a divisor of its length: the rule of rustc and cargo.
 const MISTYPED: usize = 3;
 
-/// Returns the known word that is nearest to an unknown one, if one is near: a third of its letters may be wrong, missing, too
-/// many or swapped, and all may be in the other case.
+/// Returns the known word that is nearest to an unknown one, if one is near: a third of its letters may be wrong,
+/// missing, too many or swapped, and all may be in the other case.
 pub(super) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = word.to_lowercase();
     let near = known.into_iter().filter_map(|other| {
@@ -22,8 +22,8 @@ pub(super) fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a s
     nearest(word, known).map_or(String::new(), |near| format!(" (did you mean {quote}{near}{quote}?)"))
 }
 
-/// Puts the question into a message of serde, "unknown field `x`, expected one of `a`, `b`"; other messages stay as they
-/// are.
+/// Puts the question into a message of serde, "unknown field `x`, expected one of `a`, `b`"; other messages stay as
+/// they are.
 pub(super) fn with_nearest(message: &str) -> String {
     let asked = || {
         let rest =

@@ -270,6 +270,26 @@ fn in_a_crowd_a_name_that_has_no_room_is_left_out() {
 }
 
 #[test]
+fn a_name_does_not_cover_a_body_that_is_too_late_for_a_name() {
+    let disc = |name: &str, radius: f64, x: f64, y: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ disc = {{ radius = {radius:?} }} }}\nmass = 1.0\n\
+             position = [{x:?}, {y:?}]\n"
+        )
+    };
+    let row = (0..450).map(|index| disc(&format!("{index}"), 0.01, 6.0 + 0.03 * f64::from(index), 0.0));
+    let crowd: String = std::iter::once(disc("big", 5.0, 0.0, 0.0)).chain(row).collect();
+    // It lies where the name of the first body would be.
+    let late = disc("late", 0.5, 0.0, -2.5) + "passes_through = [\"big\"]\n";
+    let place = |parts: &str| {
+        let picture = last_picture(parts);
+        picture.lines().find(|line| line.ends_with(">big</text>")).map(str::to_owned)
+    };
+    let [alone, covered] = [&crowd, &(crowd.clone() + &late)].map(|parts| place(parts));
+    assert!(alone.is_some() && alone != covered, "{alone:?}, {covered:?}");
+}
+
+#[test]
 fn a_picture_says_which_part_of_the_paths_it_shows() {
     let (world, recording) = recorded(BOB);
     let pictures = ScenePictures::new(&world, &recording);

@@ -153,9 +153,9 @@ impl RigidSystem {
         }
         let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
         if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
-            // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along,
-            // gaps accelerate by twice the product of spin and speed.
-            let speeds = region.bodies.iter().map(|&body| self.moving_at(body, time).velocity.length());
+            // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As one goes
+            // along the other, their gap accelerates by twice the product of that spin and the speed between them.
+            let speeds = region.records.iter().map(|record| record.motion.center_velocity.length());
             let fastest = speeds.fold(rest, f64::max);
             if scale > 2.0 * rest * fastest / self.settings.steps.length {
                 return Err(self.settle_error(region, settling, time, source));

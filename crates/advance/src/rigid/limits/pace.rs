@@ -81,8 +81,7 @@ impl RigidSystem {
         self.limits.crawls = None;
         let Some(step) = mean else { return };
         let crawls = step * HOPELESS < self.limits.duration;
-        let turning = || self.turns_without_end(group, step);
-        let fast = if crawls { None } else { turning() };
+        let fast = if crawls { None } else { self.turns_without_end(group, step) };
         let pace = &mut self.limits.paces[group.leader().index()];
         pace.hopeless = if crawls || fast.is_some() { pace.hopeless + 1 } else { 0 };
         if pace.hopeless < PACES {
@@ -103,7 +102,8 @@ impl RigidSystem {
         group.bodies.iter().enumerate().find_map(|(place, &body)| {
             let BodyState { angle, angular_velocity, .. } =
                 body_state(&group.state, group.bodies.len(), place);
-            // One that swings to and fro does not get anywhere; one that turns more than once in a step is not followed.
+            // One that swings to and fro does not get anywhere; one that turns more than once in a step is not
+            // followed.
             let mean = self.flyer(body).with_turns(angle).abs() / elapsed;
             let is_followed = angular_velocity.abs() * step < TAU;
             let spin = mean.min(angular_velocity.abs()).copysign(angular_velocity);

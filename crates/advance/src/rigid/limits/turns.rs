@@ -1,7 +1,7 @@
 //! Turns: bodies that turn too often in the run to be followed.
 //!
-//! A body that turns by itself costs nothing, nor does a disc about its centre. One that may hit others is searched turn
-//! by turn, and one that is tied is stepped so, however little comes of it.
+//! A body that turns by itself costs nothing, nor does a disc about its centre. One that may hit others is searched
+//! turn by turn, and one that is tied is stepped so, however little comes of it.
 
 use crate::rigid::error::AdvanceError;
 use crate::rigid::search::pairs::{PairId, Prediction};
@@ -14,13 +14,13 @@ use std::f64::consts::TAU;
 /// 0.4 us of a run above a floor, and 6 to 11 us on a pin, so that so many take 40 s to 20 minutes. More would be
 /// a run of hours; fewer are a matter of patience.
 pub(super) const MOST_TURNS: f64 = 1e8;
-/// Number of times in succession that the search of a pair goes on before its bodies are looked at. Measured with a block at
-/// 1e9 rad/s: half a second, in which a body that turns fast may well have passed the other.
+/// Number of times in succession that the search of a pair goes on before its bodies are looked at. Measured with a
+/// block at 1e9 rad/s: half a second, in which a body that turns fast may well have passed the other.
 const SEARCHES: u32 = 100_000;
 
 impl RigidSystem {
-    /// Notes that the search of a pair has gone on. If that is since one of the bodies turns too fast, the error is kept in the
-    /// memory, to be returned once the event is over.
+    /// Notes that the search of a pair has gone on. If that is since one of the bodies turns too fast, the error is
+    /// kept in the memory, to be returned once the event is over.
     pub(crate) fn note_search(&mut self, pair: PairId) {
         let goes_on = self.pairs.get(pair).prediction == Prediction::SearchOn;
         let past = self.pairs.past_mut(pair);

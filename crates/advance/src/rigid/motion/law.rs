@@ -126,8 +126,8 @@ pub trait ForceLaw: Debug + Send + Sync {
         None
     }
 
-    /// A body on which the law pushes at a point of the world [m] that stays where it is while the body moves; `None` for
-    /// other laws. A run tells when the body has left the point.
+    /// A body on which the law pushes at a point of the world [m] that stays where it is while the body moves; `None`
+    /// for other laws. A run tells when the body has left the point.
     fn fixed_point(&self) -> Option<(BodyId, DVec2)> {
         None
     }
