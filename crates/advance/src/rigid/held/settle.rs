@@ -153,9 +153,13 @@ impl RigidSystem {
         }
         let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
         if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
-            // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As one goes
-            // along the other, their gap accelerates by twice the product of that spin and the speed between them.
-            let speeds = region.records.iter().map(|record| record.motion.center_velocity.length());
+            // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
+            // round each other, gaps accelerate by twice the product of that spin and the speed between them.
+            let velocity = |body: BodyId| self.moving_at(body, time).velocity;
+            let is_free = |body: BodyId| self.is_movable(body);
+            let drifts = region.records.iter().flat_map(Collision::bodies).all(is_free);
+            let frame = region.bodies.first().filter(|_| drifts).map_or(DVec2::ZERO, |&body| velocity(body));
+            let speeds = region.bodies.iter().map(|&body| (velocity(body) - frame).length());
             let fastest = speeds.fold(rest, f64::max);
             if scale > 2.0 * rest * fastest / self.settings.steps.length {
                 return Err(self.settle_error(region, settling, time, source));
