@@ -1,0 +1,115 @@
+//! Prints a hash of all states, forces and events of all scenes, to tell whether a change moved a bit.
+//!
+//! ```text
+//! cargo run --profile dist -p halfgap-tests --example bits
+//! cargo run --profile dist -p halfgap-tests --example bits -- --count 100 --each   # a line for each scene
+//! ```
+//!
+//! The scenes of the repository, the reference scenes, and `--count` generated ones of each kind. A run ends after so
+//! many reports of its progress, not after a time, so that the hash is the same on a slow machine.
+
+use halfgap::scene::{Scene, SceneFormat};
+use halfgap::{Record, RunPlan, World, run};
+use halfgap_tests::generate::{coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed};
+use halfgap_tests::{data, reference_scene_names};
+use serde_json::Value;
+use std::fmt::{self, Write};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Reports of progress after which a run ends: events, outputs, and every so many steps without either.
+const LONGEST: u32 = 1500;
+/// Threads that run scenes.
+const JOBS: usize = 2;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let place = arguments.iter().position(|argument| argument == "--count");
+    let count = place.map_or(1000, |place| arguments[place + 1].parse().expect("a number follows --count"));
+    let prints_each = arguments.iter().any(|argument| argument == "--each");
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let mut files: Vec<_> = std::fs::read_dir(scenes).expect("the scenes are there").flatten().collect();
+    files.sort_by_key(std::fs::DirEntry::path);
+    let of_repository = hashes(files.len(), &|index| Scene::read(files[index].path()).expect("a fine scene"));
+    let names = reference_scene_names();
+    let reference = hashes(names.len(), &|index| {
+        Scene::read(data(&format!("scenes/{}.json", names[index]))).expect("a fine scene")
+    });
+    let mut groups = vec![("repository", of_repository), ("reference", reference)];
+    let kinds: [(&str, fn(u64) -> Value); 4] = [
+        ("ordinary", scene_of_seed),
+        ("coarse", coarse_of_seed),
+        ("impulses", impulses_of_seed),
+        ("varied", variation_of_seed),
+    ];
+    for (kind, of_seed) in kinds {
+        let scene = |index| Scene::parse(&of_seed(1 + index as u64).to_string(), SceneFormat::Json);
+        groups.push((kind, hashes(count, &|index| scene(index).expect("a generated scene can be read"))));
+    }
+    for (kind, hashes) in groups {
+        if prints_each {
+            for (index, hash) in hashes.iter().enumerate() {
+                println!("{kind} {} {hash:016x}", index + 1);
+            }
+        }
+        let mut all = Hash::new();
+        write!(all, "{hashes:?}").expect("hashing never fails");
+        println!("{kind:<10} {:>5} scenes  {:016x}", hashes.len(), all.0);
+    }
+}
+
+/// The hashes of so many scenes, by their number.
+fn hashes(count: usize, scene: &(dyn Fn(usize) -> Scene + Sync)) -> Vec<u64> {
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![0; count]));
+    let work = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return;
+            }
+            let hash = hash_of(&scene(index));
+            found.lock().expect("no thread panics")[index] = hash;
+        }
+    };
+    std::thread::scope(|scope| (0..JOBS).for_each(|_| drop(scope.spawn(work))));
+    found.into_inner().expect("no thread panics")
+}
+
+/// The hash of all that a run records, of the error that it ends with, or of that which refuses the scene.
+fn hash_of(scene: &Scene) -> u64 {
+    let mut hash = Hash::new();
+    let world = World::from_scene(scene);
+    let written = match world {
+        Ok(mut world) => {
+            let mut reports = 0;
+            let report = run(&mut world, &RunPlan::of_scene(scene, Record::Everything), &mut |_| {
+                reports += 1;
+                if reports < LONGEST { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            });
+            write!(hash, "{:?} {:?} {:?}", report.recording, report.error, report.findings)
+        }
+        Err(error) => write!(hash, "{error}"),
+    };
+    written.expect("hashing never fails");
+    hash.0
+}
+
+/// FNV-1a of 64 bits. Numbers are written with all the digits that tell them apart.
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+        Ok(())
+    }
+}
