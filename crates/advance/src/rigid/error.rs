@@ -1,6 +1,6 @@
 //! Reasons why the advance of rigid bodies stops.
 
-use super::parts::PartsError;
+use crate::rigid::parts::PartsError;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::{ImpactError, Problem, SolveError};
 use halfgap_geometry::{Rounded, RoundedPlace};

@@ -33,6 +33,7 @@ impl Forest {
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
 
     #[test]

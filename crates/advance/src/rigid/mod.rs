@@ -16,40 +16,41 @@
 //! `forest` lists and sets of bodies, `sources` the numbering of events in the queue, `ledger` the energy balance,
 //! `report` the forces and contact changes that callers may ask for, `error` the reasons why an advance stops.
 
-mod by_body;
-mod ending;
+mod agenda;
+mod bodies;
+mod books;
+mod connectors;
+mod contacts;
 mod error;
 mod event;
 mod forest;
+mod group;
 mod held;
-mod intervention;
-mod laws;
-mod ledger;
-mod limits;
-mod motion;
+mod impact;
 mod parts;
-mod report;
+mod region;
 mod scales;
 mod search;
-mod sources;
-mod step;
+mod settings;
+mod sinking;
 mod system;
 #[cfg(test)]
 mod test_scene;
+mod watch;
+mod zeno;
 
+pub use bodies::flyer::{FlightLaw, Flyer};
+pub use bodies::law::{ForceLaw, Snapshot, Wrench, Wrenches};
+pub use bodies::squeezed::LARGEST_MASS_RATIO;
+pub use books::counts::Counts;
+pub use books::ledger::Ledger;
+pub use books::report::{ContactChanges, Handled, ImpactReport, RowForce, RowReport};
 pub use error::{AdvanceError, Between};
-pub use event::impacts::{ImpactReport, RowReport};
+pub use event::intervention::VelocityChange;
 pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
-pub use held::squeezed::LARGEST_MASS_RATIO;
-pub use intervention::VelocityChange;
-pub use ledger::Ledger;
-pub use motion::flyer::{FlightLaw, Flyer};
-pub use motion::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use parts::{BodyPart, PartsError, RigidParts};
-pub use report::{ContactChanges, RowForce};
 pub use scales::Scales;
-pub use step::dynamics::ExtraAcceleration;
-pub use step::segment::StepControl;
-pub use system::{Counts, Handled, RigidSettings, RigidSystem};
+pub use settings::{ExtraAcceleration, RigidSettings, StepControl};
+pub use system::RigidSystem;

@@ -1,8 +1,8 @@
 //! The parts of a system, and the checks that refuse missing bodies and numbers out of range.
 
-use super::motion::flyer::FlightLaw;
-use super::motion::law::ForceLaw;
-use super::system::RigidSettings;
+use crate::rigid::bodies::flyer::FlightLaw;
+use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
 use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
 use std::sync::Arc;
@@ -83,7 +83,7 @@ pub enum PartsError {
 /// Wording and test of a rule, and the named quantities that must keep to it.
 type Rule<'a> = (&'static str, fn(f64) -> bool, &'a [(&'static str, f64)]);
 
-pub(super) const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
+pub(crate) const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
 const NOT_NEGATIVE: (&str, fn(f64) -> bool) =
     ("finite, and not negative", |value| value >= 0.0 && value.is_finite());
 const POSITIVE: (&str, fn(f64) -> bool) = ("positive and finite", |value| value > 0.0 && value.is_finite());
@@ -199,7 +199,7 @@ fn check_body(BodyPart { body, law, state }: &BodyPart) -> Result<(), Broken> {
 type Broken = (&'static str, &'static str, f64);
 
 /// The first quantity that breaks its rule, if any.
-pub(super) fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
+pub(crate) fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
     for &(rule, keeps, quantities) in rules {
         if let Some(&(quantity, value)) = quantities.iter().find(|(_, value)| !keeps(*value)) {
             return Err((quantity, rule, value));
@@ -210,10 +210,12 @@ pub(super) fn keep_to(rules: &[Rule<'_>]) -> Result<(), Broken> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::system::RigidSystem;
-    use super::super::test_scene::FINE;
-    use super::super::{AdvanceError, ExtraAcceleration, StepControl};
     use super::*;
+    use crate::rigid::error::AdvanceError;
+
+    use crate::rigid::settings::{ExtraAcceleration, StepControl};
+    use crate::rigid::system::RigidSystem;
+    use crate::rigid::test_scene::FINE;
     use glam::DVec2;
     use halfgap_collision::{Anchor, ConnectorKind};
     use halfgap_geometry::Shape;

@@ -1,8 +1,7 @@
 //! Derives the thresholds of touching and the errors of steps from one relative tolerance and the sizes in a scene.
 
-use super::step::segment::StepControl;
-use super::system::RigidSettings;
 use crate::ode::Method;
+use crate::rigid::settings::{RigidSettings, StepControl};
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Aabb;
@@ -161,7 +160,7 @@ fn local_error(tolerance: f64, method: Method) -> f64 {
 }
 
 /// Largest rate [m/s] at which a row is at rest, in a scene of the given speed [m/s].
-fn rest_speed(velocity_tol: f64, speed: f64) -> f64 {
+pub(crate) fn rest_speed(velocity_tol: f64, speed: f64) -> f64 {
     let slow = REST_OF_SLOW * velocity_tol;
     if speed > 0.0 { slow.min(REST * speed) } else { slow }
 }
@@ -183,6 +182,7 @@ fn resolution_time(tolerances: &Tolerances, scales: &Scales) -> f64 {
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
     use glam::DVec2;
 

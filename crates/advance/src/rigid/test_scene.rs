@@ -1,11 +1,12 @@
 //! Settings and bodies for tests of groups: discs and a block on a floor.
 
-use super::motion::flyer::FlightLaw;
-use super::parts::{BodyPart, RigidParts};
-use super::step::group::Group;
-use super::step::segment::StepControl;
-use super::system::{RigidSettings, RigidSystem};
 use crate::ode::Method;
+use crate::rigid::bodies::flyer::FlightLaw;
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::group::group::Group;
+use crate::rigid::parts::{BodyPart, RigidParts};
+use crate::rigid::settings::{RigidSettings, StepControl};
+use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, SearchSettings, Tolerances};
@@ -39,7 +40,7 @@ const DISCS_REST: f64 = 1e-10;
 const DISCS_SOON: f64 = 1e-4;
 
 /// Settings with thresholds far below anything that happens.
-pub(super) const FINE: RigidSettings = RigidSettings {
+pub(crate) const FINE: RigidSettings = RigidSettings {
     law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
     method: Method::Dop853,
@@ -66,7 +67,7 @@ const DISCS: RigidSettings = RigidSettings {
 
 /// Makes discs of radius 0.5 m and 1 kg at rest on a floor, which is body 0, under gravity, with their centres at the
 /// given places [m].
-pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
+pub(crate) fn resting_discs(places: &[f64]) -> Rooms {
     let disc = Shape::disc(0.5).expect("a fine radius");
     let on_floor = |&place: &f64| {
         let position = DVec2::new(place, 0.5 + DISCS_GAP);
@@ -77,7 +78,7 @@ pub(super) fn resting_discs(places: &[f64]) -> RigidSystem {
 
 /// Makes a rounded block of 1 kg that stands on one of its corners, of radius 0.1 m, on such a floor, tilted to 0.2 rad
 /// before the end of the corner.
-pub(super) fn block_on_its_corner() -> RigidSystem {
+pub(crate) fn block_on_its_corner() -> Rooms {
     let shape = Shape::rounded_block(1.0, 1.0, 0.1).expect("a fine size");
     let tilt = FRAC_PI_4 - 0.2;
     let position = DVec2::new(0.0, 0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP);
@@ -87,7 +88,7 @@ pub(super) fn block_on_its_corner() -> RigidSystem {
 
 /// Turns the block of [`block_on_its_corner`], whose group this is, to an angle [rad] at a spin [rad/s]; its
 /// corner stays on the floor.
-pub(super) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
+pub(crate) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
     let tilt = angle - FRAC_PI_4;
     let (height, rise) = (0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP, -0.4 * SQRT_2 * tilt.sin() * spin);
     (group.state[1], group.state[2]) = (height, angle);
@@ -95,7 +96,7 @@ pub(super) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
 }
 
 /// Makes bodies of 1 kg, with the moment of inertia of a disc of radius 0.5 m, at rest on a floor.
-fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> RigidSystem {
+fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> Rooms {
     let floor = Body {
         shape: Shape::block(20.0, 1.0).expect("a fine size"),
         inverse_mass: 0.0,
@@ -109,6 +110,10 @@ fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> RigidSystem {
         let law = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
         BodyPart { body, law, state }
     }));
-    RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
-        .expect("bodies that rest on a floor")
+    rooms_of(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
+}
+
+/// The rooms of a system of the given parts, at its start.
+pub(crate) fn rooms_of(parts: RigidParts, settings: RigidSettings, start: Time) -> Rooms {
+    RigidSystem::new(parts, settings, start).expect("fine parts").into_rooms()
 }

@@ -6,13 +6,22 @@
 //! where they were seen, as some that close slowly, or brings a body into another, the event stays on the dense output,
 //! along which nothing penetrates.
 
-use super::cause::Cause;
-use super::region::{Region, Touch};
-use crate::rigid::search::pairs::{Link, Prediction};
-use crate::rigid::sources::Source as EventSource;
-use crate::rigid::step::dynamics::body_state;
-use crate::rigid::step::group::SegmentEnd;
-use crate::rigid::system::RigidSystem;
+use crate::rigid::agenda::{Agenda, Source};
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::gaps::gap_at;
+use crate::rigid::contacts::pairs::{Link, Pairs, Prediction};
+use crate::rigid::contacts::touch::Touch;
+use crate::rigid::event::events::gap_of_cause;
+use crate::rigid::event::life::{complete_dense, dissolve};
+use crate::rigid::event::rails::note_ways;
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::group::dynamics::body_state;
+use crate::rigid::group::group::SegmentEnd;
+use crate::rigid::group::groups::{Groups, put_group, with_group};
+use crate::rigid::region::cause::Cause;
+use crate::rigid::region::region::{Region, measure_touches};
+use crate::rigid::region::view::View;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::BodyId;
@@ -28,158 +37,199 @@ const SEEN_SHARE: f64 = 0.5;
 
 /// Source of the states of the bodies of a group that is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Source {
+enum CutBy {
     /// A repeated step, or dense output that errs by little.
     Exact,
     /// Dense output, as the search for contacts has seen it.
     Dense,
 }
 
-impl RigidSystem {
-    /// Cuts the groups of a region at the present time, or a little off it, and ends them; their bodies are in flight
-    /// from there.
-    pub(crate) fn cut_groups(&mut self, region: &mut Region) {
-        self.complete_dense();
-        region.groups.iter().for_each(|&leader| self.note_ways(leader));
-        let seen = self.now;
-        self.measure_touches(region);
-        let gap = self.gap_of_cause(region.cause, seen).map(|(gap, _)| gap);
-        let time = self.cut_exactly(region, gap);
-        if self.is_off(region, gap, time) {
-            for &leader in &region.groups {
-                self.cut_group(leader, seen, Source::Dense);
-            }
-        } else {
-            self.now = time;
-        }
+/// Cuts the groups of a region at the present time, or a little off it, and ends them; their bodies are in flight
+/// from there.
+pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
+    complete_dense(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups);
+    region
+        .groups
+        .iter()
+        .for_each(|&leader| note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader));
+    let seen = rooms.assembly.now;
+    measure_touches(&rooms.assembly, region);
+    let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause, seen).map(|(gap, _)| gap);
+    let time = cut_exactly(rooms, region, gap);
+    if is_off(&rooms.view(), region, gap, time) {
         for &leader in &region.groups {
-            self.dissolve(leader);
+            cut_group(
+                &mut rooms.assembly,
+                &mut rooms.connectors,
+                &mut rooms.groups,
+                leader,
+                seen,
+                CutBy::Dense,
+            );
         }
+    } else {
+        rooms.assembly.now = time;
     }
+    for &leader in &region.groups {
+        dissolve(rooms, leader);
+    }
+}
 
-    /// Cuts the groups of a region by repeated steps, at the time at which the contact, rope or stop that fired has the
-    /// gap [m] that the search saw; returns this time.
-    fn cut_exactly(&mut self, region: &Region, gap: Option<f64>) -> Time {
-        let mut time = self.now;
-        for round in 0..=MOST_CORRECTIONS {
-            for &leader in &region.groups {
-                self.cut_group(leader, time, Source::Exact);
-            }
-            if round == MOST_CORRECTIONS {
-                break;
-            }
-            let corrected = self.passed(region, time).or_else(|| self.corrected(region.cause, gap, time));
-            let Some(corrected) = corrected else { break };
-            let starts =
-                region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
-            let latest = starts.map(|group| group.start).max().unwrap_or(time);
-            if corrected <= latest {
-                break;
-            }
-            time = corrected;
+/// Cuts the groups of a region by repeated steps, at the time at which the contact, rope or stop that fired has the
+/// gap [m] that the search saw; returns this time.
+fn cut_exactly(rooms: &mut Rooms, region: &Region, gap: Option<f64>) -> Time {
+    let mut time = rooms.assembly.now;
+    for round in 0..=MOST_CORRECTIONS {
+        for &leader in &region.groups {
+            cut_group(
+                &mut rooms.assembly,
+                &mut rooms.connectors,
+                &mut rooms.groups,
+                leader,
+                time,
+                CutBy::Exact,
+            );
         }
-        time
-    }
-
-    /// Corrected time, at which the contact, rope or stop that fired has the gap wanted [m]; `None` if it has nearly
-    /// that at the given time, or closes too slowly to tell.
-    fn corrected(&self, cause: Cause, wanted: Option<f64>, time: Time) -> Option<Time> {
-        let (gap, rate) = self.gap_of_cause(cause, time)?;
-        let error = gap - wanted?;
-        let counts = error.abs() > TIME_SHARE * self.settings.tolerances.accuracy;
-        (counts && rate < -self.settings.tolerances.velocity_tol).then(|| time.plus(-error / rate))
-    }
-
-    /// Time of the earliest contact of a region's bodies that was predicted for before the given time, to which the
-    /// present event has been corrected, if that contact has sunk below its zone meanwhile: it would not be found
-    /// again.
-    fn passed(&self, region: &Region, time: Time) -> Option<Time> {
-        if time <= self.now {
-            return None;
+        if round == MOST_CORRECTIONS {
+            break;
         }
-        let least = self.settings.tolerances.target_gap - self.settings.tolerances.accuracy;
-        let links = region.bodies.iter().flat_map(|&body| self.pairs.of_body(body));
-        let contacts = links.filter_map(|link| {
-            let Prediction::Contact(features) = self.pairs.get(link.pair).prediction else { return None };
-            let predicted = self.queue.time_of(self.source_id(EventSource::Pair(link.pair)))?;
-            let bodies = self.pairs.bodies(link.pair);
-            let has_sunk = || self.gap_at(Touch { bodies, features }, time).0 < least;
-            (predicted < time && has_sunk()).then_some(predicted)
+        let corrected = passed(&rooms.assembly, &rooms.pairs, &rooms.agenda, region, time)
+            .or_else(|| corrected(&rooms.assembly, &rooms.connectors, region.cause, gap, time));
+        let Some(corrected) = corrected else { break };
+        let starts =
+            region.groups.iter().filter_map(|&leader| rooms.groups.by_leader[leader.index()].as_deref());
+        let latest = starts.map(|group| group.start).max().unwrap_or(time);
+        if corrected <= latest {
+            break;
+        }
+        time = corrected;
+    }
+    time
+}
+
+/// Corrected time, at which the contact, rope or stop that fired has the gap wanted [m]; `None` if it has nearly
+/// that at the given time, or closes too slowly to tell.
+fn corrected(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    cause: Cause,
+    wanted: Option<f64>,
+    time: Time,
+) -> Option<Time> {
+    let (gap, rate) = gap_of_cause(assembly, connectors, cause, time)?;
+    let error = gap - wanted?;
+    let counts = error.abs() > TIME_SHARE * assembly.settings.tolerances.accuracy;
+    (counts && rate < -assembly.settings.tolerances.velocity_tol).then(|| time.plus(-error / rate))
+}
+
+/// Time of the earliest contact of a region's bodies that was predicted for before the given time, to which the
+/// present event has been corrected, if that contact has sunk below its zone meanwhile: it would not be found
+/// again.
+pub(crate) fn passed(
+    assembly: &Assembly,
+    pairs: &Pairs,
+    agenda: &Agenda,
+    region: &Region,
+    time: Time,
+) -> Option<Time> {
+    if time <= assembly.now {
+        return None;
+    }
+    let least = assembly.settings.tolerances.target_gap - assembly.settings.tolerances.accuracy;
+    let links = region.bodies.iter().flat_map(|&body| pairs.of_body(body));
+    let contacts = links.filter_map(|link| {
+        let Prediction::Contact(features) = pairs.get(link.pair).prediction else { return None };
+        let predicted = agenda.time_of(Source::Pair(link.pair))?;
+        let bodies = pairs.bodies(link.pair);
+        let has_sunk = || gap_at(assembly, Touch { bodies, features }, time).0 < least;
+        (predicted < time && has_sunk()).then_some(predicted)
+    });
+    contacts.min()
+}
+
+/// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
+/// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
+fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> bool {
+    let allowed = SEEN_SHARE * view.assembly.settings.tolerances.accuracy;
+    let fired = gap_of_cause(view.assembly, view.connectors, region.cause, time).zip(gap);
+    if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
+        return true;
+    }
+    let mut seen = region.touches.iter().zip(&region.motions);
+    let moves_touches = seen.any(|(&touch, &(gap, _))| {
+        time == view.assembly.now && (gap_at(view.assembly, touch, time).0 - gap).abs() > allowed
+    });
+    moves_touches
+        || strayed(view.assembly, view.groups, region, time)
+            .any(|body| is_in_another(view.assembly, view.pairs, body, region, time))
+}
+
+/// True if a body crosses one near it that it does not touch in a region.
+fn is_in_another(assembly: &Assembly, pairs: &Pairs, body: BodyId, region: &Region, time: Time) -> bool {
+    let pose = |body: BodyId| assembly.flyer(body).moving_at(time).pose;
+    let shape = |body: BodyId| &assembly.flyers[body.index()].body().shape;
+    pairs.of_body(body).iter().any(|&Link { pair, other }| {
+        let touches = |touch: &Touch| touch.bodies == pairs.bodies(pair);
+        let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
+        finite
+            && !region.touches.iter().any(touches)
+            && shape(body).relation(&pose(body), shape(other), &pose(other)) == Relation::Crossing
+    })
+}
+
+/// Places the bodies of a group where they are at a time; the group stays as it was, so that it can be cut again.
+fn cut_group(
+    assembly: &mut Assembly,
+    connectors: &mut Connectors,
+    groups: &mut Groups,
+    leader: BodyId,
+    time: Time,
+    source: CutBy,
+) {
+    let Some(mut group) = groups.take(leader) else { return };
+    let offset = time.since(group.start).max(0.0);
+    if offset < 0.5 * group.span {
+        // The middle of the segment, at which the error was read, is not reached.
+        group.largest_error = 0.0;
+    }
+    // Along a step over the kink of a force dense output errs by more than the estimate of the step's error; a step that
+    // ends just before the kink leads over it.
+    let is_switch = matches!(group.event, Some((_, SegmentEnd::Switch)));
+    if offset != group.span || source == CutBy::Dense {
+        with_group(assembly, connectors, groups, &mut group, |dynamics, tools| {
+            let leads_over = is_switch && offset > dynamics.group.span;
+            let is_exact = leads_over || (!is_switch && dynamics.is_dense_exact(offset));
+            let by_dense = source == CutBy::Dense || is_exact;
+            if by_dense || !dynamics.repeat_to(tools, offset) {
+                dynamics.end_by_dense(offset);
+            }
+            dynamics.end_on_rows(tools);
         });
-        contacts.min()
     }
-
-    /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
-    /// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
-    fn is_off(&self, region: &Region, gap: Option<f64>, time: Time) -> bool {
-        let allowed = SEEN_SHARE * self.settings.tolerances.accuracy;
-        let fired = self.gap_of_cause(region.cause, time).zip(gap);
-        if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
-            return true;
-        }
-        let mut seen = region.touches.iter().zip(&region.motions);
-        let moves_touches = seen.any(|(&touch, &(gap, _))| {
-            time == self.now && (self.gap_at(touch, time).0 - gap).abs() > allowed
-        });
-        moves_touches || self.strayed(region, time).any(|body| self.is_in_another(body, region, time))
+    for (place, &body) in group.bodies.iter().enumerate() {
+        let state = body_state(&group.end_state, group.bodies.len(), place);
+        assembly.flyers[body.index()].fly_from(time, state);
     }
+    put_group(assembly, connectors, groups, group);
+}
 
-    /// Bodies of a region that are farther from their dense output than the accuracy of contacts.
-    fn strayed<'a>(&'a self, region: &'a Region, time: Time) -> impl Iterator<Item = BodyId> + 'a {
-        let allowed = self.settings.tolerances.accuracy;
-        let groups =
-            region.groups.iter().filter_map(|&leader| self.groups.by_leader[leader.index()].as_deref());
-        groups.flat_map(move |group| {
-            let offset = time.since(group.start).max(0.0);
-            let places = group.bodies.iter().zip(&group.paths);
-            places.filter_map(move |(&body, path)| {
-                let [x, y, angle] = [0, 1, 2].map(|k: usize| path[k].value_at(offset));
-                let state = self.flyer(body).unwound_at(time);
-                let way = state.position.distance(DVec2::new(x, y));
-                (way + (state.angle - angle).abs() * self.flyer(body).reach() > allowed).then_some(body)
-            })
-        })
-    }
-
-    /// True if a body crosses one near it that it does not touch in a region.
-    fn is_in_another(&self, body: BodyId, region: &Region, time: Time) -> bool {
-        let pose = |body: BodyId| self.flyer(body).moving_at(time).pose;
-        let shape = |body: BodyId| &self.flyers[body.index()].body().shape;
-        self.pairs.of_body(body).iter().any(|&Link { pair, other }| {
-            let touches = |touch: &Touch| touch.bodies == self.pairs.bodies(pair);
-            let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
-            finite
-                && !region.touches.iter().any(touches)
-                && shape(body).relation(&pose(body), shape(other), &pose(other)) == Relation::Crossing
-        })
-    }
-
-    /// Places the bodies of a group where they are at a time; the group stays as it was, so that it can be cut again.
-    fn cut_group(&mut self, leader: BodyId, time: Time, source: Source) {
-        let Some(mut group) = self.groups.take(leader) else { return };
+/// Bodies of a region that are farther from their dense output than the accuracy of contacts.
+fn strayed<'a>(
+    assembly: &'a Assembly,
+    groups: &'a Groups,
+    region: &'a Region,
+    time: Time,
+) -> impl Iterator<Item = BodyId> + 'a {
+    let allowed = assembly.settings.tolerances.accuracy;
+    let groups = region.groups.iter().filter_map(|&leader| groups.by_leader[leader.index()].as_deref());
+    groups.flat_map(move |group| {
         let offset = time.since(group.start).max(0.0);
-        if offset < 0.5 * group.span {
-            // The middle of the segment, at which the error was read, is not reached.
-            group.largest_error = 0.0;
-        }
-        // Along a step over the kink of a force dense output errs by more than the estimate of the step's error; a step that
-        // ends just before the kink leads over it.
-        let is_switch = matches!(group.event, Some((_, SegmentEnd::Switch)));
-        if offset != group.span || source == Source::Dense {
-            self.with_group(&mut group, |dynamics, tools| {
-                let leads_over = is_switch && offset > dynamics.group.span;
-                let is_exact = leads_over || (!is_switch && dynamics.is_dense_exact(offset));
-                let by_dense = source == Source::Dense || is_exact;
-                if by_dense || !dynamics.repeat_to(tools, offset) {
-                    dynamics.end_by_dense(offset);
-                }
-                dynamics.end_on_rows(tools);
-            });
-        }
-        for (place, &body) in group.bodies.iter().enumerate() {
-            let state = body_state(&group.end_state, group.bodies.len(), place);
-            self.flyers[body.index()].fly_from(time, state);
-        }
-        self.groups.put(group);
-    }
+        let places = group.bodies.iter().zip(&group.paths);
+        places.filter_map(move |(&body, path)| {
+            let [x, y, angle] = [0, 1, 2].map(|k: usize| path[k].value_at(offset));
+            let state = assembly.flyer(body).unwound_at(time);
+            let way = state.position.distance(DVec2::new(x, y));
+            (way + (state.angle - angle).abs() * assembly.flyer(body).reach() > allowed).then_some(body)
+        })
+    })
 }

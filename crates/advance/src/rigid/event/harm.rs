@@ -1,71 +1,89 @@
 //! Groups whose held rows do harm, and which are made anew. A body that is held by two corners next to each other turns far
 //! for a small way or rate between them: held as equations, such rows may move it into others, or have immense forces.
 
-use super::cause::EventWork;
-use super::region::Region;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::error::AdvanceError;
+use crate::rigid::event::events::settle_and_still;
+use crate::rigid::event::groups::regroup;
+use crate::rigid::event::life::undo_groups;
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settle::HASTY_SHARE;
-use crate::rigid::system::RigidSystem;
+use crate::rigid::region::records::remeasure;
+use crate::rigid::region::region::{Region, measure_touches};
 
-impl RigidSystem {
-    /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
-    /// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
-    /// equations such rows may have immense forces, and none is lifted. If the groups drive other contacts together,
-    /// contacts that open slowly are let go.
-    pub(super) fn regroup_soundly(&mut self, work: &mut EventWork) -> Result<(), AdvanceError> {
-        loop {
-            work.before.clear();
-            work.before.extend(work.region.bodies.iter().map(|&body| self.flyer(body).unwound_at(self.now)));
-            let projections = self.ledger.projections;
-            let outcome = self.regroup(&work.region, &work.settling);
-            let [displaces, drives] = match outcome {
-                Ok(()) => self.harm_done(work),
-                Err(AdvanceError::StepCollapsed { .. }) => [true, false],
-                Err(_) => [false; 2],
-            };
-            // Each remedy is tried once.
-            let Region { is_unsound, is_hasty, .. } = &mut work.region;
-            let has_remedy = (displaces && !*is_unsound) || (drives && !*is_hasty);
-            if !has_remedy {
-                return outcome;
-            }
-            (*is_unsound, *is_hasty) = (*is_unsound || displaces, *is_hasty || drives);
-            self.undo_groups(&work.region, &work.before);
-            self.ledger.projections = projections;
-            self.remeasure(&mut work.region, self.now);
-            self.settle_and_still(work)?;
-            self.measure_touches(&mut work.region);
+/// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
+/// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
+/// equations such rows may have immense forces, and none is lifted. If the groups drive other contacts together,
+/// contacts that open slowly are let go.
+pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
+    loop {
+        work.before.clear();
+        work.before.extend(
+            work.region.bodies.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now)),
+        );
+        let projections = rooms.books.ledger.projections;
+        let outcome = regroup(rooms, &work.region, &work.settling);
+        let [displaces, drives] = match outcome {
+            Ok(()) => harm_done(&rooms.assembly, work),
+            Err(AdvanceError::StepCollapsed { .. }) => [true, false],
+            Err(_) => [false; 2],
+        };
+        // Each remedy is tried once.
+        let Region { is_unsound, is_hasty, .. } = &mut work.region;
+        let has_remedy = (displaces && !*is_unsound) || (drives && !*is_hasty);
+        if !has_remedy {
+            return outcome;
+        }
+        (*is_unsound, *is_hasty) = (*is_unsound || displaces, *is_hasty || drives);
+        undo_groups(
+            &mut rooms.assembly,
+            &mut rooms.connectors,
+            &mut rooms.groups,
+            &mut rooms.agenda,
+            &work.region,
+            &work.before,
+        );
+        rooms.books.ledger.projections = projections;
+        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now);
+        settle_and_still(rooms, work)?;
+        measure_touches(&rooms.assembly, &mut work.region);
+    }
+}
+
+/// Tells whether moving held contacts to their gaps has brought touching features nearer by more than their zone, and
+/// whether stopping the slow opening of held contacts has driven others together, faster than they opened. Where a
+/// body is held by two corners that are next to each other, a small way between them is a large turn, and so is a
+/// slow rate.
+fn harm_done(assembly: &Assembly, EventWork { region, settling, .. }: &EventWork) -> [bool; 2] {
+    let held = settling.held.iter().filter(|(_, row)| !row.bilateral);
+    let (mut is_moved, mut opening) = (false, 0.0f64);
+    for (index, row) in held {
+        let record = &region.records[*index];
+        is_moved |= row.gap != record.geometry.distance;
+        opening = opening.max(record.motion.normal_velocity);
+    }
+    let is_stopped = opening > HASTY_SHARE * assembly.rest_speed();
+    let mut harm = [false; 2];
+    if is_moved || is_stopped {
+        for (touch, &(gap_before, rate_before)) in region.touches.iter().zip(&region.motions) {
+            let (gap, rate) = gap_at(assembly, *touch, assembly.now);
+            harm[0] |= is_moved && gap < gap_before - assembly.settings.tolerances.accuracy;
+            harm[1] |= is_stopped && rate < rate_before.min(0.0) - opening;
         }
     }
-
-    /// Tells whether moving held contacts to their gaps has brought touching features nearer by more than their zone, and
-    /// whether stopping the slow opening of held contacts has driven others together, faster than they opened. Where a
-    /// body is held by two corners that are next to each other, a small way between them is a large turn, and so is a
-    /// slow rate.
-    fn harm_done(&self, EventWork { region, settling, .. }: &EventWork) -> [bool; 2] {
-        let held = settling.held.iter().filter(|(_, row)| !row.bilateral);
-        let (mut is_moved, mut opening) = (false, 0.0f64);
-        for (index, row) in held {
-            let record = &region.records[*index];
-            is_moved |= row.gap != record.geometry.distance;
-            opening = opening.max(record.motion.normal_velocity);
-        }
-        let is_stopped = opening > HASTY_SHARE * self.rest_speed();
-        let mut harm = [false; 2];
-        if is_moved || is_stopped {
-            for (touch, &(gap_before, rate_before)) in region.touches.iter().zip(&region.motions) {
-                let (gap, rate) = self.gap_at(*touch, self.now);
-                harm[0] |= is_moved && gap < gap_before - self.settings.tolerances.accuracy;
-                harm[1] |= is_stopped && rate < rate_before.min(0.0) - opening;
-            }
-        }
-        harm
-    }
+    harm
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::rigid::event::cause::EventWork;
+    use crate::rigid::event::harm::harm_done;
+    use crate::rigid::event::life::dissolve;
+    use crate::rigid::event::work::EventWork;
+    use crate::rigid::held::settle::settle;
+    use crate::rigid::region::collecting::collect_region;
+    use crate::rigid::region::region::measure_touches;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::BodyId;
 
@@ -73,27 +91,27 @@ mod tests {
     /// rate [m/s]; since then the disc has sunk by `sunk` [m], and falls at a speed [m/s].
     fn harm([lifted, opening]: [f64; 2], [sunk, falling]: [f64; 2]) -> [bool; 2] {
         let disc = BodyId(1);
-        let mut system = resting_discs(&[0.0]);
-        let mut work = system.work.take().expect("the start has made it");
-        system.dissolve(disc);
+        let mut rooms = resting_discs(&[0.0]);
+        let mut work = rooms.work.take().expect("the start has made it");
+        dissolve(&mut rooms, disc);
         let EventWork { region, settling, .. } = &mut *work;
-        system.collect_region(region, &[disc], system.now);
-        system.measure_touches(region);
-        let mut stage = std::mem::take(&mut system.stage);
+        collect_region(&rooms.view(), region, &[disc], rooms.assembly.now);
+        measure_touches(&rooms.assembly, region);
+        let mut stage = std::mem::take(&mut rooms.groups.stage);
         settling.set_likely([None].into_iter());
-        system.settle(region, settling, &mut stage, system.now, false).expect("it rests");
+        settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now, false).expect("it rests");
         settling.held[0].1.gap += lifted;
         region.records[0].motion.normal_velocity = opening;
-        let mut state = system.flyer(disc).unwound_at(system.now);
+        let mut state = rooms.assembly.flyer(disc).unwound_at(rooms.assembly.now);
         (state.position.y, state.velocity.y) = (state.position.y - sunk, -falling);
-        system.flyers[disc.index()].fly_from(system.now, state);
-        system.harm_done(&work)
+        rooms.assembly.flyers[disc.index()].fly_from(rooms.assembly.now, state);
+        harm_done(&rooms.assembly, &work)
     }
 
     #[test]
     fn a_touch_that_is_nearer_by_a_zone_or_driven_together_is_harm() {
-        let system = resting_discs(&[0.0]);
-        let (zone, slow) = (system.settings.tolerances.accuracy, 0.5 * system.rest_speed());
+        let rooms = resting_discs(&[0.0]);
+        let (zone, slow) = (rooms.assembly.settings.tolerances.accuracy, 0.5 * rooms.assembly.rest_speed());
         let lifted = 1e-3 * zone;
         assert_eq!(harm([lifted, 0.0], [2.0 * zone, 0.0]), [true, false]);
         assert_eq!(harm([lifted, 0.0], [0.5 * zone, 0.0]), [false; 2]);

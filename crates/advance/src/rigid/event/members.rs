@@ -1,9 +1,9 @@
 //! Members of the groups that are made from a region: bodies, held rows and touching features. They are listed once for
 //! all groups, as there may be as many groups as bodies.
 
-use super::region::Region;
+use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::step::rows::HeldRow;
+use crate::rigid::region::region::Region;
 use halfgap_collision::BodyId;
 
 /// Pairs of a group's root, which is a place in the region, and an index, both ascending.
@@ -11,7 +11,7 @@ type ByRoot = Vec<(usize, usize)>;
 
 /// The members of all groups that are made of a region.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Members {
+pub(crate) struct Members {
     places: ByRoot,
     held: ByRoot,
     touches: ByRoot,

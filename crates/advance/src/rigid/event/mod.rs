@@ -6,16 +6,21 @@
 //! a corner; `ticks` stands in for forces where contacts carry impulses only. `cause` is the reason of an event, with
 //! its buffers. The rows held afterwards are found in `held`.
 
-pub(super) mod cause;
-pub(super) mod connectors;
 pub(super) mod corners;
 pub(super) mod cutting;
 pub(super) mod events;
 pub(super) mod groups;
+pub(super) mod handling;
 pub(super) mod harm;
-pub(super) mod impacts;
-pub(super) mod jams;
+pub(super) mod intervention;
+pub(super) mod joints;
+pub(super) mod life;
+pub(super) mod lift;
 pub(super) mod members;
 pub(super) mod rails;
-pub(super) mod region;
+pub(super) mod rooms;
+pub(super) mod rules;
+pub(super) mod search_on;
 pub(super) mod ticks;
+pub(super) mod with_work;
+pub(super) mod work;

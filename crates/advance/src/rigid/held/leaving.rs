@@ -4,11 +4,12 @@
 //! edge: as a lid opens, the corner of the box below its hinge would be pressed into the lid. It is left out if no
 //! forces are found with it.
 
-use super::settling::Settling;
-use crate::rigid::event::region::Region;
-use crate::rigid::step::dynamics::Stage;
-use crate::rigid::step::rows::RowSource;
-use crate::rigid::system::RigidSystem;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::rows::{RowSource, mechanism, source_of};
+use crate::rigid::group::dynamics::Stage;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::region::Region;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Pose, Rotation};
@@ -17,37 +18,48 @@ use halfgap_geometry::{Pose, Rotation};
 /// stays.
 const SOON: f64 = 1e3;
 
-impl RigidSystem {
-    /// Leaves out the candidates that run off their features while they slide by `accuracy`; true if there are any. The
-    /// bodies are in the stage.
-    pub(crate) fn drop_leaving(&self, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
-        let before = settling.candidates.len();
-        settling.candidates.retain(|&index| {
-            let record = &region.records[index];
-            !self.leaves_at_once(record, |body| stage.movings[body.index()])
-        });
-        settling.candidates.len() < before
-    }
+/// Leaves out the candidates that run off their features while they slide by `accuracy`; true if there are any. The
+/// bodies are in the stage.
+pub(crate) fn drop_leaving(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    settling: &mut Settling,
+    stage: &Stage,
+) -> bool {
+    let before = settling.candidates.len();
+    settling.candidates.retain(|&index| {
+        let record = &region.records[index];
+        !leaves_at_once(assembly, connectors, record, |body| stage.movings[body.index()])
+    });
+    settling.candidates.len() < before
+}
 
-    /// Leaves out the records of a region that run off their features while they slide by `accuracy`.
-    pub(crate) fn retain_staying(&self, region: &mut Region) {
-        region.records.retain(|record| !self.leaves_at_once(record, |body| self.moving_at(body, self.now)));
-    }
+/// Leaves out the records of a region that run off their features while they slide by `accuracy`.
+pub(crate) fn retain_staying(assembly: &Assembly, connectors: &Connectors, region: &mut Region) {
+    region.records.retain(|record| {
+        !leaves_at_once(assembly, connectors, record, |body| assembly.moving_at(body, assembly.now))
+    });
+}
 
-    fn leaves_at_once(&self, record: &Collision, moving: impl Fn(BodyId) -> Moving) -> bool {
-        let Some(RowSource::Contact(features)) = self.source_of(record) else { return false };
-        let bodies = record.bodies();
-        let wait = self.settings.tolerances.accuracy / record.motion.lateral_velocity.abs();
-        if wait.is_nan() || wait > SOON * self.settings.resolution_time {
-            return false;
-        }
-        let moved = bodies.map(|body| after(&moving(body), wait));
-        self.mechanism().has_left(bodies, features, [&moved[0], &moved[1]])
+fn leaves_at_once(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    record: &Collision,
+    moving: impl Fn(BodyId) -> Moving,
+) -> bool {
+    let Some(RowSource::Contact(features)) = source_of(record) else { return false };
+    let bodies = record.bodies();
+    let wait = assembly.settings.tolerances.accuracy / record.motion.lateral_velocity.abs();
+    if wait.is_nan() || wait > SOON * assembly.settings.resolution_time {
+        return false;
     }
+    let moved = bodies.map(|body| after(&moving(body), wait));
+    mechanism(assembly, connectors).has_left(bodies, features, [&moved[0], &moved[1]])
 }
 
 /// The motion of a body after a time `wait` [s], at constant velocities.
-fn after(moving: &Moving, wait: f64) -> Moving {
+pub(crate) fn after(moving: &Moving, wait: f64) -> Moving {
     let Moving { pose, angle, velocity, angular_velocity } = *moving;
     let turn = Rotation::from_angle(angular_velocity * wait);
     let direction = turn.apply(DVec2::new(pose.rotation.cos, pose.rotation.sin));

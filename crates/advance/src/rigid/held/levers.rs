@@ -5,9 +5,12 @@
 //! orthogonalising it against those rows, twice, which is exact to rounding of the row (W. Kahan and B. Parlett, in B.
 //! Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
 
-use super::settling::Settling;
-use crate::rigid::event::region::{Region, Touch};
-use crate::rigid::system::RigidSystem;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::touch::Touch;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::region::Region;
+use crate::rigid::search::graze::{grazing_gap, is_tied};
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::InverseInertia;
 
@@ -67,24 +70,27 @@ impl Levers {
     }
 }
 
-impl RigidSystem {
-    /// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
-    /// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
-    /// been left out.
-    pub(super) fn let_pass(&self, region: &Region, settling: &mut Settling) -> bool {
-        let Settling { candidates, passing, levers, .. } = settling;
-        levers.load(region, |body| self.inertia(body));
-        candidates.retain(|&index| {
-            let record = &region.records[index];
-            let bodies = record.bodies();
-            let passes = !record.parties.bilateral
-                && record.geometry.distance > self.grazing_gap(bodies)
-                && bodies.iter().any(|&body| self.is_tied(body))
-                && levers.left_of(region, record, |body| self.inertia(body)) < LEVER * LEVER;
-            let touch = Touch::of(record).filter(|_| passes);
-            passing.extend(touch);
-            touch.is_none()
-        });
-        !settling.passing.is_empty()
-    }
+/// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
+/// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
+/// been left out.
+pub(crate) fn let_pass(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    settling: &mut Settling,
+) -> bool {
+    let Settling { candidates, passing, levers, .. } = settling;
+    levers.load(region, |body| assembly.inertia(body));
+    candidates.retain(|&index| {
+        let record = &region.records[index];
+        let bodies = record.bodies();
+        let passes = !record.parties.bilateral
+            && record.geometry.distance > grazing_gap(assembly, bodies)
+            && bodies.iter().any(|&body| is_tied(connectors, body))
+            && levers.left_of(region, record, |body| assembly.inertia(body)) < LEVER * LEVER;
+        let touch = Touch::of(record).filter(|_| passes);
+        passing.extend(touch);
+        touch.is_none()
+    });
+    !settling.passing.is_empty()
 }

@@ -3,9 +3,9 @@
 //! `redundant` contacts that can be spared, `leaving` contacts that end at once,
 //! `squeezed` bodies that are too light for what they carry.
 
+pub(super) mod hops;
 pub(super) mod leaving;
 pub(super) mod levers;
 pub(super) mod redundant;
 pub(super) mod settle;
 pub(super) mod settling;
-pub(super) mod squeezed;

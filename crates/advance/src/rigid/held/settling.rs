@@ -1,11 +1,12 @@
 //! The complementarity problem of an event's candidates: its solvers and buffers, its initial guess, and the rows that
 //! result. `settle` decides which rows are candidates, and which of them are held.
 
-use super::levers::Levers;
-use super::redundant::Redundant;
-use crate::rigid::event::region::{Region, Touch};
-use crate::rigid::report::RowForce;
-use crate::rigid::step::rows::HeldRow;
+use crate::rigid::books::report::RowForce;
+use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::contacts::touch::Touch;
+use crate::rigid::held::levers::Levers;
+use crate::rigid::held::redundant::Redundant;
+use crate::rigid::region::region::Region;
 use halfgap_collision::BodyId;
 use halfgap_contact::{
     Auto, InverseInertia, Method, Problem, Settings, Solution, SolveError, Solver, WarmStart,
@@ -236,35 +237,38 @@ impl Settling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rigid::contacts::pairs::is_likely;
+    use crate::rigid::event::life::dissolve;
+    use crate::rigid::region::collecting::collect_region;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_contact::Row;
 
     #[test]
     fn a_cut_contact_is_expected_to_carry_its_force_again() {
-        let mut system = resting_discs(&[0.0, 1.5]);
-        let mut work = system.work.take().expect("the start has made it");
-        system.dissolve(BodyId(1));
-        system.collect_region(&mut work.region, &[BodyId(2), BodyId(1)], system.now);
+        let mut rooms = resting_discs(&[0.0, 1.5]);
+        let mut work = rooms.work.take().expect("the start has made it");
+        dissolve(&mut rooms, BodyId(1));
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(2), BodyId(1)], rooms.assembly.now);
         work.settling.set_likely([None, None].into_iter());
-        work.settling.expect_forces(&work.region, &system.told.changes.end);
+        work.settling.expect_forces(&work.region, &rooms.books.told.changes.end);
         let [None, Some(force)] = work.settling.forces[..] else { panic!("{:?}", work.settling.forces) };
         assert!((force - 9.81).abs() < 1e-9, "{force} N");
     }
 
     #[test]
     fn the_solver_begins_with_what_is_held() {
-        let mut system = resting_discs(&[0.0, 1.5]);
-        let mut work = system.work.take().expect("the start has made it");
-        system.collect_region(&mut work.region, &[BodyId(1)], system.now);
+        let mut rooms = resting_discs(&[0.0, 1.5]);
+        let mut work = rooms.work.take().expect("the start has made it");
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
         let [record] = work.region.records[..] else { panic!("one disc, one contact") };
-        assert_eq!(system.is_likely(&record), Some(true));
+        assert_eq!(is_likely(&rooms.pairs, &record), Some(true));
         // Another contact, of which nothing is known, carries a force, too.
         let settling = &mut work.settling;
         settling.problem.clear();
         settling.candidates.clear();
-        settling.set_likely([system.is_likely(&record), None].into_iter());
+        settling.set_likely([is_likely(&rooms.pairs, &record), None].into_iter());
         for index in 0..2 {
-            let body = settling.problem.add_body(system.inertia(BodyId(1))).expect("a fine inertia");
+            let body = settling.problem.add_body(rooms.assembly.inertia(BodyId(1))).expect("a fine inertia");
             let row = Row::new(body, [0.0, 1.0, 0.0], -9.81);
             settling.problem.add_row(&row).expect("a row of finite numbers");
             settling.candidates.push(index);

@@ -4,9 +4,9 @@
 //! neighbours found: many make it shrink, few make it grow, between bounds that depend on the body's size. The box of a
 //! body in flight has most of its room ahead.
 
-use crate::rigid::motion::flyer::Flyer;
-use crate::rigid::motion::lane::Lane;
-use crate::rigid::motion::path::Path;
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::path::Path;
+use crate::rigid::search::lane::Lane;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
@@ -149,6 +149,7 @@ fn leaving_time_within(path: &Polynomial, [least, greatest]: [DVec2; 2], core: &
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
     use halfgap_collision::BodyState;
 

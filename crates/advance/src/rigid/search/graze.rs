@@ -6,10 +6,13 @@
 //! flush in the end, it is the far corner that should stop it. A contact that fires at the target gap, but is turned
 //! back by its own motion before it lies deeper than contacts may anyway, is let pass.
 
-use super::pairs::PairId;
-use crate::rigid::event::region::Touch;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::gaps::gap_at;
+use crate::rigid::contacts::pairs::PairId;
+use crate::rigid::contacts::touch::Touch;
 use crate::rigid::held::settle::DEEPEST;
-use crate::rigid::system::RigidSystem;
+use crate::rigid::search::searching::Searching;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule};
@@ -20,17 +23,17 @@ const DEPTH: f64 = 0.9 * DEEPEST;
 /// Apparent loss of a gap as a multiple of the connectors' error in the middle of a step.
 const SEEMING: f64 = 2.0;
 
-impl RigidSystem {
+impl Searching<'_> {
     /// True if two features that fire only graze: the search lets them come down to the least grazing gap from now on.
     pub(crate) fn grazes(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let touch = Touch { bodies: self.pairs.bodies(pair), features };
-        let most = self.grazing_gap(touch.bodies);
+        let most = grazing_gap(self.assembly, touch.bodies);
         let has_come =
             |rule: &FeatureRule| rule.features == features && rule.target.is_some_and(|gap| gap <= most);
-        if self.pairs.rules(pair).iter().any(has_come) || !self.turns_back(touch) {
+        if self.pairs.rules(pair).iter().any(has_come) || !turns_back(self.assembly, self.connectors, touch) {
             return false;
         }
-        let rule = touch.lowered_to(self.least_grazing_gap(touch.bodies));
+        let rule = touch.lowered_to(least_grazing_gap(self.assembly, touch.bodies));
         self.pairs.change_rules(pair, |rules| {
             // Of several rules for the same features the first counts.
             rules.retain(|rule| rule.features != features);
@@ -39,102 +42,109 @@ impl RigidSystem {
         self.predict(pair);
         true
     }
+}
 
-    /// True if the features of a record close, and only graze.
-    pub(crate) fn is_grazing(&self, record: &Collision) -> bool {
-        record.motion.normal_velocity < -self.rest_speed()
-            && Touch::of(record).is_some_and(|touch| self.turns_back(touch))
-    }
+/// True if the features of a record close, and only graze.
+pub(crate) fn is_grazing(assembly: &Assembly, connectors: &Connectors, record: &Collision) -> bool {
+    record.motion.normal_velocity < -assembly.rest_speed()
+        && Touch::of(record).is_some_and(|touch| turns_back(assembly, connectors, touch))
+}
 
-    /// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
-    /// bodies do not visibly overlap.
-    pub(crate) fn grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
-        if self.is_zone_seen(bodies) { 0.0 } else { -DEPTH * self.settings.tolerances.target_gap }
-    }
+/// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
+/// bodies do not visibly overlap.
+pub(crate) fn grazing_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
+    if assembly.is_zone_seen(bodies) { 0.0 } else { -DEPTH * assembly.settings.tolerances.target_gap }
+}
 
-    /// True if features, one of them on a body held by connectors, part again in their present motion before they come
-    /// to the least grazing gap.
-    fn turns_back(&self, touch: Touch) -> bool {
-        let least = self.least_grazing_gap(touch.bodies);
-        let Some(corners) = self.corners_of(touch) else {
-            return self.parts_again(touch.bodies, least, |time| self.gap_at(touch, time));
-        };
-        // The distance of two corners that run into each other is never negative: it would grow again.
-        let apart = |time: Time| {
-            let [a, b] = [0, 1].map(|side: usize| {
-                let moving = self.flyer(touch.bodies[side]).moving_at(time);
-                let arm = moving.pose.vector_to_world(corners[side]);
-                (moving.pose.position + arm, moving.velocity_at(arm))
-            });
-            (a.0 - b.0, a.1 - b.1)
-        };
-        let direction = apart(self.now).0.normalize_or_zero();
-        self.parts_again(touch.bodies, least, |time| {
-            let (offset, velocity) = apart(time);
-            (direction.dot(offset), direction.dot(velocity))
-        })
-    }
+/// True if features, one of them on a body held by connectors, part again in their present motion before they come
+/// to the least grazing gap.
+fn turns_back(assembly: &Assembly, connectors: &Connectors, touch: Touch) -> bool {
+    let least = least_grazing_gap(assembly, touch.bodies);
+    let Some(corners) = corners_of(assembly, touch) else {
+        return parts_again(assembly, connectors, touch.bodies, least, |time| gap_at(assembly, touch, time));
+    };
+    // The distance of two corners that run into each other is never negative: it would grow again.
+    let apart = |time: Time| {
+        let [a, b] = [0, 1].map(|side: usize| {
+            let moving = assembly.flyer(touch.bodies[side]).moving_at(time);
+            let arm = moving.pose.vector_to_world(corners[side]);
+            (moving.pose.position + arm, moving.velocity_at(arm))
+        });
+        (a.0 - b.0, a.1 - b.1)
+    };
+    let direction = apart(assembly.now).0.normalize_or_zero();
+    parts_again(assembly, connectors, touch.bodies, least, |time| {
+        let (offset, velocity) = apart(time);
+        (direction.dot(offset), direction.dot(velocity))
+    })
+}
 
-    /// Positions [m] of two sharp corners that touch, each in its body's coordinates; `None` for other features.
-    fn corners_of(&self, Touch { bodies, features }: Touch) -> Option<[DVec2; 2]> {
-        let corner = |side: usize| match self.flyer(bodies[side]).body().shape.feature(features[side]) {
-            Feature::Round(round) if round.radius == 0.0 => Some(round.center),
-            _ => None,
-        };
-        Some([corner(0)?, corner(1)?])
-    }
+/// Positions [m] of two sharp corners that touch, each in its body's coordinates; `None` for other features.
+fn corners_of(assembly: &Assembly, Touch { bodies, features }: Touch) -> Option<[DVec2; 2]> {
+    let corner = |side: usize| match assembly.flyer(bodies[side]).body().shape.feature(features[side]) {
+        Feature::Round(round) if round.radius == 0.0 => Some(round.center),
+        _ => None,
+    };
+    Some([corner(0)?, corner(1)?])
+}
 
-    /// Gap [m] to which grazing features may seem to come: between the ends of a step dense output has bodies off their
-    /// held rows, which is no real depth.
-    fn least_grazing_gap(&self, bodies: [BodyId; 2]) -> f64 {
-        let errors = bodies.iter().filter_map(|&body| self.group_of(body)).map(|group| group.largest_error);
-        self.grazing_gap(bodies) - SEEMING * errors.sum::<f64>()
-    }
+/// Gap [m] to which grazing features may seem to come: between the ends of a step dense output has bodies off their
+/// held rows, which is no real depth.
+fn least_grazing_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
+    let errors =
+        bodies.iter().filter_map(|&body| assembly.shared_by(body)).map(|shared| shared.largest_error);
+    grazing_gap(assembly, bodies) - SEEMING * errors.sum::<f64>()
+}
 
-    /// True if a rope, one end of which other connectors hold, too, is slack again in its present motion before it is
-    /// longer by the grazing slack.
-    pub(crate) fn rope_grazes(&self, id: ConnectorId) -> bool {
-        let connector = self.connector(id);
-        let bodies = connector.bodies();
-        self.parts_again(bodies, -self.grazing_slack(), |time| {
-            let [a, b] = bodies.map(|body| self.moving_at(body, time));
-            let sample = connector.measure(0, &a, &b);
-            (sample.gap, sample.kinematics.rate)
-        })
-    }
+/// True if a rope, one end of which other connectors hold, too, is slack again in its present motion before it is
+/// longer by the grazing slack.
+pub(crate) fn rope_grazes(assembly: &Assembly, connectors: &Connectors, id: ConnectorId) -> bool {
+    let connector = connectors.connector(id);
+    let bodies = connector.bodies();
+    parts_again(assembly, connectors, bodies, -grazing_slack(assembly), |time| {
+        let [a, b] = bodies.map(|body| assembly.moving_at(body, time));
+        let sample = connector.measure(0, &a, &b);
+        (sample.gap, sample.kinematics.rate)
+    })
+}
 
-    /// Excess length [m] that a grazing rope is given.
-    pub(crate) fn grazing_slack(&self) -> f64 {
-        DEPTH * self.settings.tolerances.target_gap
-    }
+/// Excess length [m] that a grazing rope is given.
+pub(crate) fn grazing_slack(assembly: &Assembly) -> f64 {
+    DEPTH * assembly.settings.tolerances.target_gap
+}
 
-    /// True if a closing gap between bodies, one of them held by connectors, opens again in the present motion before
-    /// it falls below `least` [m]. `gap_at` returns gap [m] and rate [m/s] at any time of this motion.
-    fn parts_again(&self, bodies: [BodyId; 2], least: f64, gap_at: impl Fn(Time) -> (f64, f64)) -> bool {
-        let is_moved = |body: &BodyId| !body.is_world() && self.group_of(*body).is_some();
-        if !bodies.iter().any(|&body| self.is_tied(body)) || !bodies.iter().any(is_moved) {
-            return false;
-        }
-        let (gap, rate) = gap_at(self.now);
-        let room = gap - least;
-        if rate >= 0.0 || room <= 0.0 {
-            return false;
-        }
-        // With a constant acceleration, a gap that turns back within the room does so within this time.
-        let ends = bodies.into_iter().filter_map(|body| self.segment_end(body));
-        let known = ends.map(|end| end.since(self.now)).fold(f64::INFINITY, f64::min);
-        let span = (-2.0 * room / rate).min(known);
-        if span <= 0.0 {
-            return false;
-        }
-        let acceleration = (gap_at(self.now.plus(span)).1 - rate) / span;
-        let turns = acceleration > 0.0 && rate * rate < 2.0 * acceleration * room;
-        let nearest = -rate / acceleration;
-        turns && (nearest > known || gap_at(self.now.plus(nearest)).0 > least)
+/// True if a closing gap between bodies, one of them held by connectors, opens again in the present motion before
+/// it falls below `least` [m]. `gap_at` returns gap [m] and rate [m/s] at any time of this motion.
+fn parts_again(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    bodies: [BodyId; 2],
+    least: f64,
+    gap_at: impl Fn(Time) -> (f64, f64),
+) -> bool {
+    let is_moved = |body: &BodyId| !body.is_world() && assembly.shared_by(*body).is_some();
+    if !bodies.iter().any(|&body| is_tied(connectors, body)) || !bodies.iter().any(is_moved) {
+        return false;
     }
+    let (gap, rate) = gap_at(assembly.now);
+    let room = gap - least;
+    if rate >= 0.0 || room <= 0.0 {
+        return false;
+    }
+    // With a constant acceleration, a gap that turns back within the room does so within this time.
+    let ends = bodies.into_iter().filter_map(|body| assembly.segment_end(body));
+    let known = ends.map(|end| end.since(assembly.now)).fold(f64::INFINITY, f64::min);
+    let span = (-2.0 * room / rate).min(known);
+    if span <= 0.0 {
+        return false;
+    }
+    let acceleration = (gap_at(assembly.now.plus(span)).1 - rate) / span;
+    let turns = acceleration > 0.0 && rate * rate < 2.0 * acceleration * room;
+    let nearest = -rate / acceleration;
+    turns && (nearest > known || gap_at(assembly.now.plus(nearest)).0 > least)
+}
 
-    /// True if a body is tied by a bilateral connector.
-    pub(crate) fn is_tied(&self, body: BodyId) -> bool {
-        !body.is_world() && self.connectors.of(body).iter().any(|&id| self.connector(id).is_bilateral())
-    }
+/// True if a body is tied by a bilateral connector.
+pub(crate) fn is_tied(connectors: &Connectors, body: BodyId) -> bool {
+    !body.is_world() && connectors.of(body).iter().any(|&id| connectors.connector(id).is_bilateral())
 }

@@ -1,7 +1,7 @@
 //! The horizon of a pair's search: a little beyond the first contact known of its bodies, for that changes their
 //! motions. Later contacts are searched for if it has not come.
 
-use crate::rigid::system::RigidSystem;
+use crate::rigid::search::searching::Searching;
 use crate::time::Time;
 use halfgap_collision::BodyId;
 
@@ -11,19 +11,19 @@ const BEYOND: f64 = 1.0 / 8.0;
 /// Fraction of the known motion below which a search is worth ending early: bounds on all of a step are at hand.
 const WORTHWHILE: f64 = 0.5;
 
-impl RigidSystem {
+impl Searching<'_> {
     /// Time, at most `until`, up to which two bodies are searched from a time on.
-    pub(super) fn searched_until(&self, bodies: [BodyId; 2], from: Time, until: Time) -> Time {
-        let [a, b] = bodies.map(|body| self.search.first_contacts[self.slot(body)]);
+    pub(crate) fn searched_until(&self, bodies: [BodyId; 2], from: Time, until: Time) -> Time {
+        let [a, b] = bodies.map(|body| self.search.first_contacts[self.assembly.slot(body)]);
         let ahead = |contact: Time| if contact > from { contact } else { Time::NEVER };
         let wait = ahead(a).min(ahead(b)).since(from) * (1.0 + BEYOND);
         if wait < WORTHWHILE * until.since(from) { from.plus(wait) } else { until }
     }
 
     /// Notes a contact of two bodies that a search from a time on has found.
-    pub(super) fn note_contact_ahead(&mut self, bodies: [BodyId; 2], from: Time, contact: Time) {
+    pub(crate) fn note_contact_ahead(&mut self, bodies: [BodyId; 2], from: Time, contact: Time) {
         for body in bodies.into_iter().filter(|&body| !self.pairs.is_fixed(body)) {
-            let slot = self.slot(body);
+            let slot = self.assembly.slot(body);
             let first = &mut self.search.first_contacts[slot];
             // A contact that has gone by without a change of the motion no longer counts.
             *first = if *first > from { contact.min(*first) } else { contact };
@@ -31,22 +31,21 @@ impl RigidSystem {
     }
 
     /// Forgets the first contact of a body whose motion has changed.
-    pub(super) fn forget_contacts_ahead(&mut self, body: BodyId) {
+    pub(crate) fn forget_contacts_ahead(&mut self, body: BodyId) {
         self.search.first_contacts[body.index()] = Time::NEVER;
-    }
-
-    /// Index of a body's entry. Bodies of a group share one: a change of one's motion is a change of all.
-    fn slot(&self, body: BodyId) -> usize {
-        self.groups.leader_of[body.index()].unwrap_or(body).index()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::pairs::Prediction;
     use super::*;
+    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::contacts::pairs::Prediction;
+    use crate::rigid::event::intervention::VelocityChange;
+
+    use crate::rigid::parts::{BodyPart, RigidParts};
+    use crate::rigid::system::RigidSystem;
     use crate::rigid::test_scene::FINE;
-    use crate::rigid::{BodyPart, FlightLaw, RigidParts, VelocityChange};
     use crate::system::EventDriven;
     use glam::DVec2;
     use halfgap_collision::{Body, BodyState};
@@ -75,9 +74,9 @@ mod tests {
 
     #[test]
     fn contacts_after_the_first_one_are_not_looked_for() {
-        let system = squares_in_a_row();
+        let rooms = squares_in_a_row().into_rooms();
         let known = |a, b| {
-            let pair = system.pairs.get(system.pairs.between(a, b).expect("they are near each other"));
+            let pair = rooms.pairs.get(rooms.pairs.between(a, b).expect("they are near each other"));
             (pair.prediction, pair.clear.seconds())
         };
         let (prediction, time) = known(MOVING, NEAR);

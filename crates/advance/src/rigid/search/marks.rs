@@ -35,6 +35,7 @@ impl Marks {
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
 
     #[test]

@@ -1,13 +1,12 @@
 //! Data of the search for contacts beside the pairs: where bodies may be, which of them may meet, and the first contact
 //! known of each.
 
-use super::boxes::Room;
-use super::marks::Marks;
-use super::pairs::{Link, PairId};
-use crate::rigid::motion::flyer::Flyer;
-use crate::rigid::motion::lane::Lane;
-use crate::rigid::step::deferred::loners;
-use crate::rigid::system::RigidSettings;
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::contacts::pairs::{Link, PairId};
+use crate::rigid::search::boxes::Room;
+use crate::rigid::search::lane::Lane;
+use crate::rigid::search::marks::Marks;
+use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
 use halfgap_collision::{BodyId, BroadPhase};
 use halfgap_geometry::FeatureId;
@@ -18,22 +17,24 @@ pub(crate) struct Neighbourhood {
     /// Motion and size of each body, as predictions read them.
     pub(crate) lanes: Vec<Lane>,
     /// Room of each body in the broad phase.
-    pub(super) rooms: Vec<Room>,
-    pub(super) broad: BroadPhase,
+    pub(crate) rooms: Vec<Room>,
+    pub(crate) broad: BroadPhase,
     /// Time of the first contact known of each body, or of the group that it leads.
-    pub(super) first_contacts: Vec<Time>,
+    pub(crate) first_contacts: Vec<Time>,
     /// Pairs that never collide, the lesser id first, sorted.
     pub(crate) excluded: Vec<(BodyId, BodyId)>,
     /// True for bodies that no other body can collide with.
     pub(crate) loners: Vec<bool>,
     /// Contacts that lie deep, with the gaps [m] at which they were to fire, while the rules are made anew.
-    pub(super) deep: Vec<(PairId, [FeatureId; 2], f64)>,
+    pub(crate) deep: Vec<(PairId, [FeatureId; 2], f64)>,
+    /// Buffer: pairs whose rules or predictions an event changes.
+    pub(crate) touched: Vec<PairId>,
     /// Buffer: links of a body.
     pub(crate) links: Vec<Link>,
     /// Buffer: bodies near a body.
-    pub(super) neighbours: Vec<BodyId>,
+    pub(crate) neighbours: Vec<BodyId>,
     /// Buffer: which of these are known already.
-    pub(super) marks: Marks,
+    pub(crate) marks: Marks,
 }
 
 impl Neighbourhood {
@@ -56,9 +57,21 @@ impl Neighbourhood {
             loners: loners(flyers.len(), settings.collisions, &excluded),
             excluded,
             deep: Vec::new(),
+            touched: Vec::new(),
             links: Vec::new(),
             neighbours: Vec::new(),
             marks: Marks::default(),
         }
     }
+}
+
+/// For each body, true if no other body can collide with it: collisions are off, or exclude it from all others.
+pub(crate) fn loners(count: usize, collisions: bool, excluded: &[(BodyId, BodyId)]) -> Vec<bool> {
+    let mut partners = vec![count.saturating_sub(1); count];
+    for &(a, b) in excluded.iter().filter(|(a, b)| a != b && !b.is_world()) {
+        for body in [a, b] {
+            partners[body.index()] = partners[body.index()].saturating_sub(1);
+        }
+    }
+    partners.into_iter().map(|partners| !collisions || partners == 0).collect()
 }

@@ -1,10 +1,11 @@
 //! Predictions: which bodies are near each other, and when pairs of them come into contact.
 
-use super::pairs::{Link, PairId, Prediction};
-use crate::rigid::motion::lane::{Lane, LaneKind};
-use crate::rigid::motion::path::Path;
-use crate::rigid::sources::Source;
-use crate::rigid::system::RigidSystem;
+use crate::rigid::agenda::Source;
+use crate::rigid::bodies::path::Path;
+use crate::rigid::contacts::pairs::{Link, PairId, Prediction};
+use crate::rigid::search::lane::{Lane, LaneKind};
+use crate::rigid::search::searching::Searching;
+use crate::rigid::sinking::depth::may_have_sunk_by;
 use crate::time::Time;
 use halfgap_collision::{
     BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, SearchSettings, Tolerances,
@@ -15,15 +16,15 @@ use halfgap_geometry::GapSample;
 /// Longest span [s] of one search: bounds over it stay finite.
 pub(crate) const LONGEST_SPAN: f64 = 1e6;
 
-impl RigidSystem {
+impl Searching<'_> {
     pub(crate) fn set_up_boxes(&mut self) {
-        for body in self.bodies() {
+        for body in self.assembly.bodies() {
             if !self.search.loners[body.index()] {
                 self.place_box(body);
             }
         }
-        for body in self.bodies() {
-            if !self.search.loners[body.index()] && self.is_movable(body) {
+        for body in self.assembly.bodies() {
+            if !self.search.loners[body.index()] && self.assembly.is_movable(body) {
                 self.find_neighbours(body);
             }
         }
@@ -31,29 +32,29 @@ impl RigidSystem {
 
     /// Gives a body a new box around its present motion, and predicts when it leaves that.
     fn place_box(&mut self, body: BodyId) {
-        let (lane, flyer) = (&self.search.lanes[body.index()], &self.flyers[body.index()]);
-        let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.now);
+        let (lane, flyer) = (&self.search.lanes[body.index()], &self.assembly.flyers[body.index()]);
+        let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.assembly.now);
         self.search.broad.set(body, fat_box);
         self.predict_leaving(body);
     }
 
     /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
-        self.search.lanes[body.index()].follow(&self.flyers[body.index()]);
+        self.search.lanes[body.index()].follow(&self.assembly.flyers[body.index()]);
         self.forget_contacts_ahead(body);
         self.predict_leaving(body);
     }
 
     fn predict_leaving(&mut self, body: BodyId) {
-        let (flyer, room) = (&self.flyers[body.index()], &self.search.rooms[body.index()]);
+        let (flyer, room) = (&self.assembly.flyers[body.index()], &self.search.rooms[body.index()]);
         let lane = &mut self.search.lanes[body.index()];
         let fat_box = self.search.broad.bounds(body);
-        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.now));
+        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.assembly.now));
         lane.stay = stay.unwrap_or(Time::NEVER);
-        let source = self.source_id(Source::Box(body));
+        let source = Source::Box(body);
         match stay {
-            Some(time) => self.queue.set(source, time),
-            None => self.queue.clear(source),
+            Some(time) => self.agenda.set(source, time),
+            None => self.agenda.clear(source),
         }
     }
 
@@ -62,7 +63,7 @@ impl RigidSystem {
         let Some(fat_box) = self.search.broad.bounds(body).copied() else { return };
         let mut near = std::mem::take(&mut self.search.neighbours);
         self.search.broad.find_overlapping(&fat_box, &mut near);
-        self.search.marks.begin(self.flyers.len());
+        self.search.marks.begin(self.assembly.flyers.len());
         near.iter().for_each(|&other| self.search.marks.set(other));
         self.search.links.clear();
         self.search.links.extend_from_slice(self.pairs.of_body(body));
@@ -70,7 +71,7 @@ impl RigidSystem {
             let Link { pair, other } = self.search.links[index];
             // Bodies that stay marked are new neighbours.
             if !self.search.marks.take(other) {
-                self.note_prediction(pair, (Prediction::Quiet, self.now));
+                self.note_prediction(pair, (Prediction::Quiet, self.assembly.now));
                 self.pairs.remove(pair);
             }
         }
@@ -78,41 +79,30 @@ impl RigidSystem {
         near.retain(|&other| other != body && self.may_collide(body, other));
         near.sort_unstable();
         for &other in &near {
-            self.pairs.add(body, other, self.now);
+            self.pairs.add(body, other, self.assembly.now);
         }
         self.search.rooms[body.index()].adapt(self.pairs.of_body(body).len());
         self.search.neighbours = near;
     }
 
     fn may_collide(&self, a: BodyId, b: BodyId) -> bool {
-        let any_movable = self.is_movable(a) || self.is_movable(b);
+        let any_movable = self.assembly.is_movable(a) || self.assembly.is_movable(b);
         any_movable && self.search.excluded.binary_search(&(a.min(b), a.max(b))).is_err()
-    }
-
-    /// End of the present segment of a body; `None` for a flight.
-    pub(crate) fn segment_end(&self, body: BodyId) -> Option<Time> {
-        if body.is_world() { None } else { self.group_of(body).map(|group| group.end()) }
     }
 
     /// Time until which the present motion of a body is known and stays in its box.
     fn known_until(&self, body: BodyId) -> Time {
         let stay = self.search.lanes[body.index()].stay;
-        self.segment_end(body).map_or(stay, |end| stay.min(end))
+        self.assembly.segment_end(body).map_or(stay, |end| stay.min(end))
     }
 
     /// Continues the search for a pair's next contact, from where it is known to be clear, while both motions are
     /// known.
     pub(crate) fn predict(&mut self, pair: PairId) {
         let [a, b] = self.pairs.bodies(pair);
-        let from = self.pairs.get(pair).clear.max(self.now);
+        let from = self.pairs.get(pair).clear.max(self.assembly.now);
         let disc = self.disc_at(a, from);
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
-    }
-
-    /// Goes on with the search for a pair's next contact.
-    pub(crate) fn search_on(&mut self, pair: PairId) {
-        self.predict(pair);
-        self.note_search(pair);
     }
 
     /// Searches from a time on for the next contact of a pair; `disc` is the flight of the body that the link starts
@@ -129,7 +119,7 @@ impl RigidSystem {
     #[inline]
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
         let lane = &self.search.lanes[body.index()];
-        let is_plain = lane.kind == LaneKind::Disc && self.settings.search.depth == 0.0;
+        let is_plain = lane.kind == LaneKind::Disc && self.assembly.settings.search.depth == 0.0;
         let Lane { radius, halo, stay, .. } = *lane;
         is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
     }
@@ -138,7 +128,7 @@ impl RigidSystem {
     #[inline]
     fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
         let lane = &self.search.lanes[link.other.index()];
-        let tolerances = &self.settings.tolerances;
+        let tolerances = &self.assembly.settings.tolerances;
         let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
         if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
             return None;
@@ -161,7 +151,7 @@ impl RigidSystem {
         }
         self.drop_rules(pair, from);
         let horizon = self.searched_until([a, b], from, until);
-        let search = |span| Some(self.search(pair, from, span));
+        let search = |span| Some(self.search_pair(pair, from, span));
         let Some((prediction, clear)) = look_ahead(from, horizon, search) else { return };
         match prediction {
             Prediction::Contact(_) => self.note_contact_ahead([a, b], from, clear),
@@ -183,7 +173,7 @@ impl RigidSystem {
             return false;
         }
         let (p, q) = (a.course_from(from, span), b.course_from(from, span));
-        let far = p.radius + q.radius + a.reach + b.reach + self.settings.tolerances.target_gap;
+        let far = p.radius + q.radius + a.reach + b.reach + self.assembly.settings.tolerances.target_gap;
         (p.center - q.center).length_squared() > far * far
     }
 
@@ -193,9 +183,9 @@ impl RigidSystem {
         let was_quiet = entry.prediction == Prediction::Quiet;
         (entry.prediction, entry.clear) = (prediction, clear);
         if prediction != Prediction::Quiet {
-            self.queue.set(self.source_id(Source::Pair(pair)), clear);
+            self.agenda.set(Source::Pair(pair), clear);
         } else if !was_quiet {
-            self.queue.clear(self.source_id(Source::Pair(pair)));
+            self.agenda.clear(Source::Pair(pair));
         }
     }
 
@@ -206,9 +196,12 @@ impl RigidSystem {
             return;
         }
         let [a, b] = self.pairs.bodies(pair);
-        let (pose_a, pose_b) = (self.flyer(a).moving_at(time).pose, self.flyer(b).moving_at(time).pose);
-        let (shape_a, shape_b) = (&self.flyers[a.index()].body().shape, &self.flyers[b.index()].body().shape);
-        let opened = self.settings.tolerances.target_gap + self.settings.tolerances.accuracy;
+        let (pose_a, pose_b) =
+            (self.assembly.flyer(a).moving_at(time).pose, self.assembly.flyer(b).moving_at(time).pose);
+        let (shape_a, shape_b) =
+            (&self.assembly.flyers[a.index()].body().shape, &self.assembly.flyers[b.index()].body().shape);
+        let opened =
+            self.assembly.settings.tolerances.target_gap + self.assembly.settings.tolerances.accuracy;
         let is_closed = |rule: &FeatureRule| {
             let [feature_a, feature_b] = rule.features;
             let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
@@ -219,14 +212,14 @@ impl RigidSystem {
     }
 
     /// Searches for a contact of two bodies in the given span [s] from a time on.
-    fn search(&self, pair: PairId, from: Time, span: f64) -> Search {
+    fn search_pair(&self, pair: PairId, from: Time, span: f64) -> Search {
         let [a, b] = self.pairs.bodies(pair);
-        let (flyer_a, flyer_b) = (self.flyer(a), self.flyer(b));
+        let (flyer_a, flyer_b) = (self.assembly.flyer(a), self.assembly.flyer(b));
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
         let target_gap = self.search.lanes[a.index()].halo.min(self.search.lanes[b.index()].halo);
-        let tolerances = Tolerances { target_gap, ..self.settings.tolerances };
-        let sunk = self.may_have_sunk_by([a, b]);
+        let tolerances = Tolerances { target_gap, ..self.assembly.settings.tolerances };
+        let sunk = may_have_sunk_by(self.assembly, self.sinking, [a, b]);
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
             let path_a: Path<'_> = flyer_a.path();
@@ -249,8 +242,8 @@ impl RigidSystem {
         span: f64,
     ) -> Search {
         // A target below zero does not lessen the depth: it makes no feature lie on the far side of its body.
-        let depth = tolerances.target_gap.max(0.0) + self.settings.tolerances.target_gap + sunk;
-        let search = self.settings.search;
+        let depth = tolerances.target_gap.max(0.0) + self.assembly.settings.tolerances.target_gap + sunk;
+        let search = self.assembly.settings.search;
         let settings = &SearchSettings { depth, ..search };
         PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
     }
@@ -265,7 +258,7 @@ impl RigidSystem {
     /// come to the end of the motions known before.
     pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
         self.pairs.begin_batch();
-        let now = self.now;
+        let now = self.assembly.now;
         for &body in bodies {
             let disc = self.disc_at(body, now);
             self.pairs.enter_batch(body, !changed, &mut self.search.links);
@@ -315,21 +308,24 @@ fn look_ahead(
 
 #[cfg(test)]
 mod tests {
-    use super::super::pairs::Pair;
     use super::*;
-    use crate::rigid::test_scene::{FINE, resting_discs};
-    use crate::rigid::{BodyPart, FlightLaw, RigidParts};
+    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::contacts::pairs::Pair;
+    use crate::rigid::group::groups::group_of;
+    use crate::rigid::parts::{BodyPart, RigidParts};
+    use crate::rigid::test_scene::{FINE, resting_discs, rooms_of};
     use glam::DVec2;
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
     #[test]
     fn bodies_that_follow_an_integrator_far_from_each_other_stay_apart() {
-        let system = resting_discs(&[0.0, 1.5, 2.5 + 1e-9]);
-        let apart = |a, b| {
-            let pair = system.pairs.between(BodyId(a), BodyId(b)).expect("they are near each other");
-            assert!(system.group_of(BodyId(a)).is_some(), "it is held by the floor");
-            system.stays_apart(pair, system.now, system.now.plus(1e-3))
+        let mut rooms = resting_discs(&[0.0, 1.5, 2.5 + 1e-9]);
+        let now = rooms.assembly.now;
+        let mut apart = |a, b| {
+            let pair = rooms.pairs.between(BodyId(a), BodyId(b)).expect("they are near each other");
+            assert!(group_of(&rooms.assembly, &rooms.groups, BodyId(a)).is_some(), "it is held by the floor");
+            rooms.searching().stays_apart(pair, now, now.plus(1e-3))
         };
         assert!(apart(1, 2));
         assert!(!apart(2, 3), "the gap is less than the target");
@@ -345,13 +341,13 @@ mod tests {
             BodyPart { body, law: FlightLaw::default(), state }
         };
         let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
-        let mut system = RigidSystem::new(parts, FINE, Time::from_seconds(10.0)).expect("nothing rests");
-        let pair = system.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
-        let expected = system.pairs.get(pair).clear;
+        let mut rooms = rooms_of(parts, FINE, Time::from_seconds(10.0));
+        let pair = rooms.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
+        let expected = rooms.pairs.get(pair).clear;
         for lowered in [0.4, 0.0, -1.0, -4.4] {
-            system.search.lanes[0].halo = lowered * FINE.tolerances.target_gap;
-            system.predict_all_of(&[BodyId(0)], true);
-            let Pair { prediction, clear, .. } = *system.pairs.get(pair);
+            rooms.search.lanes[0].halo = lowered * FINE.tolerances.target_gap;
+            rooms.searching().predict_all_of(&[BodyId(0)], true);
+            let Pair { prediction, clear, .. } = *rooms.pairs.get(pair);
             assert!(matches!(prediction, Prediction::Contact(_)), "{lowered}: {prediction:?}");
             assert!((clear.since(expected)).abs() < 1e-9, "{lowered}");
         }

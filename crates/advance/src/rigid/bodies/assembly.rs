@@ -1,0 +1,277 @@
+//! All bodies at the present time: their trajectories, the laws that act on them, the thresholds by which they are
+//! judged, and every elementary query about one or two of them. It knows no contact.
+
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::laws::Laws;
+use crate::rigid::settings::RigidSettings;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState, Collision, Moving, Tolerances};
+use halfgap_contact::InverseInertia;
+
+/// Facts about the segment that bodies of a group share, as the rest of the system needs them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shared {
+    /// Time at which the segment ends.
+    pub(crate) end: Time,
+    /// Penetration [m] of the deepest held contact; 0 if there is none.
+    pub(crate) depth: f64,
+    /// Largest error [m] of a connector.
+    pub(crate) largest_error: f64,
+}
+
+/// All bodies with their motions at the present time.
+#[derive(Clone, Debug)]
+pub(crate) struct Assembly {
+    pub(crate) settings: RigidSettings,
+    pub(crate) flyers: Vec<Flyer>,
+    /// True for bodies that cannot move.
+    pub(crate) is_fixed: Vec<bool>,
+    pub(crate) laws: Laws,
+    /// True if some masses differ beyond the ratio that can be held together.
+    pub(crate) masses_are_extreme: bool,
+    /// True if nothing but contacts and connectors accelerates bodies.
+    pub(crate) is_forceless: bool,
+    /// Time at which the system started.
+    pub(crate) start: Time,
+    /// Time of the last event handled.
+    pub(crate) now: Time,
+    /// Time at which an impulse last changed the velocity of each body.
+    pub(crate) struck: Vec<Option<Time>>,
+    /// The body that leads each body's group, if it is in one.
+    pub(crate) leader_of: Vec<Option<BodyId>>,
+    /// The segment of the group that each body leads; kept from the last one where it leads none.
+    pub(crate) shared: Vec<Shared>,
+    /// Penetration [m] of the deepest contact of each body's last group, and the time at which the group ended.
+    pub(crate) sunk: Vec<(f64, Time)>,
+}
+
+/// Depth of other contacts of two bodies as a multiple of that to which one has sunk.
+const SUNK_BESIDE: f64 = 2.0;
+
+impl Assembly {
+    /// The bodies at a time at which none is in a group.
+    pub(crate) fn new(flyers: Vec<Flyer>, laws: Laws, settings: RigidSettings, start: Time) -> Self {
+        let count = flyers.len();
+        let mut assembly = Self {
+            settings,
+            is_fixed: flyers.iter().map(|flyer| flyer.body().is_fixed()).collect(),
+            masses_are_extreme: false,
+            is_forceless: laws.all.is_empty()
+                && flyers.iter().all(|flyer| flyer.law().acceleration == DVec2::ZERO),
+            flyers,
+            laws,
+            start,
+            now: start,
+            struck: vec![None; count],
+            leader_of: vec![None; count],
+            shared: vec![Shared::default(); count],
+            sunk: vec![(0.0, Time::default()); count],
+        };
+        assembly.masses_are_extreme = assembly.has_extreme_masses();
+        assembly
+    }
+
+    /// Number of bodies.
+    pub(crate) fn body_count(&self) -> usize {
+        self.flyers.len()
+    }
+
+    /// The ids of all bodies.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
+        (0..u32::try_from(self.flyers.len()).unwrap_or(u32::MAX)).map(BodyId)
+    }
+
+    /// A body with its present segment.
+    #[inline]
+    pub(crate) fn flyer(&self, body: BodyId) -> &Flyer {
+        &self.flyers[body.index()]
+    }
+
+    /// True for a body that can move.
+    pub(crate) fn is_movable(&self, body: BodyId) -> bool {
+        !body.is_world() && !self.is_fixed[body.index()]
+    }
+
+    /// End of the present segment of a body; `None` for a flight.
+    pub(crate) fn segment_end(&self, body: BodyId) -> Option<Time> {
+        if body.is_world() {
+            None
+        } else {
+            self.leader_of[body.index()].map(|leader| self.shared[leader.index()].end)
+        }
+    }
+
+    /// The segment that a body shares with its group, if it is in one.
+    pub(crate) fn shared_by(&self, body: BodyId) -> Option<&Shared> {
+        self.leader_of[body.index()].map(|leader| &self.shared[leader.index()])
+    }
+
+    /// The body under which facts about a body's motion are kept. Bodies of a group share one: a change of one's motion
+    /// is a change of all.
+    pub(crate) fn slot(&self, body: BodyId) -> usize {
+        self.leader_of[body.index()].unwrap_or(body).index()
+    }
+
+    /// Depth [m] to which two bodies may lie in one another, as the contacts of a group do that one of them is in, or
+    /// was in until now. A contact that takes over from a sunk one lies as deep.
+    pub(crate) fn held_depth(&self, bodies: [BodyId; 2]) -> f64 {
+        let depths = bodies.map(|body| match self.shared_by(body) {
+            Some(shared) => shared.depth,
+            None => {
+                let (sunk, ended) = self.sunk[body.index()];
+                if ended == self.now { sunk } else { 0.0 }
+            }
+        });
+        let sunk = depths[0].max(depths[1]);
+        if sunk > 0.0 { (SUNK_BESIDE * sunk).min(self.thinness(bodies)) } else { 0.0 }
+    }
+}
+
+/// Bound of that depth, as a fraction of area over reach of the thinner body.
+const THIN_SHARE: f64 = 1e-1;
+
+/// Half-width of a target zone above which it can be seen, as a fraction of the larger body's reach.
+const SEEN: f64 = 1e-4;
+
+/// Rows are at rest in a storm if they move within the resolution time by no more than this fraction of the half-width
+/// of the target zone.
+const STORM_WAY: f64 = 1e-3;
+
+/// Rows faster than this multiple of `velocity_tol` are not at rest even in a storm.
+const STORM_SLOW: f64 = 10.0;
+
+impl Assembly {
+    /// Largest rate [m/s] at which a touching contact counts as resting at the start: with it, a contact leaves the
+    /// target zone more slowly than forces can be resolved. Bodies that have come to rest elsewhere may come with that
+    /// much.
+    pub(crate) fn start_rest(&self) -> f64 {
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        (accuracy / self.settings.resolution_time).min(velocity_tol).max(self.rest_speed())
+    }
+}
+
+impl Assembly {
+    /// Largest rate [m/s] at which one contact counts as resting at the start. A contact that slides faster than
+    /// `start_rest` has not come to rest, and would be stopped where normals differ: for it this is the rest speed.
+    pub(crate) fn start_rest_of(&self, record: &Collision) -> f64 {
+        let rest = self.start_rest();
+        if record.motion.lateral_velocity.abs() <= rest { rest } else { self.rest_speed() }
+    }
+}
+
+impl Assembly {
+    /// True for a body other than a disc that turns.
+    pub(crate) fn turns_about(&self, body: BodyId) -> bool {
+        let flyer = self.flyer(body);
+        !flyer.body().is_fixed()
+            && flyer.disc().is_none()
+            && flyer.moving_at(self.now).angular_velocity != 0.0
+    }
+}
+
+impl Assembly {
+    /// Largest rate [m/s] at which a row counts as neither closing nor opening.
+    pub(crate) fn rest_speed(&self) -> f64 {
+        self.settings.rest_speed
+    }
+}
+
+impl Assembly {
+    pub(crate) fn inertia(&self, body: BodyId) -> InverseInertia {
+        if body.is_world() {
+            return InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        }
+        let body = self.flyer(body).body();
+        InverseInertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
+    }
+}
+
+impl Assembly {
+    /// Motion of a body at a time of its present segment; the background rests.
+    pub(crate) fn moving_at(&self, body: BodyId, time: Time) -> Moving {
+        if body.is_world() { Moving::BACKGROUND } else { self.flyer(body).moving_at(time) }
+    }
+}
+
+impl Assembly {
+    /// Depth [m] up to which a body that lies in another is told from one that has gone through it.
+    pub(crate) fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
+        let shares = bodies.map(|body| {
+            let flyer = self.flyer(body);
+            THIN_SHARE * flyer.body().shape.mass_properties().area / flyer.reach()
+        });
+        shares[0].min(shares[1])
+    }
+}
+
+impl Assembly {
+    /// True if the target zone between two bodies is so wide relative to them that their place in it can be seen.
+    pub(crate) fn is_zone_seen(&self, bodies: [BodyId; 2]) -> bool {
+        self.settings.tolerances.accuracy > SEEN * self.largest_reach(bodies)
+    }
+}
+
+impl Assembly {
+    /// Change of energy [J], not positive, by the damping of a body in flight since the start of its segment.
+    pub(crate) fn damping_loss(&self, body: BodyId, time: Time) -> f64 {
+        let flyer = self.flyer(body);
+        let Some(start) = flyer.flight_start().filter(|_| flyer.law().is_damped()) else { return 0.0 };
+        let body = flyer.body();
+        let energy = |state: &BodyState| {
+            body.kinetic_energy(state) - flyer.law().acceleration.dot(state.position) / body.inverse_mass
+        };
+        energy(&flyer.unwound_at(time)) - energy(start)
+    }
+}
+
+impl Assembly {
+    /// The acceleration of the scene [m/s^2]; zero if only contacts and connectors exert forces.
+    pub(crate) fn acceleration(&self) -> f64 {
+        if self.is_forceless {
+            0.0
+        } else {
+            self.settings.tolerances.velocity_tol / self.settings.resolution_time
+        }
+    }
+}
+
+impl Assembly {
+    /// Largest reach [m] of those of two bodies that can move; 0 if neither can.
+    pub(crate) fn largest_reach(&self, bodies: [BodyId; 2]) -> f64 {
+        let movable = bodies.into_iter().filter(|&body| self.is_movable(body));
+        movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))
+    }
+}
+
+impl Assembly {
+    /// Rate [m/s] up to which a row is at rest in a storm. Contacts that are pressed, but of which rounding lets now
+    /// the one, now the other open, would go on for ever; at this rate none leaves the target zone before the storm is
+    /// over.
+    pub(crate) fn storm_rest(&self) -> f64 {
+        let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
+        let slow = (STORM_WAY * accuracy / self.settings.resolution_time).min(STORM_SLOW * velocity_tol);
+        slow.max(self.rest_speed())
+    }
+}
+
+impl Assembly {
+    /// Distance [m] by which a contact without force may sink before it fires again.
+    pub(crate) fn sink(&self) -> f64 {
+        self.settings.tolerances.sink()
+    }
+}
+
+impl Assembly {
+    /// Gap [m] at which a contact without force fires again, by its present gap [m].
+    pub(crate) fn refire_gap(&self, gap: f64) -> f64 {
+        (gap - self.sink()).min(self.settings.tolerances.target_gap)
+    }
+}
+
+impl Assembly {
+    /// Kinetic energy [J] of a movable body in a state.
+    pub(crate) fn kinetic_energy(&self, body: BodyId, state: &BodyState) -> f64 {
+        self.flyer(body).body().kinetic_energy(state)
+    }
+}

@@ -1,0 +1,232 @@
+//! A body with the segment along which it moves.
+
+use crate::ode::SegmentPolynomial;
+use crate::rigid::bodies::path::{DensePath, Path};
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
+use std::f64::consts::TAU;
+
+/// Difference [rad] between a full turn 2π and [`TAU`], the nearest floating-point number.
+const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
+
+/// Uniform acceleration and linear damping of a body in free flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlightLaw {
+    /// Uniform acceleration [m/s^2].
+    pub acceleration: DVec2,
+    /// Damping rate [1/s] of the velocity: damping alone makes it decay by exp(-rate t).
+    pub linear_rate: f64,
+    /// Damping rate [1/s] of the angular velocity: damping alone makes it decay by exp(-rate t).
+    pub angular_rate: f64,
+}
+
+impl FlightLaw {
+    /// True if the body is damped.
+    #[must_use]
+    #[inline]
+    pub fn is_damped(&self) -> bool {
+        self.linear_rate != 0.0 || self.angular_rate != 0.0
+    }
+}
+
+/// A body and its segment: its present motion and the start of it.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub struct Flyer {
+    start: Time,
+    flight: Flight,
+    reach: f64,
+    /// Radius [m], if the body is nothing but a disc about its centre of mass.
+    disc: Option<f64>,
+    body: Body,
+    /// Number of whole turns to be added to the angles of the present motion.
+    turns: f64,
+    /// The present motion is `dense`, from an integrator, not `flight`.
+    is_integrated: bool,
+    /// Dense output of the last integrated segment, if there was one.
+    dense: Option<Box<DensePath>>,
+}
+
+impl Flyer {
+    pub(crate) fn new(body: Body, law: FlightLaw, state: BodyState, time: Time) -> Self {
+        // A fixed body does not move, whatever its velocity.
+        let law = if body.is_fixed() { FlightLaw::default() } else { law };
+        let flight = if body.is_fixed() {
+            Flight::fixed(state.position, state.angle)
+        } else {
+            Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
+        };
+        let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
+        Self { start: time, flight, reach, disc, body, turns: 0.0, is_integrated: false, dense: None }
+    }
+
+    /// The body.
+    #[must_use]
+    #[inline]
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// Acceleration and damping of the body in free flight.
+    #[must_use]
+    #[inline]
+    pub fn law(&self) -> FlightLaw {
+        let (acceleration, [linear_rate, angular_rate]) = (self.flight.acceleration(), self.flight.rates());
+        FlightLaw { acceleration, linear_rate, angular_rate }
+    }
+
+    /// State of the body at a time of the present segment, in the world frame; its angle [rad] includes whole turns.
+    #[must_use]
+    #[inline]
+    pub fn state_at(&self, time: Time) -> BodyState {
+        let state = self.unwound_at(time);
+        BodyState { angle: self.with_turns(state.angle), ..state }
+    }
+
+    /// An angle [rad] of the present motion, with the whole turns that were taken out of it.
+    pub(crate) fn with_turns(&self, angle: f64) -> f64 {
+        angle + (self.turns * TAU + self.turns * TAU_REST)
+    }
+
+    /// State at a time of the present segment, with an angle that lacks the whole turns made before: motions start from
+    /// it.
+    pub(crate) fn unwound_at(&self, time: Time) -> BodyState {
+        self.path().state_at(self.offset(time))
+    }
+
+    /// Takes whole turns out of the angle at the start of a flight, so that it lies within a turn of zero: the larger
+    /// an angle, the larger its rounding, and that of the places of corners.
+    pub(crate) fn unwind(&mut self) {
+        let angle = self.flight.start().angle;
+        if !self.is_integrated && angle.abs() > TAU {
+            let turns = (angle / TAU).round();
+            // The fused product is exact, and with the correction the difference has only the rounding of the angle.
+            let unwound = turns.mul_add(-TAU, angle) - turns * TAU_REST;
+            self.turns += turns;
+            self.flight.restart(BodyState { angle: unwound, ..*self.flight.start() });
+        }
+    }
+
+    /// State at the start of the present segment, if it is a flight in closed form.
+    #[must_use]
+    #[inline]
+    pub fn flight_start(&self) -> Option<&BodyState> {
+        (!self.is_integrated).then(|| self.flight.start())
+    }
+
+    pub(crate) fn moving_at(&self, time: Time) -> Moving {
+        self.path().moving_at(self.offset(time))
+    }
+
+    /// The present motion.
+    #[inline]
+    pub(crate) fn path(&self) -> Path<'_> {
+        match &self.dense {
+            Some(dense) if self.is_integrated => Path::Dense(dense),
+            _ => Path::Flight(&self.flight),
+        }
+    }
+
+    /// Time at which the present segment started.
+    pub(crate) fn start(&self) -> Time {
+        self.start
+    }
+
+    /// Offset [s] of a time in the present segment.
+    #[inline]
+    pub(crate) fn offset(&self, time: Time) -> f64 {
+        time.since(self.start)
+    }
+
+    /// Largest distance [m] of a point of the body from its centre of mass.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Bound on the speed [m/s] of a point of the body, at a velocity (x, y, angle) of its centre of mass; also used
+    /// for accelerations and displacements.
+    pub(crate) fn fastest_point(&self, [x, y, angle]: [f64; 3]) -> f64 {
+        DVec2::new(x, y).length() + angle.abs() * self.reach
+    }
+
+    /// Load [N] of an acceleration (x, y, angle) of the body: its mass times the bound on the acceleration of its
+    /// points.
+    pub(crate) fn load(&self, acceleration: &[f64]) -> f64 {
+        let linear = DVec2::new(acceleration[0], acceleration[1]).length();
+        (linear + acceleration[2].abs() * self.reach()) / self.body().inverse_mass
+    }
+
+    pub(crate) fn disc(&self) -> Option<f64> {
+        self.disc
+    }
+
+    /// The present motion in closed form, if it has one.
+    #[inline]
+    pub(crate) fn flight(&self) -> Option<&Flight> {
+        (!self.is_integrated).then_some(&self.flight)
+    }
+
+    /// True if the body neither moves nor is about to.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        !self.is_integrated && self.flight.is_at_rest()
+    }
+
+    /// Cuts the segment at a time and starts a flight with changed velocities.
+    pub(crate) fn cut(&mut self, time: Time, velocity_change: DVec2, spin_change: f64) {
+        let state = self.unwound_at(time);
+        let state = BodyState {
+            velocity: state.velocity + velocity_change,
+            angular_velocity: state.angular_velocity + spin_change,
+            ..state
+        };
+        self.fly_from(time, state);
+    }
+
+    /// Starts a flight from a state at a time.
+    pub(crate) fn fly_from(&mut self, time: Time, state: BodyState) {
+        self.start = time;
+        self.is_integrated = false;
+        self.flight.restart(state);
+    }
+
+    /// Starts an integrated segment of a length `span` [s]; `polynomials` are x, y and angle.
+    pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3], span: f64) {
+        self.start = start;
+        self.is_integrated = true;
+        self.dense.get_or_insert_default().set(polynomials, span);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+    use halfgap_geometry::Shape;
+
+    #[test]
+    fn an_angle_of_many_turns_is_unwound_and_told_in_full() {
+        let shape = Shape::block(1.0, 0.5).expect("a fine size");
+        let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+        for angle in [0.3, -4.0, 12_345.678, -4_618.926_598_942_698, 1e9] {
+            let start = Time::from_seconds(2.0);
+            let state = BodyState { angle, angular_velocity: 3.0, ..BodyState::default() };
+            let mut flyer = Flyer::new(body.clone(), FlightLaw::default(), state, start);
+            let later = start.plus(0.25);
+            let before = flyer.moving_at(later).pose.rotation;
+            // The second time there is no turn left to take out.
+            for _ in 0..2 {
+                flyer.unwind();
+                assert_eq!(flyer.state_at(start).angle, angle);
+                assert!(flyer.unwound_at(start).angle.abs() <= TAU);
+            }
+            let after = flyer.moving_at(later).pose.rotation;
+            // An angle within the segment has the rounding of a number of its own size.
+            let sharp = f64::EPSILON * (1.0 + angle.abs());
+            assert!(
+                (before.cos - after.cos).abs() <= sharp && (before.sin - after.sin).abs() <= sharp,
+                "{angle}"
+            );
+        }
+    }
+}

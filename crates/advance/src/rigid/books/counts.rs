@@ -1,0 +1,37 @@
+//! Counts and extremes of a system since its start.
+
+/// Counts and extremes of a system since its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Segments started: flights of bodies, and steps of groups.
+    pub segments: u64,
+    /// Events handled, of all kinds.
+    pub events: u64,
+    /// Impacts resolved.
+    pub impacts: u64,
+    /// Times that an event cut the motion of a body short, in flight or in a group.
+    pub backups: u64,
+    /// Complementarity problems solved, and solves for the forces of held rows.
+    pub contact_solves: u64,
+    /// Evaluations of forces by the integrator.
+    pub evaluations: u64,
+    /// Storms of impacts that were ended without elasticity.
+    pub storms: u64,
+    /// Smallest gap [m] seen, negative for overlap; `None` if none was measured.
+    pub smallest_gap: Option<f64>,
+    /// Largest error of a connector's gap [m] seen; `None` if none was measured.
+    pub largest_connector_error: Option<f64>,
+    /// Largest kinetic energy [J] seen: of a group at the end of a step, or of the bodies of an impact before it.
+    pub largest_kinetic_energy: f64,
+}
+
+impl Counts {
+    pub(crate) fn note_gap(&mut self, gap: f64) {
+        self.smallest_gap = Some(self.smallest_gap.map_or(gap, |least| least.min(gap)));
+    }
+
+    pub(crate) fn note_connector_error(&mut self, error: f64) {
+        self.largest_connector_error =
+            Some(self.largest_connector_error.map_or(error, |most| most.max(error)));
+    }
+}

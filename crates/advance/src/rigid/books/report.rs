@@ -1,0 +1,260 @@
+//! Reports that callers may ask for: forces of rows, contacts that begin and end.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::Books;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism};
+use crate::rigid::error::AdvanceError;
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::group::Group;
+use crate::rigid::group::groups::Groups;
+use crate::rigid::group::physics::physics;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::region::Region;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Moving};
+use halfgap_geometry::FeatureId;
+
+/// Force of one held row: a contact, or one direction of a connector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowForce {
+    /// The primary and the normal body.
+    pub bodies: [BodyId; 2],
+    /// The connector; `None` for bodies that touch.
+    pub connector: Option<ConnectorId>,
+    /// The features that touch; `None` in a connector.
+    pub features: Option<[FeatureId; 2]>,
+    /// Point of the primary body at which the force acts, in world coordinates [m].
+    pub point: DVec2,
+    /// Unit normal in world directions, from the normal to the primary body.
+    pub normal: DVec2,
+    /// Force on the primary body along the normal [N]: positive pushes the bodies apart.
+    pub force: f64,
+    /// Duration [s] of the geometric series of bounces, too slow to be resolved, that would have followed under
+    /// constant acceleration, of a contact that begins with an impact; `None` where there is no such series.
+    pub bouncing: Option<f64>,
+}
+
+impl RowForce {
+    fn is_same(&self, other: &RowForce) -> bool {
+        self.bodies == other.bodies && self.connector == other.connector && self.features == other.features
+    }
+}
+
+/// Outcome of the last event, for callers that ask.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Told {
+    pub(crate) last_impact: ImpactReport,
+    /// True if the event contained an impact.
+    pub(crate) has_hit: bool,
+    pub(crate) changes: ContactChanges,
+    /// Error of the event, if it could not be handled.
+    pub(crate) failure: Option<AdvanceError>,
+    /// Buffer: whether each row that begins has only gone on.
+    goes_on: Vec<bool>,
+}
+
+/// Unilateral rows (contacts, ropes, stops) whose holding begins or ends in one event.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactChanges {
+    /// Time of the event.
+    pub time: Time,
+    /// Rows that are held from this event on.
+    pub begin: Vec<RowForce>,
+    /// Rows that are held no longer, each with its last force.
+    pub end: Vec<RowForce>,
+}
+
+impl ContactChanges {
+    /// True if nothing begins or ends.
+    #[must_use]
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.begin.is_empty() && self.end.is_empty()
+    }
+
+    pub(crate) fn clear(&mut self, time: Time) {
+        self.time = time;
+        self.begin.clear();
+        self.end.clear();
+    }
+
+    /// Drops rows that end only to begin at once. Those in both lists mostly have one order, so each search begins
+    /// where the last one ended.
+    fn drop_continued(&mut self, goes_on: &mut Vec<bool>) {
+        let begin = &mut self.begin;
+        goes_on.clear();
+        goes_on.resize(begin.len(), false);
+        let mut next = 0;
+        self.end.retain(|old| {
+            let mut places = (next..begin.len()).chain(0..next);
+            let found = places.find(|&place| !goes_on[place] && begin[place].is_same(old));
+            if let Some(place) = found {
+                goes_on[place] = true;
+                next = place + 1;
+            }
+            found.is_none()
+        });
+        let mut flags = goes_on.iter();
+        begin.retain(|_| flags.next() != Some(&true));
+    }
+}
+
+/// Evaluates the forces of all held rows at a time within the present segments. Allocates.
+#[must_use]
+pub(crate) fn row_forces(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    groups: &Groups,
+    time: Time,
+) -> Vec<RowForce> {
+    let mut stage = groups.stage.clone();
+    let mut found = Vec::new();
+    for group in groups.by_leader.iter().flatten() {
+        let (start, mut group) = (group.start, group.clone());
+        let mut dynamics =
+            Dynamics { physics: physics(assembly, connectors), group: &mut group, stage: &mut stage, start };
+        dynamics.evaluate_at(time.since(start));
+        let rows = group.rows.iter().zip(&stage.forces);
+        found.extend(rows.map(|(row, &force)| row_force(assembly, connectors, row, &stage.movings, force)));
+    }
+    found
+}
+
+fn row_force(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    row: &HeldRow,
+    movings: &[Moving],
+    force: f64,
+) -> RowForce {
+    let (point, normal) = mechanism(assembly, connectors).locate(row, movings);
+    let (connector, features) = match row.source {
+        RowSource::Connector(id, _) => (Some(id), None),
+        RowSource::Contact(features) => (None, Some(features)),
+    };
+    RowForce { bodies: row.bodies, connector, features, point, normal, force, bouncing: None }
+}
+
+/// Notes the unilateral rows of a group that is cut, with their forces at the cut.
+pub(crate) fn note_ends(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    groups: &Groups,
+    books: &mut Books,
+    group: &Group,
+) {
+    for (row, &force) in group.rows.iter().zip(&group.end_forces).filter(|(row, _)| !row.bilateral) {
+        let told = row_force(assembly, connectors, row, &groups.stage.movings, force);
+        books.told.changes.end.push(told);
+    }
+}
+
+/// Notes the unilateral rows that are held from now on.
+pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Region, settling: &Settling) {
+    for (index, row) in settling.held.iter().filter(|(_, row)| !row.bilateral) {
+        let told = RowForce {
+            bouncing: bouncing(assembly, books, region, settling),
+            ..told_of(&region.records[*index], row)
+        };
+        books.told.changes.begin.push(told);
+    }
+    books.told.changes.drop_continued(&mut books.told.goes_on);
+}
+
+/// Duration [s] of the bounces that a single contact which was just captured would have gone on to make.
+///
+/// After an impact at the speed v each flight lasts 2 v/a, and v falls by e each time: 2 e v/(a (1 - e)) in all.
+fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Settling) -> Option<f64> {
+    let ([record], Some(acceleration)) = (region.records.as_slice(), settling.closing_acceleration()) else {
+        return None;
+    };
+    let impact =
+        books.told.last_impact.rows.first().filter(|_| books.told.last_impact.time == assembly.now)?;
+    let elasticity = record.response.elasticity;
+    let closing = (-impact.rate_before).max(0.0);
+    (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
+}
+
+fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
+    let features = match row.source {
+        RowSource::Contact(features) => Some(features),
+        RowSource::Connector(..) => None,
+    };
+    RowForce {
+        bodies: row.bodies,
+        connector: record.connector(),
+        features,
+        point: record.geometry.point_primary,
+        normal: record.geometry.normal,
+        force: record.response.force.unwrap_or(0.0),
+        bouncing: None,
+    }
+}
+
+/// Report of a handled event: an impact, or contacts that begin or end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handled {
+    /// Time of the event.
+    pub time: Time,
+    /// True for an impact, which [`RigidSystem::last_impact`] reports; [`RigidSystem::contact_changes`] lists the
+    /// contacts that begin or end.
+    pub impact: bool,
+}
+
+/// Report of one row of an impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowReport {
+    /// Collision record of the row, with its impulse.
+    pub collision: Collision,
+    /// Rate of the gap before the impact [m/s]; negative closes.
+    pub rate_before: f64,
+    /// Rate of the gap after the impact [m/s]; negative closes.
+    pub rate_after: f64,
+    /// Impulse on the primary body along the normal [N s]: positive pushes the bodies apart.
+    pub impulse: f64,
+}
+
+/// Report of an impact.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImpactReport {
+    /// Time of the impact.
+    pub time: Time,
+    /// The rows that carried an impulse.
+    pub rows: Vec<RowReport>,
+    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2 over the rows.
+    pub energy_change: f64,
+    /// States after the impact of the movable bodies on which an impulse acted.
+    pub states: Vec<(BodyId, BodyState)>,
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+
+    fn of(body: u32) -> RowForce {
+        RowForce {
+            bodies: [BodyId(0), BodyId(body)],
+            connector: None,
+            features: None,
+            point: DVec2::ZERO,
+            normal: DVec2::Y,
+            force: 1.0,
+            bouncing: None,
+        }
+    }
+
+    #[test]
+    fn a_contact_that_ends_only_to_begin_at_once_is_no_change_in_whatever_order() {
+        let mut changes = ContactChanges {
+            begin: [1, 2, 3, 4].map(of).to_vec(),
+            end: [3, 5, 1, 4].map(of).to_vec(),
+            ..ContactChanges::default()
+        };
+        changes.drop_continued(&mut Vec::new());
+        assert_eq!(changes.begin, [of(2)]);
+        assert_eq!(changes.end, [of(5)]);
+    }
+}

@@ -1,0 +1,228 @@
+//! Connectors in events: their records in a region, and when ropes go taut.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::by_body::ByBody;
+use crate::rigid::search::predictions::LONGEST_SPAN;
+use crate::rigid::zeno::repeats::is_same_time;
+use crate::time::Time;
+use halfgap_collision::{
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Motion, MotionBounds, Moving,
+    RailHint, Rope,
+};
+
+/// All connectors with their states, and lists of them by body.
+#[derive(Clone, Debug)]
+pub(crate) struct Connectors {
+    pub(crate) all: Vec<Connector>,
+    /// Connectors of each body.
+    of: ByBody<ConnectorId>,
+    pub(crate) states: Vec<ConnectorState>,
+}
+
+impl Connectors {
+    /// Lists connectors between a number of bodies.
+    pub(crate) fn new(all: Vec<Connector>, body_count: usize) -> Self {
+        let ids = (0..).map(ConnectorId);
+        Self {
+            of: ByBody::new(body_count, ids.zip(all.iter().map(Connector::bodies))),
+            states: vec![ConnectorState::default(); all.len()],
+            all,
+        }
+    }
+
+    /// Connectors that are tied to a body.
+    pub(crate) fn of(&self, body: BodyId) -> &[ConnectorId] {
+        self.of.of(body)
+    }
+}
+
+/// State of a connector.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ConnectorState {
+    /// Place of its point on a rail.
+    pub(crate) hint: Option<RailHint>,
+    /// Sides, before and after, of the corner of a rail that the point is in; `None` if it is in none.
+    pub(crate) corner: Option<[RailHint; 2]>,
+    /// Time before which a rope does not go taut.
+    pub(crate) clear: Time,
+    /// Time at which a rope goes taut; `None` if it does not while the motions are known, or the search has not come so
+    /// far.
+    pub(crate) taut: Option<Time>,
+    /// Excess length [m] that a rope is given while it is at its length and does not tighten: it goes taut at the sum
+    /// of both.
+    pub(crate) slack: f64,
+    /// True if it is unilateral and held: its row then takes part in events at any gap.
+    pub(crate) held: bool,
+    /// Time at which the rope last went taut, or the stop was met.
+    pub(crate) last_taut: Option<Time>,
+    /// Number of times that it did so before without time going by.
+    pub(crate) repeats: u32,
+    /// True if a group watches it as a stop.
+    pub(crate) is_watched: bool,
+    /// Of a stop that a group watches: the start of the group's segment, and the place of the point there; `None` once
+    /// the place that the point has come to is noted.
+    pub(crate) follow: Option<(Time, RailHint)>,
+}
+
+impl ConnectorState {
+    /// Hint for the place of a row on the rail: that of a side, if the point is in a corner.
+    pub(crate) fn hint_of(&self, row: usize) -> Option<&RailHint> {
+        match &self.corner {
+            Some(sides) => sides.get(row),
+            None => self.hint.as_ref(),
+        }
+    }
+
+    /// Number of earlier times that the rope has gone taut, or the stop was met, at the present time: a rope then lies
+    /// nearer to its length than the search can tell.
+    pub(crate) fn repeats_at(&self, now: Time) -> u32 {
+        if self.last_taut.is_some_and(|last| is_same_time(last, now)) { self.repeats } else { 0 }
+    }
+
+    pub(crate) fn note_taut(&mut self, now: Time) {
+        let is_repeat = self.last_taut.is_some_and(|last| is_same_time(last, now));
+        self.repeats = if is_repeat { self.repeats + 1 } else { 0 };
+        self.last_taut = Some(now);
+    }
+}
+
+impl Connectors {
+    /// True if unilateral rows of a connector were held until now.
+    pub(crate) fn is_held_unilaterally(&self, id: ConnectorId) -> bool {
+        let state = &self.states[id.index()];
+        state.held || state.corner.is_some()
+    }
+
+    pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
+        &self.all[id.index()]
+    }
+
+    /// Number of rows of a connector now: two where the point of a rail is in a corner.
+    pub(crate) fn row_count(&self, id: ConnectorId) -> usize {
+        self.states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
+    }
+
+    /// Record of a row of a connector whose bodies move as given at a time. The sides of a corner are unilateral and
+    /// without elasticity.
+    pub(crate) fn connector_record(
+        &self,
+        assembly: &Assembly,
+        id: ConnectorId,
+        row: usize,
+        moving: &[Moving; 2],
+        time: Time,
+    ) -> Collision {
+        let (connector, state) = (self.connector(id), &self.states[id.index()]);
+        let hint = self.hint_at(assembly, id, row, time);
+        let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
+        let row = u32::try_from(row).unwrap_or(u32::MAX);
+        let (bodies, tolerances) = ([&moving[0], &moving[1]], &assembly.settings.tolerances);
+        let mut record =
+            Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
+        if state.corner.is_some() {
+            record.parties.bilateral = false;
+            record.response.elasticity = 0.0;
+        }
+        record
+    }
+
+    /// Measures the record of a connector's row anew, and keeps its response.
+    pub(crate) fn remeasure_connector(
+        &self,
+        assembly: &Assembly,
+        record: &mut Collision,
+        id: ConnectorId,
+        row: u32,
+        time: Time,
+    ) {
+        let moving = self.connector(id).bodies().map(|body| assembly.moving_at(body, time));
+        let response = record.response;
+        *record = self.connector_record(assembly, id, row as usize, &moving, time);
+        record.response = response;
+    }
+
+    /// Measures a row of a connector at a time.
+    pub(crate) fn measure_connector(
+        &self,
+        assembly: &Assembly,
+        id: ConnectorId,
+        row: usize,
+        time: Time,
+    ) -> ConnectorSample {
+        let connector = self.connector(id);
+        let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, time));
+        connector.measure_near(row, &a, &b, self.hint_at(assembly, id, row, time).as_ref())
+    }
+
+    /// A stop as it is watched along a segment that starts now.
+    pub(crate) fn stop(&self, assembly: &Assembly, id: ConnectorId) -> Stop {
+        let connector = self.connector(id);
+        let hint = self.hint_at(assembly, id, 0, assembly.now);
+        let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, assembly.now));
+        let sample = connector.measure_near(0, &a, &b, hint.as_ref());
+        // A stop of a rail that fires again without time going by lies nearer than the search can tell: it fires again
+        // only when its point has sunk further, by more each time.
+        let repeats = f64::from(self.states[id.index()].repeats_at(assembly.now));
+        let lies_beyond = connector.is_stop() && repeats > 0.0;
+        let slack = if lies_beyond { repeats * assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 };
+        Stop { id, hint, slack: slack.max(slack_of(assembly, &sample)), is_noted: false }
+    }
+}
+
+/// Distance [m] by which a unilateral connector may sink from where it was measured before it fires: positive only
+/// where it is touched and does not open.
+pub(crate) fn slack_of(assembly: &Assembly, sample: &ConnectorSample) -> f64 {
+    let touches = sample.gap <= assembly.settings.tolerances.accuracy;
+    let rests = touches && sample.kinematics.rate <= assembly.rest_speed();
+    if rests { assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 }
+}
+
+/// Rough time [s] in which the ends of a rope, as they move now, go as far as the rope is long.
+pub(crate) fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
+    let turning = a.angular_speed * rope.point_a.length() + b.angular_speed * rope.point_b.length();
+    let speed = a.velocity.largest_difference(&b.velocity) + turning;
+    let acceleration = a.acceleration.largest_difference(&b.acceleration);
+    let by_speed = if speed > 0.0 { rope.length / speed } else { LONGEST_SPAN };
+    let by_acceleration = if acceleration > 0.0 { (rope.length / acceleration).sqrt() } else { LONGEST_SPAN };
+    by_speed.min(by_acceleration).min(LONGEST_SPAN)
+}
+
+/// True for a rope.
+pub(crate) fn is_rope(connector: &Connector) -> bool {
+    rope_of(connector).is_some()
+}
+
+/// The rope of a connector, if it is one.
+pub(crate) fn rope_of(connector: &Connector) -> Option<Rope> {
+    match &connector.kind {
+        ConnectorKind::Rope { a, b, length } => {
+            Some(Rope { point_a: a.point, point_b: b.point, length: *length })
+        }
+        _ => None,
+    }
+}
+
+/// A stop of a rail that is not held.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stop {
+    pub(crate) id: ConnectorId,
+    /// Piece of the rail.
+    pub(crate) hint: Option<RailHint>,
+    /// Distance [m] by which it may sink before it fires; more than 0 where it is touched without force.
+    pub(crate) slack: f64,
+    /// The place that its point has come to is noted: its body is about to leave the segment.
+    pub(crate) is_noted: bool,
+}
+
+impl Connectors {
+    /// True if a group watches a rope or a stop.
+    pub(crate) fn is_rope_watched(&self, id: ConnectorId) -> bool {
+        self.states[id.index()].is_watched
+    }
+
+    /// Notes that no group watches a connector any more.
+    pub(crate) fn unwatch(&mut self, id: ConnectorId) {
+        let state = &mut self.states[id.index()];
+        (state.is_watched, state.follow) = (false, None);
+    }
+}

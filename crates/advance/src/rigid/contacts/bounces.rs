@@ -1,0 +1,148 @@
+//! Bounces too low to be told from contact: between two events the gap of a feature pair stayed within the target zone.
+//!
+//! The height of a bounce follows from the opening rate v1 at the event before, the closing rate v2 now, and the time t
+//! between: under a constant acceleration it is v1^2 t / (2 (v1 + v2)). Such a pair meets without elasticity, unless
+//! another contact in the same event closes fast. The motion that is lost is shorter than the fall through the zone and
+//! no higher than it.
+//!
+//! This holds for a pair that forces have turned back. A pair of which a body has been struck since bounces with its
+//! elasticity, unless it is so slow that forces give it that speed within the zone.
+//!
+//! A perfectly elastic body that bounces a few target gaps high, as when a light body hits it while it rests, would go
+//! on for ever, hundreds of thousands of times a second. The energy of such a bounce is that of a fall through a few
+//! gaps: after very many of them in a row the pair meets without elasticity as well.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::contacts::pairs::{PairId, Pairs, Seen};
+use crate::rigid::contacts::touch::Touch;
+use crate::rigid::region::region::Region;
+use halfgap_collision::{Collision, Tolerances};
+use halfgap_geometry::FeatureId;
+
+/// Multiple of the scene's acceleration with which forces may press bodies together: a pair that closes no faster than
+/// this makes it within its zone may be a low bounce.
+const FORCED: f64 = 1e3;
+/// That multiple for a pair of which a body has been struck meanwhile, as in a heap that many bodies deep. A faster
+/// pair bounces: else the energy of a blow would be lost, which an elastic body passes on and gets back at once.
+const STRUCK: f64 = 1e2;
+/// Number of feature pairs that are remembered for a pair of bodies.
+const MOST_SEEN: usize = 16;
+/// Height of a low bounce, as a multiple of the target gap.
+const LOW_GAPS: f64 = 10.0;
+/// Number of low bounces in a row after which elasticity no longer acts.
+const MOST_LOW: u32 = 1000;
+
+/// Remembers the gaps and rates of the contacts of a region, whose bodies have their new velocities. `fired_open`
+/// tells that the contact which caused the event fired although it did not close.
+pub(crate) fn note_seen(assembly: &Assembly, pairs: &mut Pairs, region: &Region, fired_open: bool) {
+    for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+        let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
+        let before = pairs.seen(pair).iter().find(|old| old.features == touch.features);
+        let low = before.map_or(0, |before| low_bounces(assembly, before, gap));
+        let formed = before.map_or(gap, |before| before.formed.max(gap));
+        let goes_on = || before.is_some_and(|before| before.fires_open);
+        let fires_open = if region.cause.fired() == Some(*touch) { fired_open } else { goes_on() };
+        let fires_open = fires_open && gap < assembly.settings.tolerances.target_gap;
+        let fresh = Seen { features: touch.features, time: assembly.now, gap, formed, rate, low, fires_open };
+        let seen = pairs.seen_mut(pair);
+        seen.retain(|old| old.features != fresh.features);
+        if seen.len() == MOST_SEEN {
+            seen.remove(0);
+        }
+        seen.push(fresh);
+    }
+}
+
+/// Number of low bounces in a row of a contact that was seen before and has a gap [m] now.
+fn low_bounces(assembly: &Assembly, seen: &Seen, gap: f64) -> u32 {
+    let way = seen.rate.max(0.0) * assembly.now.since(seen.time);
+    // Under a constant acceleration, the distance [m] by which the acceleration has brought it back in the
+    // meantime.
+    let back = way - (gap - seen.gap);
+    let rise = if back > 0.0 { 0.25 * way * (way / back) } else { way };
+    let is_low = seen.gap + rise <= LOW_GAPS * assembly.settings.tolerances.target_gap;
+    if is_low { seen.low.saturating_add(u32::from(seen.rate > assembly.rest_speed())) } else { 0 }
+}
+
+/// True if contacts of a region close fast, and each of them has stayed within the target zone since it was last
+/// seen.
+pub(crate) fn bounces_low(assembly: &Assembly, pairs: &Pairs, region: &Region) -> bool {
+    let mut fast = region.records.iter().filter(|record| closes_fast(record)).peekable();
+    fast.peek().is_some() && fast.all(|record| is_low_bounce(assembly, pairs, record))
+}
+
+fn is_low_bounce(assembly: &Assembly, pairs: &Pairs, record: &Collision) -> bool {
+    let Some((pair, features)) = features_of(pairs, record) else { return false };
+    has_stayed_low(assembly, pairs, pair, features, -record.motion.normal_velocity, &record.tolerances)
+}
+
+/// True if a contact of a pair has fired although it did not close, and has not left its target gap since.
+pub(crate) fn fires_open(pairs: &Pairs, pair: PairId, features: [FeatureId; 2]) -> bool {
+    pairs.seen(pair).iter().any(|seen| seen.features == features && seen.fires_open)
+}
+
+/// The pair of bodies of a record, and its features, that of the body with the lower id first.
+fn features_of(pairs: &Pairs, record: &Collision) -> Option<(PairId, [FeatureId; 2])> {
+    let Touch { bodies: [a, b], features } = Touch::of(record)?;
+    Some((pairs.between(a, b)?, features))
+}
+
+/// Largest gap [m] at which the features of a record have touched; their present gap if they have not been seen
+/// before.
+pub(crate) fn formed_at(pairs: &Pairs, record: &Collision) -> f64 {
+    let before = features_of(pairs, record).and_then(|(pair, features)| {
+        pairs.seen(pair).iter().find(|seen| seen.features == features).map(|seen| seen.formed)
+    });
+    before.unwrap_or(record.geometry.distance)
+}
+
+/// True if two features that close with a speed `down` [m/s] have stayed within the target zone since they were
+/// last seen.
+pub(crate) fn has_stayed_low(
+    assembly: &Assembly,
+    pairs: &Pairs,
+    pair: PairId,
+    features: [FeatureId; 2],
+    down: f64,
+    &Tolerances { target_gap, accuracy, velocity_tol }: &Tolerances,
+) -> bool {
+    let Some(seen) = pairs.seen(pair).iter().find(|seen| seen.features == features) else {
+        return false;
+    };
+    // A pair that closed fast then has not been stopped since.
+    if seen.rate < -velocity_tol {
+        return false;
+    }
+    let up = seen.rate.max(0.0);
+    let lasted = assembly.now.since(seen.time);
+    let rise = 0.5 * up * up * lasted / (up + down);
+    let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
+    // A pair that moved under a constant acceleration is back where it was (`went` is small). Else, as when
+    // something has lifted it in between, it has stayed only if it is no faster than forces make it within the
+    // zone. With contacts that carry impulses only it would then sink, so there only `went` counts.
+    let went = 0.5 * (up - down).abs() * lasted;
+    let forced = |times: f64| {
+        assembly.settings.impulse_step.is_none()
+            && down * down <= 2.0 * times * assembly.acceleration() * most
+    };
+    let is_low = || {
+        if is_struck_since(assembly, pairs, pair, seen) {
+            forced(STRUCK)
+        } else {
+            went <= most || forced(FORCED)
+        }
+    };
+    seen.gap + rise <= most && is_low()
+}
+
+/// True if an impulse has changed the velocity of a body of a pair since its contact was last seen: then the pair
+/// need not have been turned back by forces.
+fn is_struck_since(assembly: &Assembly, pairs: &Pairs, pair: PairId, seen: &Seen) -> bool {
+    let strikes = pairs.bodies(pair).into_iter().filter_map(|body| assembly.struck[body.index()]);
+    strikes.into_iter().any(|strike| strike > seen.time)
+}
+
+/// True if a contact closes so fast that its elasticity acts.
+pub(crate) fn closes_fast(record: &Collision) -> bool {
+    !record.parties.bilateral && -record.motion.normal_velocity > record.tolerances.velocity_tol
+}

@@ -1,0 +1,263 @@
+//! Pairs of bodies whose boxes overlap, with the prediction of their next contact, or of the time until which there is
+//! none.
+
+use crate::rigid::contacts::touch::{sorted, touch_of};
+use crate::time::Time;
+use halfgap_collision::{BodyId, Collision, FeatureRule};
+use halfgap_geometry::FeatureId;
+
+/// Index of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct PairId(pub(crate) u32);
+
+/// Prediction of a pair's next contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Prediction {
+    /// Contact of these features, at the time until which the pair is clear.
+    Contact([FeatureId; 2]),
+    /// No contact before the time until which the pair is clear; then the search goes on.
+    SearchOn,
+    /// No contact before one of the bodies leaves its box: nothing is in the queue.
+    Quiet,
+}
+
+/// State of a pair of bodies: all that every prediction reads, and no more, within a cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Pair {
+    /// Time before which there is no contact.
+    pub(crate) clear: Time,
+    pub(crate) prediction: Prediction,
+    /// Last batch of predictions that the pair was in.
+    batch: u16,
+    /// True if rules change the search of any feature pair.
+    pub(crate) has_rules: bool,
+    alive: bool,
+}
+
+/// A pair as one of its bodies sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Link {
+    pub(crate) pair: PairId,
+    pub(crate) other: BodyId,
+}
+
+/// Rules and past contacts of a pair.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PairPast {
+    /// Rules that change the search of feature pairs.
+    rules: Vec<FeatureRule>,
+    /// Feature pairs that have touched lately.
+    seen: Vec<Seen>,
+    /// Number of contacts handled without time going by since the first of them.
+    pub(crate) repeats: u32,
+    /// Time of the last contact.
+    pub(crate) last_contact: Option<Time>,
+    /// Number of times in succession that the search for the next contact went on.
+    pub(crate) searches: u32,
+}
+
+impl PairPast {
+    /// Forgets everything but the room of its buffers.
+    fn clear(&mut self) {
+        self.rules.clear();
+        self.seen.clear();
+        (self.repeats, self.last_contact, self.searches) = (0, None, 0);
+    }
+}
+
+/// State of two features at the last event in which they touched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// Features of the lesser body and of the other.
+    pub(crate) features: [FeatureId; 2],
+    pub(crate) time: Time,
+    /// Gap [m].
+    pub(crate) gap: f64,
+    /// Largest gap [m] at which they have touched.
+    pub(crate) formed: f64,
+    /// Rate of the gap [m/s].
+    pub(crate) rate: f64,
+    /// Number of low bounces in a row before that event.
+    pub(crate) low: u32,
+    /// True if they fired although they did not close, and have not left their target since: they open too slowly for
+    /// the search to see them leave.
+    pub(crate) fires_open: bool,
+}
+
+/// All pairs, and lists of them by body.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pairs {
+    pairs: Vec<Pair>,
+    /// The bodies of each pair, the lesser first.
+    bodies: Vec<[BodyId; 2]>,
+    pasts: Vec<PairPast>,
+    free: Vec<PairId>,
+    of_body: Vec<Vec<Link>>,
+    /// Number of the present batch of predictions.
+    batch: u16,
+    /// True for fixed bodies. These keep no list: nothing ever changes their motion, and their lists would be the
+    /// longest.
+    is_fixed: Vec<bool>,
+}
+
+impl Pairs {
+    pub(crate) fn new(is_fixed: Vec<bool>) -> Self {
+        Self { of_body: vec![Vec::new(); is_fixed.len()], is_fixed, ..Self::default() }
+    }
+
+    pub(crate) fn get(&self, id: PairId) -> &Pair {
+        &self.pairs[id.0 as usize]
+    }
+
+    pub(crate) fn get_mut(&mut self, id: PairId) -> &mut Pair {
+        &mut self.pairs[id.0 as usize]
+    }
+
+    /// The bodies of a pair, the lesser first.
+    pub(crate) fn bodies(&self, id: PairId) -> [BodyId; 2] {
+        self.bodies[id.0 as usize]
+    }
+
+    /// True for a body that cannot move.
+    #[inline]
+    pub(crate) fn is_fixed(&self, body: BodyId) -> bool {
+        self.is_fixed[body.index()]
+    }
+
+    /// Rules for feature pairs of a pair of bodies.
+    pub(crate) fn rules(&self, id: PairId) -> &[FeatureRule] {
+        &self.pasts[id.0 as usize].rules
+    }
+
+    /// Changes the rules of a pair, and updates `has_rules`.
+    pub(crate) fn change_rules<T>(
+        &mut self,
+        id: PairId,
+        change: impl FnOnce(&mut Vec<FeatureRule>) -> T,
+    ) -> T {
+        let rules = &mut self.pasts[id.0 as usize].rules;
+        let answer = change(rules);
+        self.pairs[id.0 as usize].has_rules = !rules.is_empty();
+        answer
+    }
+
+    /// Drops the rules of all pairs of a body.
+    pub(crate) fn clear_rules_of(&mut self, body: BodyId) {
+        for link in &self.of_body[body.index()] {
+            let pair = &mut self.pairs[link.pair.0 as usize];
+            if pair.has_rules {
+                pair.has_rules = false;
+                self.pasts[link.pair.0 as usize].rules.clear();
+            }
+        }
+    }
+
+    pub(crate) fn past(&self, id: PairId) -> &PairPast {
+        &self.pasts[id.0 as usize]
+    }
+
+    pub(crate) fn past_mut(&mut self, id: PairId) -> &mut PairPast {
+        &mut self.pasts[id.0 as usize]
+    }
+
+    /// Begins a new batch of predictions, without pairs.
+    pub(crate) fn begin_batch(&mut self) {
+        self.batch = self.batch.wrapping_add(1);
+        if self.batch == 0 {
+            self.pairs.iter_mut().for_each(|pair| pair.batch = 0);
+            self.batch = 1;
+        }
+    }
+
+    /// Puts the pairs of a body into the present batch, and lists those that were not in it yet: all, or only the quiet
+    /// ones.
+    ///
+    /// A loop of its own: pairs lie anywhere in memory, and it asks for the next before the last has come.
+    #[inline]
+    pub(crate) fn enter_batch(&mut self, body: BodyId, only_quiet: bool, entered: &mut Vec<Link>) {
+        entered.clear();
+        for &link in &self.of_body[body.index()] {
+            let pair = &mut self.pairs[link.pair.0 as usize];
+            let is_new = std::mem::replace(&mut pair.batch, self.batch) != self.batch;
+            if is_new && (!only_quiet || pair.prediction == Prediction::Quiet) {
+                entered.push(link);
+            }
+        }
+    }
+
+    /// Feature pairs that have touched lately.
+    pub(crate) fn seen(&self, id: PairId) -> &[Seen] {
+        &self.pasts[id.0 as usize].seen
+    }
+
+    pub(crate) fn seen_mut(&mut self, id: PairId) -> &mut Vec<Seen> {
+        &mut self.pasts[id.0 as usize].seen
+    }
+
+    /// Pairs of a body that is not fixed, in an order that depends on the past alone.
+    pub(crate) fn of_body(&self, body: BodyId) -> &[Link] {
+        &self.of_body[body.index()]
+    }
+
+    /// The pair of two bodies, if there is one.
+    pub(crate) fn between(&self, a: BodyId, b: BodyId) -> Option<PairId> {
+        let (few, other) = if self.is_fixed[a.index()] { (b, a) } else { (a, b) };
+        self.of_body(few).iter().find(|link| link.other == other).map(|link| link.pair)
+    }
+
+    pub(crate) fn add(&mut self, a: BodyId, b: BodyId, clear: Time) -> PairId {
+        let bodies = if a < b { [a, b] } else { [b, a] };
+        let pair = Pair { clear, prediction: Prediction::Quiet, batch: 0, has_rules: false, alive: true };
+        let id = match self.free.pop() {
+            Some(id) => {
+                *self.get_mut(id) = pair;
+                self.bodies[id.0 as usize] = bodies;
+                self.past_mut(id).clear();
+                id
+            }
+            None => {
+                self.pairs.push(pair);
+                self.bodies.push(bodies);
+                self.pasts.push(PairPast::default());
+                PairId(
+                    u32::try_from(self.pairs.len() - 1)
+                        .expect("pairs of 32-bit bodies that are near each other"),
+                )
+            }
+        };
+        for (body, other) in [(a, b), (b, a)] {
+            if !self.is_fixed[body.index()] {
+                self.of_body[body.index()].push(Link { pair: id, other });
+            }
+        }
+        id
+    }
+
+    pub(crate) fn remove(&mut self, id: PairId) {
+        debug_assert!(self.get(id).alive, "a pair is removed once");
+        self.get_mut(id).alive = false;
+        for body in self.bodies(id) {
+            let list = &mut self.of_body[body.index()];
+            if let Some(place) = list.iter().position(|link| link.pair == id) {
+                list.swap_remove(place);
+            }
+        }
+        self.free.push(id);
+    }
+}
+
+/// True if a contact is held now, so that the search skips it.
+pub(crate) fn is_held_contact(pairs: &Pairs, record: &Collision, bodies: [BodyId; 2]) -> bool {
+    let (Some(touch), Some(pair)) = (touch_of(record, bodies), pairs.between(bodies[0], bodies[1])) else {
+        return false;
+    };
+    pairs.rules(pair).contains(&touch.skipped())
+}
+
+/// `Some(true)` if a record is likely to carry a force, since its contact is held until now; `None` if nothing is
+/// known.
+pub(crate) fn is_likely(pairs: &Pairs, record: &Collision) -> Option<bool> {
+    let [a, b] = record.bodies();
+    is_held_contact(pairs, record, sorted(a, b)).then_some(true)
+}

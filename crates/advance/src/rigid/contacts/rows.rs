@@ -1,0 +1,440 @@
+//! The rows that hold bodies together or apart during a segment: contacts and connectors, measured at any moment.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::touch::Touch;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{
+    BodyId, Collision, Connector, ConnectorId, Detector, GapKinematics, Moving, RailHint, RailKnot, RailPath,
+    RailPlace, Tolerances, contact_levers,
+};
+use halfgap_contact::CollisionRow;
+use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
+
+/// Fraction of `accuracy` by which a contact may run off its features before it counts as changed: more than the
+/// rounding by which a contact that has run off is still detected, far less than forces are sensitive to.
+const CHANGE_SHARE: f64 = 1.0 / 64.0;
+
+/// Fraction of `accuracy` above which a corner counts as leaning off its line: less than `CHANGE_SHARE`, at which the
+/// change is an event, so that it is one only once.
+const LEAN_SHARE: f64 = 0.5 * CHANGE_SHARE;
+
+/// Origin of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowSource {
+    /// A feature of the primary and one of the normal body.
+    Contact([FeatureId; 2]),
+    /// A row of a connector, by its index there.
+    Connector(ConnectorId, usize),
+}
+
+/// A held row: its gap is kept as it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeldRow {
+    pub(crate) source: RowSource,
+    /// The primary and the normal body.
+    pub(crate) bodies: [BodyId; 2],
+    pub(crate) bilateral: bool,
+    /// Gap [m] at which it is held: the one at which it formed, but for rows that are lifted.
+    pub(crate) gap: f64,
+    /// Piece of the rail, if the connector has one.
+    pub(crate) hint: Option<RailHint>,
+    /// It is a corner, sharp or round, that leans off its line.
+    pub(crate) leans: bool,
+    /// It is lifted into its target zone, which is wide enough for that to be seen.
+    pub(crate) is_lifted: bool,
+}
+
+/// A row at one moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowMoment {
+    /// Gap [m].
+    pub(crate) gap: f64,
+    pub(crate) kinematics: GapKinematics,
+}
+
+/// Bodies, connectors and tolerances by which rows are measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mechanism<'a> {
+    pub(crate) flyers: &'a [Flyer],
+    pub(crate) connectors: &'a [Connector],
+    pub(crate) tolerances: &'a Tolerances,
+}
+
+/// The motion of a body, or of the background.
+#[inline]
+pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> &Moving {
+    if body.is_world() { &Moving::BACKGROUND } else { &movings[body.index()] }
+}
+
+impl Mechanism<'_> {
+    fn shape(&self, body: BodyId) -> &Shape {
+        &self.flyers[body.index()].body().shape
+    }
+
+    /// A feature of a body.
+    #[inline]
+    pub(crate) fn feature(&self, body: BodyId, feature: FeatureId) -> &Feature {
+        self.shape(body).feature(feature)
+    }
+
+    /// Gap and kinematics of a row.
+    #[inline]
+    pub(crate) fn measure(&self, row: &HeldRow, movings: &[Moving]) -> RowMoment {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, index) => {
+                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
+                RowMoment { gap: sample.gap, kinematics: sample.kinematics }
+            }
+            RowSource::Contact(features) => self.measure_contact(row.bodies, features, [a, b]),
+        }
+    }
+
+    /// Gap [m] of a row; depends only on the poses of the bodies.
+    pub(crate) fn gap(&self, row: &HeldRow, movings: &[Moving]) -> f64 {
+        let RowSource::Contact(features) = row.source else { return self.measure(row, movings).gap };
+        self.sample_here(row.bodies, features, row.bodies.map(|body| moving_of(movings, body))).gap
+    }
+
+    /// Gap and kinematics of a contact. Inlined with everything it calls, so that unused results are not computed and
+    /// the others stay in registers.
+    #[inline(always)]
+    pub(crate) fn measure_contact(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> RowMoment {
+        let sample = self.sample_here(bodies, features, movings);
+        RowMoment { gap: sample.gap, kinematics: GapKinematics::of(&sample, movings[0], movings[1]) }
+    }
+
+    /// Gap and kinematics of a row, for rows in their order: the second row of a pin is measured with the first and
+    /// kept in `twin`.
+    #[inline]
+    pub(crate) fn measure_next(
+        &self,
+        row: &HeldRow,
+        movings: &[Moving],
+        twin: &mut Option<(ConnectorId, RowMoment)>,
+    ) -> RowMoment {
+        let RowSource::Connector(id, index) = row.source else { return self.measure(row, movings) };
+        if let (1, Some((of, moment))) = (index, *twin)
+            && of == id
+        {
+            return moment;
+        }
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match self.connectors[id.index()].measure_pin(a, b) {
+            Some(samples) => {
+                let [first, second] =
+                    samples.map(|sample| RowMoment { gap: sample.gap, kinematics: sample.kinematics });
+                *twin = Some((id, second));
+                if index == 0 { first } else { second }
+            }
+            None => self.measure(row, movings),
+        }
+    }
+
+    /// The gap of two features of a row, even beyond their ends.
+    pub(crate) fn sample(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> GapSample {
+        self.sample_here(bodies, features, movings)
+    }
+
+    #[inline(always)]
+    fn sample_here(&self, bodies: [BodyId; 2], features: [FeatureId; 2], movings: [&Moving; 2]) -> GapSample {
+        let [a, b] = [0, 1].map(|side: usize| self.shape(bodies[side]).feature(features[side]));
+        GapSample::measure_unbounded(a, &movings[0].pose, b, &movings[1].pose)
+            .expect("a contact was made from features that touch")
+    }
+
+    /// True if a row may run off its features or its piece of a rail.
+    pub(crate) fn can_change(&self, row: &HeldRow) -> bool {
+        match row.source {
+            RowSource::Contact(features) => {
+                // Full circles have no ends.
+                let mut sides = row.bodies.iter().zip(features);
+                !sides.all(|(&body, feature)| is_full(self.shape(body).feature(feature)))
+            }
+            RowSource::Connector(id, _) => {
+                let path = self.connectors[id.index()].path();
+                !self.is_in_corner(row) && path.is_some_and(|path| !path.knots().is_empty())
+            }
+        }
+    }
+
+    /// True for one side of a corner of a rail in which its point rests: such a row only pushes.
+    pub(crate) fn is_in_corner(&self, row: &HeldRow) -> bool {
+        let RowSource::Connector(id, _) = row.source else { return false };
+        !row.bilateral && self.connectors[id.index()].is_bilateral()
+    }
+
+    /// Point [m] in the world at which a row's force acts on its primary body, and the normal.
+    pub(crate) fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, index) => {
+                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
+                (sample.point_a, sample.normal)
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [a, b]);
+                (sample.point_primary, sample.normal)
+            }
+        }
+    }
+
+    /// Distance [m] by which a contact may run off its features before it counts as changed.
+    pub(crate) fn change_margin(&self) -> f64 {
+        CHANGE_SHARE * self.tolerances.accuracy
+    }
+
+    /// Distance [m] from a held row to the end of its features or its piece of a rail; negative once it has run off.
+    /// `None` for rows that cannot.
+    pub(crate) fn way_to_end(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
+        if !self.can_change(row) {
+            return None;
+        }
+        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        match row.source {
+            RowSource::Connector(id, _) => {
+                let connector = &self.connectors[id.index()];
+                let path = connector.path()?;
+                rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
+            }
+            RowSource::Contact(features) => {
+                let sample = self.sample(row.bodies, features, [a, b]);
+                let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };
+                let outside = sample.overrun.max(lean);
+                let inside = || self.inside(&sample, row, features, [a, b]);
+                Some(self.change_margin() + if outside > 0.0 { -outside } else { inside() })
+            }
+        }
+    }
+
+    /// Distance [m] from a contact that lies within its features to their ends; on an arc, the angle to its end times a
+    /// lever.
+    fn inside(
+        &self,
+        sample: &GapSample,
+        row: &HeldRow,
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let shapes = row.bodies.map(|body| self.shape(body));
+        let levers = contact_levers([0, 1].map(|side| (shapes[side], features[side])));
+        let to_ends = |side: usize| {
+            let (is_primary, pose) = ((side == 0) == sample.primary_is_a, &movings[side].pose);
+            match shapes[side].feature(features[side]) {
+                Feature::Line(line) => {
+                    let along = pose.point_to_body(sample.point_normal).dot(line.normal.perp());
+                    (along - line.start).min(line.end - along)
+                }
+                Feature::Round(_) if row.leans => f64::INFINITY,
+                Feature::Round(round) => {
+                    let sign = if is_primary { -round.sign() } else { round.sign() };
+                    levers[side] * round.range.margin(pose.vector_to_body(sample.normal * sign))
+                }
+            }
+        };
+        to_ends(0).min(to_ends(1)).max(0.0)
+    }
+
+    /// Distance [m] by which a contact lies beyond the ends of its lines and arcs. A gap is measured as if these had no
+    /// ends, so that after half a turn it would be to the back of the other body. The lean of a sharp corner does not
+    /// count.
+    pub(crate) fn overrun(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let mut sample = self.sample(bodies, features, movings);
+        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
+        sample.find_excess([0, 1].map(|side| (feature(side), &movings[side].pose)));
+        let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
+        let of_arc = |(side, excess): (usize, f64)| match feature(side) {
+            Feature::Round(round) => excess * round.radius.abs(),
+            Feature::Line(_) => 0.0,
+        };
+        let arcs = sides.into_iter().zip([sample.excess_primary, sample.excess_normal]);
+        arcs.map(of_arc).fold(sample.overrun, f64::max)
+    }
+
+    /// True if a row is a corner that leans off its line already: leaning further is no change.
+    pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
+        let RowSource::Contact(features) = row.source else { return false };
+        let sample = self.sample(row.bodies, features, movings);
+        if !self.is_corner_on_line(&sample, row.bodies, features, movings) {
+            return false;
+        }
+        self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
+    }
+
+    /// True if a contact outside of its features has left them: a corner that leans off its line has not.
+    pub(crate) fn has_left(
+        &self,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> bool {
+        let sample = self.sample(bodies, features, movings);
+        sample.overrun > 0.0 || !self.is_corner_on_line(&sample, bodies, features, movings)
+    }
+
+    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If the body leans a little,
+    /// so that its next corner is nearer to the line, the first one still touches: so a block rocks from one corner to
+    /// the other.
+    fn is_corner_on_line(
+        &self,
+        sample: &GapSample,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> bool {
+        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
+        let round = match (feature(0), feature(1)) {
+            (Feature::Round(_), Feature::Line(_)) => 0,
+            (Feature::Line(_), Feature::Round(_)) => 1,
+            _ => return false,
+        };
+        let is_sharp = feature(round).radius() == Some(0.0);
+        is_sharp || {
+            let direction = movings[round].pose.vector_to_body(-sample.normal);
+            self.shape(bodies[round]).goes_on_straight(features[round], direction)
+        }
+    }
+
+    /// Distance [m] by which a contact lies outside of its features: the angle beyond their ends times a lever.
+    fn lean(
+        &self,
+        mut sample: GapSample,
+        bodies: [BodyId; 2],
+        features: [FeatureId; 2],
+        movings: [&Moving; 2],
+    ) -> f64 {
+        let shape = |side: usize| self.shape(bodies[side]);
+        let feature = |side: usize| (shape(side).feature(features[side]), &movings[side].pose);
+        sample.find_excess([feature(0), feature(1)]);
+        let levers = contact_levers([0, 1].map(|side| (shape(side), features[side])));
+        let [primary, normal] = if sample.primary_is_a { levers } else { [levers[1], levers[0]] };
+        (sample.excess_primary * primary).max(sample.excess_normal * normal)
+    }
+}
+
+fn is_full(feature: &Feature) -> bool {
+    matches!(feature, Feature::Round(round) if round.range == DirectionRange::Full)
+}
+
+/// Distance [m] along a rail to the nearer end of the piece on which a point is. If both ends have a joint, the product
+/// of the two distances over their sum: it is smooth where they are equal, and under a steady acceleration a quartic in
+/// time.
+fn rail_room(path: &RailPath, point: DVec2, hint: Option<&RailHint>) -> Option<f64> {
+    let place = path.nearest(point, hint);
+    let rooms = end_rooms(path, &place).into_iter().flatten().map(|end| end.room);
+    rooms.reduce(|room, other| room * other / (room + other))
+}
+
+/// The joint at an end of a rail's piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RailEnd<'a> {
+    pub(crate) knot: &'a RailKnot,
+    /// True for the end at which the piece is left forward.
+    pub(crate) is_forward: bool,
+    /// Distance [m] along the rail from a place to the joint; negative beyond it.
+    pub(crate) room: f64,
+}
+
+/// The ends of the piece of a rail's place, forward and backward; `None` where the rail goes on without end.
+pub(crate) fn end_rooms<'a>(path: &'a RailPath, place: &RailPlace) -> [Option<RailEnd<'a>>; 2] {
+    [true, false].map(|is_forward| {
+        let knot = path.knot_at_end(place.piece(), is_forward)?;
+        // On a closed path the joint at its start is at both of its ends.
+        let wraps = is_forward && path.is_closed() && knot.arc_length == 0.0;
+        let end = if wraps { path.length() } else { knot.arc_length };
+        let room = if is_forward { end - place.arc_length } else { place.arc_length - end };
+        Some(RailEnd { knot, is_forward, room })
+    })
+}
+
+/// Source of the row of a record.
+pub(crate) fn source_of(record: &Collision) -> Option<RowSource> {
+    if let Detector::Connector { id, row } = record.parties.detector {
+        return Some(RowSource::Connector(id, row as usize));
+    }
+    Some(RowSource::Contact([record.parties.primary.feature()?, record.parties.normal.feature()?]))
+}
+
+/// Row of a record in an impact.
+pub(crate) fn row_of(assembly: &Assembly, record: &Collision) -> CollisionRow {
+    CollisionRow::of_collision(record, record.bodies().map(|body| assembly.inertia(body)))
+}
+
+/// A row with `leans` set as it is at a time.
+pub(crate) fn with_lean(assembly: &Assembly, connectors: &Connectors, row: HeldRow, time: Time) -> HeldRow {
+    let movings = row.bodies.map(|body| assembly.moving_at(body, time));
+    HeldRow { leans: mechanism(assembly, connectors).leans(&row, [&movings[0], &movings[1]]), ..row }
+}
+
+/// Bodies, connectors and tolerances by which rows are measured.
+pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Mechanism<'a> {
+    Mechanism {
+        flyers: &assembly.flyers,
+        connectors: &connectors.all,
+        tolerances: &assembly.settings.tolerances,
+    }
+}
+
+impl HeldRow {
+    /// The features of a contact; `None` for a connector's row.
+    pub(crate) fn touch(&self) -> Option<Touch> {
+        match self.source {
+            RowSource::Contact(features) => Some(Touch::new(self.bodies, features)),
+            RowSource::Connector(..) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::group::groups::group_of;
+    use crate::rigid::test_scene::block_on_its_corner;
+    use halfgap_geometry::Pose;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_corner_leans_by_what_it_is_long_itself_whichever_body_is_named_first() {
+        // A round corner with a radius of 0.1 m on a floor of 20 m, which is body 0.
+        let rooms = block_on_its_corner();
+        let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is held");
+        let row = HeldRow { leans: false, ..group.rows[0] };
+        let RowSource::Contact([first, second]) = row.source else { panic!("it is a contact") };
+        let source = RowSource::Contact([second, first]);
+        let swapped = HeldRow { bodies: [row.bodies[1], row.bodies[0]], source, ..row };
+        let mechanism = mechanism(&rooms.assembly, &rooms.connectors);
+        let room = |row: &HeldRow, lean: f64| {
+            let mut movings =
+                [0, 1].map(|body| rooms.assembly.flyer(BodyId(body)).moving_at(rooms.assembly.now));
+            let position = movings[1].pose.position;
+            movings[1].pose = Pose::new(position, FRAC_PI_2 + lean / 0.1);
+            mechanism.way_to_end(row, &movings).expect("the corner ends")
+        };
+        let margin = mechanism.change_margin();
+        for part in [0.1, 0.5, 0.9, 1.1, 2.0] {
+            let expected = (1.0 - part) * margin;
+            for found in [&row, &swapped].map(|row| room(row, part * margin)) {
+                // Features reach a little beyond smooth joints.
+                assert!((found - expected).abs() < 0.02 * margin, "{part}: {found} m for {expected} m");
+            }
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! TODO
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::Books;
+use crate::rigid::books::energy::{book_damping, interrupt};
+use crate::rigid::contacts::pairs::Pairs;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::event::cutting::cut_groups;
+use crate::rigid::event::events::{collect_again, collide};
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::parts::{FINITE, keep_to};
+use crate::rigid::region::collecting::collect_region;
+use crate::rigid::search::neighbourhood::Neighbourhood;
+use crate::rigid::zeno::memory::Zeno;
+use crate::rigid::zeno::pace::forget_paces;
+use crate::rigid::zeno::storms::Recent;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState};
+
+pub(crate) fn change_velocities(
+    rooms: &mut Rooms,
+    work: &mut EventWork,
+    changes: &[VelocityChange],
+) -> Result<(), AdvanceError> {
+    work.seeds.clear();
+    work.seeds
+        .extend(changes.iter().map(|change| change.body).filter(|&body| rooms.assembly.is_movable(body)));
+    if work.seeds.is_empty() {
+        return Ok(());
+    }
+    collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now);
+    work.before.clear();
+    work.before
+        .extend(work.seeds.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now)));
+    cut_groups(rooms, &mut work.region);
+    take_back_cut(&mut rooms.assembly, &mut rooms.books, &work.seeds, &work.before);
+    for change in changes {
+        if rooms.assembly.is_movable(change.body) {
+            change_velocity(&mut rooms.assembly, &mut rooms.books, change);
+        }
+    }
+    forget_past(&mut rooms.pairs, &mut rooms.search, &mut rooms.zeno, work);
+    // Velocities decide which contacts take part, and they have changed.
+    collect_again(rooms, work);
+    collide(rooms, work)
+}
+
+/// Restores, to the bit, the velocities that bodies had before their groups were cut: the end of a cut step is
+/// projected onto its rows, which callers that change a velocity do not expect.
+fn take_back_cut(assembly: &mut Assembly, books: &mut Books, bodies: &[BodyId], seen: &[BodyState]) {
+    for (&body, &BodyState { velocity, angular_velocity, .. }) in bodies.iter().zip(seen) {
+        let cut = assembly.flyer(body).unwound_at(assembly.now);
+        if (cut.velocity, cut.angular_velocity) == (velocity, angular_velocity) {
+            continue;
+        }
+        book_damping(assembly, books, body, assembly.now);
+        let change = VelocityChange {
+            body,
+            velocity: velocity - cut.velocity,
+            angular_velocity: angular_velocity - cut.angular_velocity,
+        };
+        books.ledger.projections += work_of(assembly, body, &cut, &change);
+        assembly.flyers[body.index()].fly_from(assembly.now, BodyState { velocity, angular_velocity, ..cut });
+    }
+}
+
+/// Changes the velocities of a body in flight.
+fn change_velocity(assembly: &mut Assembly, books: &mut Books, change: &VelocityChange) {
+    let &VelocityChange { body, velocity, angular_velocity } = change;
+    book_damping(assembly, books, body, assembly.now);
+    let before = assembly.flyer(body).unwound_at(assembly.now);
+    books.ledger.interventions += work_of(assembly, body, &before, change);
+    let now = assembly.now;
+    interrupt(assembly, books, body).cut(now, velocity, angular_velocity);
+}
+
+/// Change of the kinetic energy [J] of a body in a state.
+fn work_of(assembly: &Assembly, body: BodyId, before: &BodyState, change: &VelocityChange) -> f64 {
+    let inertia = assembly.inertia(body);
+    let linear = change.velocity.dot(before.velocity + 0.5 * change.velocity) / inertia.inverse_mass;
+    let spin = before.angular_velocity + 0.5 * change.angular_velocity;
+    linear + change.angular_velocity * spin / inertia.inverse_moment
+}
+
+/// Forgets the past events of a region's bodies: impacts that follow are neither a storm nor bounces that have
+/// become low.
+fn forget_past(pairs: &mut Pairs, search: &mut Neighbourhood, zeno: &mut Zeno, work: &EventWork) {
+    for &body in &work.region.bodies {
+        zeno.recent[body.index()] = Recent::default();
+        let mut links = std::mem::take(&mut search.links);
+        links.clear();
+        links.extend_from_slice(pairs.of_body(body));
+        for link in &links {
+            pairs.seen_mut(link.pair).clear();
+        }
+        search.links = links;
+    }
+    forget_paces(zeno, &work.region.bodies);
+}
+
+/// A change of the velocities of a body. A zero change restarts the body's group, which makes changed force laws take
+/// effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityChange {
+    /// The body; a fixed body and the background keep their velocities.
+    pub body: BodyId,
+    /// Change of the velocity of the centre of mass [m/s].
+    pub velocity: DVec2,
+    /// Change of the angular velocity [rad/s].
+    pub angular_velocity: f64,
+}
+
+pub(crate) fn check_finite(time: Time, changes: &[VelocityChange]) -> Result<(), AdvanceError> {
+    let check = |numbers: &[(&'static str, f64)]| {
+        let bad = |(quantity, _, value)| AdvanceError::BadIntervention { quantity, value };
+        keep_to(&[(FINITE.0, FINITE.1, numbers)]).map_err(bad)
+    };
+    check(&[("time", time.seconds())])?;
+    changes.iter().try_for_each(|&VelocityChange { velocity, angular_velocity, .. }| {
+        check(&[
+            ("velocity.x", velocity.x),
+            ("velocity.y", velocity.y),
+            ("angular velocity", angular_velocity),
+        ])
+    })
+}

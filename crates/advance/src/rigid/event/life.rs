@@ -1,0 +1,284 @@
+//! TODO
+
+use crate::rigid::agenda::{Agenda, Source};
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::Books;
+use crate::rigid::books::energy::{book_damping, note_kinetic_energy};
+use crate::rigid::books::report::note_ends;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::rows::mechanism;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::event::rails::{note_hints, note_ways, renew_hints};
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::group::attempt::StepFailure;
+use crate::rigid::group::brief::Past;
+use crate::rigid::group::dynamics::{body_state, set_body_state};
+use crate::rigid::group::group::Group;
+use crate::rigid::group::groups::{Groups, part, put_group, with_group};
+use crate::rigid::region::region::Region;
+use crate::rigid::search::neighbourhood::Neighbourhood;
+use crate::rigid::zeno::pace::{names_of_laws, note_pace};
+use crate::rigid::zeno::repeats::has_pulled;
+use halfgap_collision::{BodyId, BodyState};
+
+/// Ends a group, whose bodies are in flight; its works are booked.
+pub(crate) fn dissolve(rooms: &mut Rooms, leader: BodyId) {
+    note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader);
+    let Some(mut group) = rooms.groups.take(leader) else { return };
+    book_works(&mut rooms.books, &group);
+    if group.rows.iter().any(|row| !row.bilateral) {
+        with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
+            dynamics.evaluate_end()
+        });
+        note_ends(&rooms.assembly, &rooms.connectors, &rooms.groups, &mut rooms.books, &group);
+    }
+    for &body in &group.bodies {
+        rooms.assembly.sunk[body.index()] = (group.depth(), rooms.assembly.now);
+        rooms.groups.past_of[body.index()] = Past::of(&group, rooms.assembly.now);
+        rooms.books.counts.backups += 1;
+    }
+    part(&mut rooms.assembly, &mut rooms.connectors, &group);
+    rooms.agenda.clear(Source::Group(leader));
+    group.clear();
+    rooms.groups.pool.push(group);
+}
+
+fn book_works(books: &mut Books, group: &Group) {
+    if group.rows.iter().any(|row| row.bilateral) {
+        books.counts.note_connector_error(group.largest_error);
+    }
+    if let Some(gap) = group.least_gap {
+        books.counts.note_gap(gap);
+    }
+    books.ledger.projections += group.projected;
+    let first = 2 * group.velocities();
+    for (&work, &value) in group.works.iter().zip(&group.end_state[first..]) {
+        books.ledger.book(work, value);
+    }
+}
+
+/// Forgets the groups of a region that have just been made: its bodies are in flight again, in the states before.
+pub(crate) fn undo_groups(
+    assembly: &mut Assembly,
+    connectors: &mut Connectors,
+    groups: &mut Groups,
+    agenda: &mut Agenda,
+    region: &Region,
+    before: &[BodyState],
+) {
+    complete_dense(assembly, connectors, groups);
+    for (&body, &state) in region.bodies.iter().zip(before) {
+        if let Some(leader) = assembly.leader_of[body.index()] {
+            agenda.clear(Source::Group(leader));
+            drop_group(assembly, connectors, groups, leader);
+        }
+        assembly.flyers[body.index()].fly_from(assembly.now, state);
+    }
+}
+
+/// Forgets a group that was never started, or is made anew: its bodies are in flight.
+pub(crate) fn drop_group(
+    assembly: &mut Assembly,
+    connectors: &mut Connectors,
+    groups: &mut Groups,
+    leader: BodyId,
+) {
+    let Some(group) = groups.take(leader) else { return };
+    part(assembly, connectors, &group);
+}
+
+/// Starts a group's first segment from the states of its bodies.
+pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
+    let Some(mut group) = rooms.groups.take(leader) else { return Ok(()) };
+    (group.start, group.made) = (rooms.assembly.now, rooms.assembly.now);
+    group.is_patient = has_pulled(&rooms.zeno, rooms.assembly.now);
+    let count = group.bodies.len();
+    let dimension = group.dimension();
+    let mut inertias = std::mem::take(&mut rooms.groups.inertias);
+    inertias.clear();
+    inertias.extend(group.bodies.iter().map(|&body| rooms.assembly.inertia(body)));
+    group.find_sides();
+    group.held.set_structure(&inertias, &group.sides);
+    rooms.groups.inertias = inertias;
+    // The projection acts on the end of a segment: a segment of no length ends here.
+    group.end_state.clear();
+    group.end_state.resize(dimension, 0.0);
+    let now = rooms.assembly.now;
+    for place in 0..count {
+        book_damping(&mut rooms.assembly, &mut rooms.books, group.bodies[place], now);
+        let state = rooms.assembly.flyer(group.bodies[place]).unwound_at(rooms.assembly.now);
+        set_body_state(&mut group.end_state, count, place, &state);
+    }
+    group.span = 0.0;
+    group.projected = 0.0;
+    with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
+        dynamics.soften_dependent();
+        dynamics.end_on_rows(tools);
+        dynamics.leave_lifted();
+        dynamics.lower_idle();
+    });
+    rooms.books.ledger.projections += std::mem::take(&mut group.projected);
+    std::mem::swap(&mut group.state, &mut group.end_state);
+    with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
+        dynamics.find_tree_and_loops(tools.settings);
+        dynamics.set_out();
+        if dynamics.leave_singular_tree() {
+            dynamics.set_out();
+        }
+    });
+    extend_group(rooms, group)
+}
+
+/// Extends a group whose segment has come to its natural end by another segment.
+pub(crate) fn continue_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
+    note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader);
+    let Some(mut group) = rooms.groups.take(leader) else { return Ok(()) };
+    book_works(&mut rooms.books, &group);
+    group.start = group.end();
+    group.end_brief();
+    group.choose_stiffness(rooms.assembly.settings.method);
+    let first_work = 2 * group.velocities();
+    let group_mut = &mut *group;
+    std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);
+    std::mem::swap(&mut group_mut.rates, &mut group_mut.end_rates);
+    std::mem::swap(&mut group_mut.forces, &mut group_mut.end_forces);
+    group_mut.state[first_work..].fill(0.0);
+    renew_hints(&rooms.assembly, &mut rooms.connectors, &mut group);
+    extend_group(rooms, group)
+}
+
+/// Extends a group by a segment and puts it back.
+fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceError> {
+    note_hints(&rooms.assembly, &mut rooms.connectors, &group.rows);
+    let leader = group.leader();
+    skip_dense(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader);
+    let next_step = group.next_step;
+    let mut outcome =
+        with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
+            dynamics.extend_watched(tools)
+        });
+    if outcome.is_err() && group.stiffness.is_stiff {
+        group.next_step = next_step;
+        group.leave_stiffness(rooms.assembly.settings.method);
+        outcome = with_group(
+            &rooms.assembly,
+            &rooms.connectors,
+            &mut rooms.groups,
+            &mut group,
+            |dynamics, tools| dynamics.extend_watched(tools),
+        );
+    }
+    rooms.books.counts.segments += 1;
+    if let Err(failure) = outcome {
+        let error = step_error(&rooms.assembly, &group, failure);
+        give_up(&mut rooms.assembly, &mut rooms.connectors, &group);
+        return Err(error);
+    }
+    note_pace(&rooms.assembly, &mut rooms.zeno, &group);
+    note_kinetic_energy(&rooms.assembly, &mut rooms.books, &group);
+    rooms.agenda.set(Source::Group(leader), group.due());
+    if group.is_unwatched {
+        defer_dense(&mut rooms.groups, leader);
+    } else {
+        fly_along(&mut rooms.assembly, &group);
+    }
+    put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
+    Ok(())
+}
+
+/// Searches the rest of a group's segment for a contact that loses its force.
+pub(crate) fn look_further(
+    assembly: &mut Assembly,
+    connectors: &mut Connectors,
+    groups: &mut Groups,
+    agenda: &mut Agenda,
+    leader: BodyId,
+) {
+    let Some(mut group) = groups.take(leader) else { return };
+    with_group(assembly, connectors, groups, &mut group, |dynamics, _| dynamics.look_for_release());
+    agenda.set(Source::Group(leader), group.due());
+    put_group(assembly, connectors, groups, group);
+}
+
+/// Forgets a group that cannot be stepped: its bodies are where its last segment ended.
+fn give_up(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) {
+    for (place, &body) in group.bodies.iter().enumerate() {
+        let state = body_state(&group.state, group.bodies.len(), place);
+        assembly.flyers[body.index()].fly_from(group.start, state);
+    }
+    part(assembly, connectors, group);
+}
+
+/// Sets the bodies of a group on its dense output.
+fn fly_along(assembly: &mut Assembly, group: &Group) {
+    let span = group.end().since(group.start);
+    for (&body, paths) in group.bodies.iter().zip(&group.paths) {
+        assembly.flyers[body.index()].follow(group.start, paths, span);
+    }
+}
+
+fn step_error(assembly: &Assembly, group: &Group, failure: StepFailure) -> AdvanceError {
+    let (time, bodies) = (group.start.seconds(), group.bodies.clone());
+    let laws = names_of_laws(assembly, group);
+    match failure {
+        StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
+        StepFailure::RanAway(speed) => AdvanceError::RanAway { time, speed, bodies },
+        StepFailure::Unresolved(length) => {
+            let bodies = so_far_apart(assembly, group, length).map_or(bodies, Vec::from);
+            AdvanceError::Unresolved { time, length, bodies, laws }
+        }
+    }
+}
+
+/// Two bodies whose centres are at a given distance [m], among those that a law of a group names together; `None`
+/// if there are none. Where forces vary over that length, these are to blame.
+fn so_far_apart(assembly: &Assembly, group: &Group, length: f64) -> Option<[BodyId; 2]> {
+    let center = |body: BodyId| match group.bodies.binary_search(&body) {
+        Ok(place) => body_state(&group.state, group.bodies.len(), place).position,
+        Err(_) => assembly.moving_at(body, group.start).pose.position,
+    };
+    let bodies = group.laws.iter().map(|&law| assembly.laws.all[law].bodies());
+    let mut pairs = bodies
+        .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
+        .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));
+    pairs.find(|&[a, b]| (center(a) - center(b)).length() == length)
+}
+
+/// True if no event can end the segments of a group early.
+pub(crate) fn is_unwatched(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    search: &Neighbourhood,
+    group: &Group,
+) -> bool {
+    let mechanism = mechanism(assembly, connectors);
+    let mut tied = group.bodies.iter().flat_map(|&body| connectors.of(body));
+    group.bodies.iter().all(|body| search.loners[body.index()])
+        && tied.all(|&id| connectors.connector(id).is_bilateral())
+        && group.rows.iter().all(|row| row.bilateral && !mechanism.can_change(row))
+        && group.laws.iter().all(|&law| assembly.laws.all[law].switches() == 0)
+}
+
+/// Postpones the dense output of the group with this leader.
+fn defer_dense(groups: &mut Groups, leader: BodyId) {
+    groups.waiting = Some(leader);
+}
+
+/// Drops the postponed dense output of a group that goes on without having been asked for it; makes that of another
+/// group.
+fn skip_dense(assembly: &mut Assembly, connectors: &mut Connectors, groups: &mut Groups, leader: BodyId) {
+    if groups.waiting == Some(leader) {
+        groups.waiting = None;
+    }
+    complete_dense(assembly, connectors, groups);
+}
+
+/// Makes the postponed dense output, if there is any: then all motions can be evaluated.
+pub(crate) fn complete_dense(assembly: &mut Assembly, connectors: &mut Connectors, groups: &mut Groups) {
+    let Some(mut group) = groups.waiting.take().and_then(|leader| groups.take(leader)) else {
+        return;
+    };
+    with_group(assembly, connectors, groups, &mut group, |dynamics, tools| dynamics.complete(tools));
+    fly_along(assembly, &group);
+    put_group(assembly, connectors, groups, group);
+}

@@ -1,0 +1,121 @@
+//! TODO
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::law::Snapshot;
+use crate::rigid::books::energy::book_damping;
+use crate::rigid::event::cutting::cut_groups;
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::group::groups::Groups;
+use crate::rigid::region::collecting::collect_region;
+use crate::rigid::region::lift::Lift;
+use crate::rigid::region::records::remeasure;
+use crate::rigid::region::region::Region;
+use crate::rigid::sinking::depth::Sinking;
+use glam::DVec2;
+use halfgap_collision::BodyState;
+
+/// Moves the bodies of a region, which are in flight, so that no gap is less than its target; bodies that they come
+/// to touch join the region.
+pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
+    let (mut full, mut short) = (0, 0);
+    while full < ROUNDS && short < SHORT_ROUNDS {
+        let now = rooms.assembly.now;
+        for &body in &work.region.bodies {
+            book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
+        }
+        let before = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
+        let Some(share) = move_apart(&mut rooms.assembly, &mut rooms.sinking, work) else { break };
+        *(if share == 1.0 { &mut full } else { &mut short }) += 1;
+        rooms.books.ledger.projections +=
+            potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region) - before;
+        for &body in &work.region.bodies {
+            rooms.search.lanes[body.index()].follow(&rooms.assembly.flyers[body.index()]);
+        }
+        work.seeds.clear();
+        work.seeds.extend(&work.region.bodies);
+        collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now);
+        cut_groups(rooms, &mut work.region);
+        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now);
+    }
+    rooms.sinking.moved = 0.0;
+    // Touching contacts may yet sink when connectors are put together again afterwards.
+    for &touch in &work.region.touches {
+        rooms.sinking.wait(touch);
+    }
+}
+
+/// Makes one round; returns the fraction of the displacement that was made, or `None` if nothing had to move.
+fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWork) -> Option<f64> {
+    let EventWork { region, settling, lift, .. } = work;
+    if !pose_lift(assembly, region, lift) || settling.solve(&lift.problem).is_err() {
+        return None;
+    }
+    let Lift { shifts, rows, .. } = lift;
+    shifts.clear();
+    shifts.resize(region.bodies.len(), [0.0; 3]);
+    settling.add_responses(region, rows, |body| assembly.inertia(body), shifts);
+    let longest = longest_way(assembly, region, shifts);
+    let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
+    sinking.moved += share * longest.0;
+    for (&body, &[x, y, turn]) in region.bodies.iter().zip(shifts.iter()) {
+        let state = assembly.flyer(body).unwound_at(assembly.now);
+        let position = state.position + share * DVec2::new(x, y);
+        let moved = BodyState { position, angle: state.angle + share * turn, ..state };
+        assembly.flyers[body.index()].fly_from(assembly.now, moved);
+    }
+    Some(share)
+}
+
+/// Longest way of a point of a region's bodies along a displacement (x, y, angle) of each: in metres, and as a
+/// fraction of the body's reach.
+fn longest_way(assembly: &Assembly, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
+    let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
+        let reach = assembly.flyer(body).reach();
+        let way = libm::hypot(*x, *y) + turn.abs() * reach;
+        (way, way / reach)
+    });
+    ways.fold((0.0, 0.0), |most, way| (most.0.max(way.0), most.1.max(way.1)))
+}
+
+/// Sets up the least displacement of a region's bodies that leaves no gap below its target; false if none is.
+fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &mut Lift) -> bool {
+    region.begin(problem, |body| assembly.inertia(body));
+    rows.clear();
+    let mut any_sunk = false;
+    for (index, record) in region.records.iter().enumerate() {
+        let target = if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
+        let offset = record.geometry.distance - target;
+        any_sunk |= offset < 0.0 && !record.parties.bilateral;
+        let Some(row) = region.row_of(record, offset) else { continue };
+        problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+        rows.push(index);
+    }
+    any_sunk
+}
+
+/// Potential energy [J] of the bodies of a region under uniform accelerations and laws that have a potential.
+fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking, region: &Region) -> f64 {
+    let mut energy = 0.0;
+    for &body in &region.bodies {
+        groups.stage.movings[body.index()] = assembly.flyer(body).moving_at(assembly.now);
+        let flyer = assembly.flyer(body);
+        let position = groups.stage.movings[body.index()].pose.position;
+        energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
+    }
+    let mut laws = std::mem::take(&mut sinking.laws);
+    assembly.laws.list(&region.bodies, &mut laws);
+    let now = Snapshot::of_unwound(assembly.now.seconds(), &groups.stage.movings, &assembly.flyers);
+    let of_laws = laws.iter().filter_map(|&law| assembly.laws.all[law].potential(&now)).sum::<f64>();
+    sinking.laws = laws;
+    energy + of_laws
+}
+
+/// Number of rounds of putting back that go all the way: gaps are not linear in the displacement, but nearly.
+const ROUNDS: usize = 3;
+
+/// Number of further rounds of putting back that go a fraction of the way.
+const SHORT_ROUNDS: usize = 5;
+
+/// Longest way of a body in one round, as a fraction of its reach: farther, gaps are not nearly linear.
+const LONGEST_WAY: f64 = 0.1;

@@ -1,0 +1,88 @@
+//! All rooms together: what an event may change.
+
+use crate::rigid::agenda::Agenda;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::law::Snapshot;
+use crate::rigid::bodies::laws::Laws;
+use crate::rigid::books::Books;
+use crate::rigid::books::counts::Counts;
+use crate::rigid::books::ledger::Ledger;
+use crate::rigid::books::report::Told;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::pairs::Pairs;
+use crate::rigid::event::members::Members;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::group::groups::Groups;
+use crate::rigid::parts::{BodyPart, RigidParts};
+use crate::rigid::region::view::View;
+use crate::rigid::search::neighbourhood::Neighbourhood;
+use crate::rigid::search::searching::Searching;
+use crate::rigid::settings::RigidSettings;
+use crate::rigid::sinking::depth::Sinking;
+use crate::rigid::zeno::memory::Zeno;
+use crate::time::Time;
+use halfgap_collision::Moving;
+
+/// The parts of a system, each with its own room.
+#[derive(Clone, Debug)]
+pub(crate) struct Rooms {
+    pub(crate) assembly: Assembly,
+    pub(crate) connectors: Connectors,
+    pub(crate) sinking: Sinking,
+    pub(crate) pairs: Pairs,
+    pub(crate) search: Neighbourhood,
+    pub(crate) groups: Groups,
+    pub(crate) zeno: Zeno,
+    pub(crate) books: Books,
+    pub(crate) agenda: Agenda,
+    /// Members of the groups that are being made.
+    pub(crate) members: Members,
+    /// Buffers of an event; taken out while one is handled.
+    pub(crate) work: Option<Box<EventWork>>,
+}
+
+impl Rooms {
+    /// Makes the rooms of the given parts, with all bodies in flight and nothing predicted.
+    pub(crate) fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Self {
+        let RigidParts { bodies, connectors, laws, excluded } = parts;
+        let flyer = |BodyPart { body, law, state }| Flyer::new(body, law, state, start);
+        let flyers: Vec<Flyer> = bodies.into_iter().map(flyer).collect();
+        let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
+        let snapshot = Snapshot::new(start.seconds(), &movings);
+        let count = flyers.len();
+        let movable = flyers.iter().filter(|flyer| !flyer.body().is_fixed()).count();
+        let books = Books {
+            counts: Counts { segments: movable as u64, ..Counts::default() },
+            ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
+            told: Told::default(),
+        };
+        let laws = Laws::new(laws, count, &snapshot);
+        let connectors = Connectors::new(connectors, count);
+        Self {
+            books,
+            agenda: Agenda::new(count, connectors.all.len()),
+            connectors,
+            pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
+            search: Neighbourhood::new(&flyers, excluded, &settings),
+            groups: Groups::new(movings, settings.method),
+            zeno: Zeno::new(count),
+            sinking: Sinking::default(),
+            members: Members::default(),
+            work: None,
+            assembly: Assembly::new(flyers, laws, settings, start),
+        }
+    }
+
+    /// What the search works on.
+    pub(crate) fn searching(&mut self) -> Searching<'_> {
+        let Self { assembly, connectors, sinking, pairs, search, agenda, .. } = self;
+        Searching { assembly, connectors, sinking, pairs, search, agenda }
+    }
+
+    /// A look at all rooms.
+    pub(crate) fn view(&self) -> View<'_> {
+        let Self { assembly, connectors, sinking, pairs, search, groups, zeno, books, .. } = self;
+        View { assembly, connectors, sinking, pairs, search, groups, zeno, books }
+    }
+}

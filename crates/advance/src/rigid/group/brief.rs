@@ -1,0 +1,110 @@
+//! The method of a group's steps: the one asked for or, in place of the default one, the method of order 5, which has
+//! half as many stages. It serves where a higher order gains little: between events that follow each other fast (brief
+//! steps), and over the kinks of a spline with many points. Implicit steps are in `stiff`.
+
+use crate::ode::{Method, Stepper};
+use crate::rigid::group::group::Group;
+use crate::rigid::group::stiff::Stiffness;
+use crate::time::Time;
+
+/// A group is expected to last this multiple of the time that the last groups of its bodies lasted, and is brief if a
+/// full step is longer than this multiple of that.
+pub(crate) const BRIEF: f64 = 4.0;
+
+/// Least length of a brief step, as a fraction of a full one: to cut a step short costs less than to make very many.
+pub(crate) const BRIEFEST: f64 = 1.0 / 32.0;
+
+/// Factor by which a full step is shortened if an event is expected to cut it: its error is then so small that it can
+/// be cut by its dense output, and need not be repeated up to the event.
+pub(crate) const CUT_SHARE: f64 = 0.6;
+
+/// A group stays brief while the errors of its steps allow them to grow by this factor.
+const BRIEF_GROWTH: f64 = 1.9;
+
+/// The method of brief steps.
+const BRIEF_METHOD: Method = Method::DormandPrince5;
+
+/// Stepper by which the steps of a group are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stepping {
+    /// That of the method asked for.
+    Asked,
+    /// That of the method with few stages.
+    Brief,
+    /// The implicit one.
+    Stiff,
+}
+
+/// The steppers of a system.
+#[derive(Clone, Debug)]
+pub(crate) struct Steppers {
+    asked: Stepper,
+    brief: Stepper,
+    stiff: Stepper,
+}
+
+impl Steppers {
+    pub(crate) fn new(method: Method) -> Self {
+        Self {
+            asked: Stepper::new(method),
+            brief: Stepper::new(BRIEF_METHOD),
+            stiff: Stepper::new(Method::RadauIia5),
+        }
+    }
+
+    pub(crate) fn of(&mut self, stepping: Stepping) -> &mut Stepper {
+        match stepping {
+            Stepping::Asked => &mut self.asked,
+            Stepping::Brief => &mut self.brief,
+            Stepping::Stiff => &mut self.stiff,
+        }
+    }
+}
+
+/// Experience with the last group of a body, from which its next group starts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Past {
+    /// Length [s] of the next step that was proposed, by the method asked for.
+    pub(crate) step: Option<f64>,
+    /// Time [s] for which the group lasted.
+    pub(crate) lasted: f64,
+    pub(crate) stiffness: Stiffness,
+}
+
+impl Past {
+    /// The experience with a group that ends now.
+    pub(crate) fn of(group: &Group, now: Time) -> Self {
+        let step = if group.is_brief { group.full_step } else { group.next_step };
+        let (lasted, stiffness) = (now.since(group.made), group.stiffness);
+        Self { step, lasted, stiffness }
+    }
+}
+
+impl Group {
+    /// The stepper by which its steps are made.
+    pub(crate) fn stepping(&self) -> Stepping {
+        if self.is_brief {
+            Stepping::Brief
+        } else if self.stiffness.is_stiff {
+            Stepping::Stiff
+        } else if self.has_kinks {
+            Stepping::Brief
+        } else {
+            Stepping::Asked
+        }
+    }
+
+    /// Returns to the method asked for, if errors or the fastest rate of the group hold brief steps up.
+    pub(crate) fn end_brief(&mut self) {
+        if !self.is_brief {
+            return;
+        }
+        let grows = self.accepted.is_some_and(|step| BRIEF_METHOD.step_factor(step.error) >= BRIEF_GROWTH);
+        let is_allowed = self.next_step.is_none_or(|step| self.stiffness.allows(step));
+        if !(grows && is_allowed) {
+            self.is_brief = false;
+            self.next_step = self.full_step;
+            self.accepted = None;
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! A group's next segment: a step that keeps to the held rows, projected, with the event that ends it early.
+//!
+//! The excess of a step is the largest of its errors beside the error estimate, each as a multiple of what is allowed:
+//! the distance of its dense output from the held rows, the oscillation of the dense output, the energy it has lost.
+
+use crate::ode::StiffnessEstimate;
+use crate::rigid::group::attempt::StepFailure;
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::group::SegmentEnd;
+use crate::rigid::group::tools::Tools;
+
+/// Number of shorter steps that are tried if a step has an excess above 1.
+const SHORTENINGS: usize = 2;
+/// Number of shorter steps that are tried as long as the excess is above [`DEEP`].
+const DEEP_SHORTENINGS: usize = 5;
+/// Number of shorter steps that are tried then if the last of them was [`WORTHWHILE`].
+const MOST_SHORTENINGS: usize = 8;
+/// Excess [-] above which bodies would overlap along the dense output.
+const DEEP: f64 = 4.0;
+/// A shorter step is worthwhile if it leaves less than this fraction of the excess of the one before.
+const WORTHWHILE: f64 = 0.5;
+
+/// Time before a change of a law's branch at which a step ends, in ticks of the clock.
+const TICKS_BEFORE_SWITCH: f64 = 64.0;
+/// Factor by which that time grows where the change then turns out to come earlier.
+const WIDER: f64 = 8.0;
+/// Largest number of steps that are tried before a change.
+const MOST_APPROACHES: usize = 8;
+
+impl Dynamics<'_> {
+    /// Extends the group by a step, and finds the event that ends it early.
+    pub(crate) fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+        if !self.group.is_unwatched {
+            let proposed = self.group.next_step;
+            let told = self.extend_on_rows(tools)?;
+            self.note_stiffness(tools, told);
+            self.find_event();
+            return self.end_before_switch(tools, proposed);
+        }
+        let told = self.extend_unwatched(tools)?;
+        self.note_stiffness(tools, told);
+        self.limit_next_step(tools.stepper.method().step_factor(0.0));
+        (self.group.event, self.group.look) = (None, None);
+        // Of projected ends only rounding is left, so the gaps of the last evaluation tell.
+        let is_projected = tools.settings.projection;
+        self.group.largest_error = if is_projected { self.stage.gap_error } else { self.connector_error() };
+        Ok(())
+    }
+
+    /// Makes a step over a change of a law's branch anew, so that it ends just before the change. Stages beyond it have
+    /// the forces of another branch: with them a step may err by any amount, unseen by its error estimate, and so may its
+    /// dense output, by which the change was found. The next step is then as long as this one was `proposed` [s] to be.
+    fn end_before_switch(&mut self, tools: &mut Tools<'_>, proposed: Option<f64>) -> Result<(), StepFailure> {
+        if self.group.laws.is_empty() || !tools.stepper.method().is_adaptive() {
+            return Ok(());
+        }
+        let mut before = self.clock_ticks(TICKS_BEFORE_SWITCH);
+        for _ in 0..MOST_APPROACHES {
+            let Some((offset, SegmentEnd::Switch)) = self.group.event else { break };
+            if offset <= 2.0 * before {
+                break;
+            }
+            self.group.next_step = Some(offset - before);
+            self.extend_on_rows(tools)?;
+            self.find_event();
+            if let (Some(next), Some(proposed)) = (&mut self.group.next_step, proposed) {
+                *next = next.max(proposed);
+            }
+            before *= WIDER;
+        }
+        if self.group.event.is_none() {
+            self.group.event = self.find_switch_at_end().map(|offset| (offset, SegmentEnd::Switch));
+        }
+        Ok(())
+    }
+
+    /// Extends the group by a step whose dense output, if it is asked for, does not oscillate. Near a bifurcation point
+    /// of a loop the step keeps to its rows and its energy, too.
+    fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
+        let mut tries = 0;
+        loop {
+            let energy = self.extend(tools)?;
+            let told = self.tell_stiffness(tools);
+            let mut excess = told.map_or(0.0, |told| told.dense_error);
+            if self.group.kept.nears_singular() {
+                let at_end = self.stage.gap_error;
+                self.make_dense(tools.stepper);
+                self.stage.gap_error = at_end;
+                let off = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+                excess = excess.max(off).max(self.lost_energy(&tools.settings.steps, energy));
+            }
+            if excess <= self.group.kept.allowance() || tries >= DEEP_SHORTENINGS {
+                return Ok(told);
+            }
+            self.limit_next_step(tools.stepper.method().step_factor(excess));
+            tries += 1;
+        }
+    }
+
+    /// Makes the dense output of the last step, and notes the errors of the held gaps along it.
+    pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
+        self.make_dense(tools.stepper);
+        self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+    }
+
+    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not
+    /// oscillate: shorter steps are tried until one does. Returns the stiffness, if it was estimated.
+    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
+        let steps = tools.settings.steps;
+        let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
+        let (mut proposed, mut before) = (None, f64::INFINITY);
+        let mut tries = 0;
+        loop {
+            let energy = self.extend(tools)?;
+            self.make_dense(tools.stepper);
+            let excess = self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
+            let proposed = *proposed.get_or_insert(self.group.next_step);
+            let told = self.tell_stiffness(tools);
+            if is_free {
+                return Ok(told);
+            }
+            let swing = told.map_or(0.0, |told| told.dense_error);
+            let excess = excess.max(swing).max(self.lost_energy(&steps, energy));
+            let most = if excess < WORTHWHILE * before { MOST_SHORTENINGS } else { DEEP_SHORTENINGS };
+            let is_worthwhile = excess > DEEP && tries < most;
+            before = excess;
+            if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
+                // An error that shorter steps do not reduce is rounding, or comes from rows that contradict each other.
+                self.group.next_step = proposed;
+                return Ok(told);
+            }
+            self.limit_next_step(tools.stepper.method().step_factor(excess));
+            if excess <= self.group.kept.allowance() {
+                return Ok(told);
+            }
+            tries += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::event::rooms::Rooms;
+    use crate::rigid::group::groups::with_group;
+    use crate::rigid::parts::{BodyPart, RigidParts};
+    use crate::rigid::test_scene::{FINE, rooms_of};
+    use crate::time::Time;
+    use glam::DVec2;
+    use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorKind};
+    use halfgap_geometry::Shape;
+
+    /// A disc at the end of a rod of 1 m, which moves at 2 m/s.
+    fn pendulum() -> Rooms {
+        disc_on_rods(&[DVec2::ZERO])
+    }
+
+    /// A disc, moving at 2 m/s, on rods that end at several points.
+    fn disc_on_rods(ends: &[DVec2]) -> Rooms {
+        turning_disc_on_rods(ends, 2.0, 0.0)
+    }
+
+    /// A disc, moving at 2 m/s, on rods, with a spin [rad/s] that decays at a rate [1/s].
+    fn turning_disc_on_rods(ends: &[DVec2], spin: f64, angular_rate: f64) -> Rooms {
+        let disc = Shape::disc(0.5).expect("a fine radius");
+        let body = Body { shape: disc, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
+        let law = FlightLaw { acceleration: DVec2::new(0.0, -10.0), angular_rate, ..FlightLaw::default() };
+        let (position, velocity) = (DVec2::new(1.0, 0.0), DVec2::new(0.0, 2.0));
+        let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
+        let b = Anchor { body: BodyId(0), point: DVec2::ZERO };
+        let rods = ends.iter().map(|&point| {
+            let a = Anchor { body: BodyId::WORLD, point };
+            let rod = ConnectorKind::Rod { a, b, length: point.distance(position) };
+            Connector::new(rod, 0.0).expect("a fine rod")
+        });
+        let (bodies, connectors) = (vec![BodyPart { body, law, state }], rods.collect());
+        let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
+        rooms_of(parts, FINE, Time::ZERO)
+    }
+
+    #[test]
+    fn the_energy_that_a_projection_takes_is_noted_once() {
+        let mut rooms = pendulum();
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let taken = with_group(
+            &rooms.assembly,
+            &rooms.connectors,
+            &mut rooms.groups,
+            &mut group,
+            |dynamics, tools| {
+                dynamics.group.end_state[1] -= 0.1;
+                [0, 1].map(|_| {
+                    dynamics.end_on_rows(tools);
+                    dynamics.group.projected
+                })
+            },
+        );
+        // A second projection finds the end on the rows.
+        assert!(taken[0].abs() > 1e-4 && taken[1].abs() < 1e-9, "{taken:?}");
+    }
+
+    #[test]
+    fn rows_that_all_but_depend_on_each_other_do_not_throw_their_bodies_about() {
+        /// Angle between the rods [rad].
+        const ANGLE: f64 = 1e-5;
+        /// Error of the second rod's length [m].
+        const ERROR: f64 = 1e-7;
+        /// Largest distance [m] by which the disc may move for that error.
+        const WAY: f64 = 1e-5;
+        let mut rooms = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, ANGLE)]);
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let moved = with_group(
+            &rooms.assembly,
+            &rooms.connectors,
+            &mut rooms.groups,
+            &mut group,
+            |dynamics, tools| {
+                dynamics.group.rows[1].gap += ERROR;
+                let before = dynamics.group.end_state.clone();
+                dynamics.end_on_rows(tools);
+                (dynamics.group.end_state[1] - before[1]).abs()
+            },
+        );
+        // Correcting the lengths of both rods would take a centimetre across them.
+        assert!(moved < WAY, "{moved} m");
+    }
+
+    #[test]
+    fn a_shift_of_the_end_of_a_short_step_is_no_velocity() {
+        let mut rooms = pendulum();
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        group.next_step = Some(1e-9);
+        let velocity = with_group(
+            &rooms.assembly,
+            &rooms.connectors,
+            &mut rooms.groups,
+            &mut group,
+            |dynamics, tools| {
+                dynamics.extend(tools).expect("it falls");
+                // A projection might move the end by this distance: over this step it would be 1 m/s.
+                dynamics.group.end_state[1] += 1e-9;
+                dynamics.evaluate_end();
+                dynamics.make_dense(tools.stepper);
+                dynamics.end_by_dense(0.5e-9);
+                dynamics.group.end_state[4]
+            },
+        );
+        assert!((velocity - 2.0).abs() < 1e-7, "{velocity} m/s");
+    }
+
+    #[test]
+    fn a_motion_that_swings_between_the_ends_of_a_step_makes_it_shorter() {
+        /// Rate [1/s] at which the spin decays.
+        const RATE: f64 = 1e6;
+        /// Product of that rate and the length of a step whose error estimate does not show the decay.
+        const UNTOLD: f64 = 5.75;
+        // Ten times the allowed error: the disc moves at 2 m/s and has a radius of 0.5 m.
+        let spin = 10.0 * FINE.steps.local_error * 2.0 / 0.5;
+        let mut rooms = turning_disc_on_rods(&[DVec2::ZERO], spin, RATE);
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        group.next_step = Some(UNTOLD / RATE);
+        with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
+            dynamics.extend(tools).expect("it decays");
+            assert_eq!(dynamics.group.span, UNTOLD / RATE);
+            dynamics.group.next_step = Some(UNTOLD / RATE);
+            dynamics.extend_on_rows(tools).expect("it decays");
+        });
+        assert!(group.span < 0.8 * UNTOLD / RATE, "{} s", group.span);
+    }
+
+    #[test]
+    fn energy_that_a_step_loses_counts() {
+        let mut rooms = pendulum();
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let [kept, lost] = with_group(
+            &rooms.assembly,
+            &rooms.connectors,
+            &mut rooms.groups,
+            &mut group,
+            |dynamics, tools| {
+                let energy = dynamics.extend(tools).expect("it swings");
+                let kept = dynamics.lost_energy(&tools.settings.steps, energy);
+                // A loss like the work of rows that nearly depend on each other.
+                dynamics.group.end_state[4] *= 1.0 - 1e-6;
+                [kept, dynamics.lost_energy(&tools.settings.steps, None)]
+            },
+        );
+        assert!(kept < 1.0 && lost > 1.0, "{kept}, {lost}");
+    }
+}

@@ -1,0 +1,237 @@
+//! A group: bodies that share their steps because rows or force laws couple them.
+
+use crate::ode::{Accepted, SegmentPolynomial};
+use crate::rigid::connectors::store::Stop;
+use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::group::loops::Loops;
+use crate::rigid::group::singular::Kept;
+use crate::rigid::group::stiff::Stiffness;
+use crate::rigid::group::tree::JointTree;
+use crate::time::Time;
+use halfgap_collision::{BodyId, ConnectorId};
+use halfgap_contact::HeldRows;
+
+/// Work of forces without a potential, which is integrated with the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Work {
+    /// Of a force law.
+    Law(usize),
+    /// Of the damping of free flight.
+    Damping,
+}
+
+/// Event that ends a group's segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SegmentEnd {
+    /// The force of a row falls to zero.
+    Release(usize),
+    /// A contact runs off its features, or a rail's piece ends.
+    Change(usize),
+    /// A contact that touches without force sinks.
+    Sink(usize),
+    /// A unilateral connector within the group closes.
+    Stop(ConnectorId),
+    /// A force law changes branch.
+    Switch,
+}
+
+/// Bodies with a common segment.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Group {
+    /// Its bodies, ascending.
+    pub(crate) bodies: Vec<BodyId>,
+    /// The held rows: independent ones of the contacts, and every row of the connectors.
+    pub(crate) rows: Vec<HeldRow>,
+    /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
+    pub(crate) sides: Vec<[Option<u32>; 2]>,
+    /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
+    pub(crate) idle: Vec<HeldRow>,
+    pub(crate) stops: Vec<Stop>,
+    /// Force laws that act on its bodies, ascending.
+    pub(crate) laws: Vec<usize>,
+    pub(crate) works: Vec<Work>,
+    pub(crate) held: HeldRows,
+    /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
+    pub(crate) tree: JointTree,
+    /// Whether its connectors close a loop.
+    pub(crate) loops: Loops,
+    /// Kept shares of the rows of its loops, which tell of bifurcation points (`singular`).
+    pub(crate) kept: Kept,
+    /// Number of rows that depend on others all along, where such rows are soft and share their force.
+    pub(crate) dependent: usize,
+    /// Time at which its segment starts.
+    pub(crate) start: Time,
+    /// Length of the segment [s].
+    pub(crate) span: f64,
+    /// Position (x, y, angle) of each body, then velocities likewise, then works.
+    pub(crate) state: Vec<f64>,
+    /// Rates of `state` at the start of the segment.
+    pub(crate) rates: Vec<f64>,
+    /// State at the end of the segment.
+    pub(crate) end_state: Vec<f64>,
+    /// Rates at the end of the segment.
+    pub(crate) end_rates: Vec<f64>,
+    /// Force [N] of each row at the start of the segment.
+    pub(crate) forces: Vec<f64>,
+    /// Force [N] of each row at the end of the segment.
+    pub(crate) end_forces: Vec<f64>,
+    /// Another group was ended at the time at which this one was made, because a contact pulled from the start; here it
+    /// may pull again.
+    pub(crate) is_patient: bool,
+    /// Distance [m] by which each row had run off its features when that was first seen; 0 if it had not.
+    pub(crate) overrun: Vec<f64>,
+    /// Force [N] by which each row pulled when that was first seen; 0 if it did not.
+    pub(crate) pulled: Vec<f64>,
+    /// x, y and angle of each body along the segment.
+    pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
+    /// Velocities of the bodies, in the order of the state, and then works [J], along the segment. The derivatives of
+    /// `paths` are no substitute: they contain the displacement of the end by its projection, which is much over a
+    /// short step.
+    pub(crate) rate_paths: Vec<SegmentPolynomial>,
+    /// Length of the next step to try [s]; `None` if nothing is known.
+    pub(crate) next_step: Option<f64>,
+    /// Length [s] of the next step of the method asked for, while brief steps are made.
+    pub(crate) full_step: Option<f64>,
+    /// Time at which the group was made.
+    pub(crate) made: Time,
+    /// Its steps are brief: the next event is so near that a step of few stages reaches it.
+    pub(crate) is_brief: bool,
+    /// No event can end its segments early: dense output may be postponed until it is asked for.
+    pub(crate) is_unwatched: bool,
+    /// A point follows a rail whose curvature has kinks, over which a method of high order gains little.
+    pub(crate) has_kinks: bool,
+    pub(crate) stiffness: Stiffness,
+    /// Change of each body's acceleration per displacement [1/s^2], as the last probe found it; empty where none was
+    /// needed, and in groups with contacts.
+    pub(crate) roughness: Vec<f64>,
+    /// The last accepted step of the group as it is now.
+    pub(crate) accepted: Option<Accepted>,
+    /// Length [s] of the last step, if along it neither the forces of contacts varied nor the gaps of those without
+    /// force, and no force law acts on the group.
+    pub(crate) steady_step: Option<f64>,
+    /// Largest acceleration [m/s^2] of a point by forces other than those of rows, as last evaluated.
+    pub(crate) free_acceleration: f64,
+    /// Length [m] over which the forces of laws vary, as last evaluated; infinite where they vary over no less than the
+    /// size of the bodies.
+    pub(crate) force_length: f64,
+    /// The same length of the laws that name one body.
+    pub(crate) field_length: f64,
+    /// Energy [J] that the projection of the end has added.
+    pub(crate) projected: f64,
+    /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.
+    pub(crate) largest_error: f64,
+    /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
+    pub(crate) least_gap: Option<f64>,
+    /// The event that ends the segment early, if there is one, and its offset [s].
+    pub(crate) event: Option<(f64, SegmentEnd)>,
+    /// Offset [s] up to which the stages of the step show that no contact loses its force, while the search for events
+    /// has not gone further.
+    pub(crate) look: Option<f64>,
+}
+
+impl Group {
+    /// Penetration [m] of the deepest held contact; 0 if there is none. Rows that contradict each other do not keep to
+    /// their gaps.
+    pub(crate) fn depth(&self) -> f64 {
+        self.least_gap.map_or(0.0, |gap| (-gap).max(0.0))
+    }
+
+    /// Empties the group, and keeps the capacity of its buffers.
+    pub(crate) fn clear(&mut self) {
+        let mut old = std::mem::take(self);
+        old.tree.clear();
+        old.loops.clear();
+        old.kept.clear();
+        *self = Self {
+            bodies: emptied(old.bodies),
+            rows: emptied(old.rows),
+            sides: emptied(old.sides),
+            idle: emptied(old.idle),
+            stops: emptied(old.stops),
+            laws: emptied(old.laws),
+            works: emptied(old.works),
+            held: old.held,
+            tree: old.tree,
+            loops: old.loops,
+            kept: old.kept,
+            state: emptied(old.state),
+            rates: emptied(old.rates),
+            end_state: emptied(old.end_state),
+            end_rates: emptied(old.end_rates),
+            forces: emptied(old.forces),
+            end_forces: emptied(old.end_forces),
+            overrun: emptied(old.overrun),
+            pulled: emptied(old.pulled),
+            paths: emptied(old.paths),
+            rate_paths: emptied(old.rate_paths),
+            roughness: emptied(old.roughness),
+            ..Self::default()
+        };
+    }
+
+    /// The body under whose id the group is stored.
+    pub(crate) fn leader(&self) -> BodyId {
+        self.bodies[0]
+    }
+
+    /// Finds the places of the bodies of its rows.
+    pub(crate) fn find_sides(&mut self) {
+        let bodies = &self.bodies;
+        let place = |body| bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
+        self.sides.clear();
+        self.sides.extend(self.rows.iter().map(|row| row.bodies.map(place)));
+    }
+
+    /// Number of components of its state: positions, velocities, works.
+    pub(crate) fn dimension(&self) -> usize {
+        6 * self.bodies.len() + self.works.len()
+    }
+
+    /// Index of the first velocity in its state.
+    pub(crate) fn velocities(&self) -> usize {
+        3 * self.bodies.len()
+    }
+
+    /// Works along the segment [J].
+    pub(crate) fn work_paths(&self) -> &[SegmentPolynomial] {
+        &self.rate_paths[self.velocities().min(self.rate_paths.len())..]
+    }
+
+    /// Time at which the segment ends, is interrupted by an event of the group itself, or has to be searched further.
+    pub(crate) fn due(&self) -> Time {
+        let end = self.event.map_or(self.span, |(offset, _)| offset);
+        self.start.plus(self.look.unwrap_or(end))
+    }
+
+    /// Time at which the segment ends.
+    pub(crate) fn end(&self) -> Time {
+        self.start.plus(self.span)
+    }
+}
+
+/// An emptied list, which keeps its capacity.
+fn emptied<T>(mut list: Vec<T>) -> Vec<T> {
+    list.clear();
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::group::groups::group_of;
+    use crate::rigid::test_scene::resting_discs;
+
+    #[test]
+    fn a_group_that_was_used_knows_nothing_of_it() {
+        let rooms = resting_discs(&[0.0]);
+        let mut used = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it rests").clone();
+        assert!(used.free_acceleration > 0.0 && used.span > 0.0);
+        let held = used.held.clone();
+        used.clear();
+        let mut fresh = Group::default();
+        // The order of the rows is found anew for each group.
+        (fresh.held, fresh.tree, fresh.kept) = (held, used.tree.clone(), used.kept.clone());
+        fresh.loops = used.loops.clone();
+        assert_eq!(format!("{used:?}"), format!("{fresh:?}"));
+    }
+}

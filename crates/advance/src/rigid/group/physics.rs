@@ -1,0 +1,44 @@
+//! The parts of a system from which the motion of groups is computed.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::law::{ForceLaw, Snapshot};
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::rows::Mechanism;
+use crate::rigid::settings::{ExtraAcceleration, RigidSettings, StepControl};
+use halfgap_collision::{Connector, Moving};
+use std::sync::Arc;
+
+/// Parts of a system from which the motion of its groups is computed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Physics<'a> {
+    pub(crate) mechanism: Mechanism<'a>,
+    pub(crate) laws: &'a [Arc<dyn ForceLaw>],
+    pub(crate) extra: Option<ExtraAcceleration>,
+    pub(crate) steps: &'a StepControl,
+    /// States may be moved onto the held rows.
+    pub(crate) projects: bool,
+}
+
+impl<'a> Physics<'a> {
+    /// The physics of a system with these parts.
+    pub(crate) fn of(
+        flyers: &'a [Flyer],
+        connectors: &'a [Connector],
+        laws: &'a [Arc<dyn ForceLaw>],
+        settings: &'a RigidSettings,
+    ) -> Self {
+        let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
+        Self { mechanism, laws, extra: settings.extra, steps: &settings.steps, projects: settings.projection }
+    }
+
+    /// What the laws see of bodies that move like this at a time [s].
+    pub(crate) fn snapshot(&self, time: f64, movings: &'a [Moving]) -> Snapshot<'a> {
+        Snapshot::of_unwound(time, movings, self.mechanism.flyers)
+    }
+}
+
+/// The parts of the system from which the motion of groups is computed.
+pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Physics<'a> {
+    Physics::of(&assembly.flyers, &connectors.all, &assembly.laws.all, &assembly.settings)
+}

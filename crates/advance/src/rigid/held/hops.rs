@@ -1,0 +1,168 @@
+//! Hops too low to be told from contact: a contact opens at a rate v so small that its acceleration a < 0 closes it
+//! again before its gap has grown by much. Such a contact is held at once, instead of being captured a moment later.
+//!
+//! A hop takes T = 2 v/|a| and stays within the target zone, where the landing stops the contact without elasticity. If
+//! the row's coefficients and a are constant meanwhile, stopping the contact as it opens leads to the same positions
+//! and velocities at T. So the less the bodies turn and slide in T, the higher a hop may be, up to the half-width of
+//! the target zone.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::Books;
+use crate::rigid::connectors::corners::stays_in_corner;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::bounces::closes_fast;
+use crate::rigid::contacts::pairs::Pairs;
+use crate::rigid::contacts::rows::row_of;
+use crate::rigid::event::events::{Booking, book_impact};
+use crate::rigid::event::work::EventWork;
+use crate::rigid::impact::impacts::{conclude_impact, set_rows};
+use crate::rigid::region::records::remeasure;
+use crate::rigid::region::region::Region;
+use halfgap_collision::{BodyId, Collision};
+
+/// Height of a low hop, as a fraction of the half-width of the target zone (`accuracy`), however far its bodies move.
+const HOP_SHARE: f64 = 1e-4;
+/// Height of a low hop in which the bodies hardly turn or slide, as a fraction of the same half-width.
+const SHORT_HOP_SHARE: f64 = 0.5;
+/// Angle [rad] by which the bodies may turn in such a hop, and fraction of their reach by which they may slide. They
+/// may do so by `SHORT_HOP_SHARE` of `accuracy` if that is more: their places need not be known better.
+const HOP_TURN: f64 = 1e-4;
+
+/// Multiple of the longest hop's time in which all have landed: one that comes down may make others hop.
+const HOPS_IN_TURN: f64 = 10.0;
+
+/// True if a contact of a region opens, perhaps in a low hop only. A contact that is alone in its region must open
+/// no faster than `velocity_tol`: a faster one bounces visibly, and is stopped when it lands.
+pub(crate) fn may_hop(assembly: &Assembly, region: &Region, record: &Collision) -> bool {
+    let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
+    opens(assembly, record) && (region.records.len() > 1 || is_slow)
+}
+
+/// True if a contact that opens closes again before its gap has grown by much; `acceleration` [m/s^2] is that of
+/// its gap, negative if it closes.
+pub(crate) fn is_low_hop(assembly: &Assembly, record: &Collision, acceleration: f64) -> bool {
+    let rate = record.motion.normal_velocity;
+    let accuracy = record.tolerances.accuracy;
+    let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * accuracy;
+    let is_short = || {
+        let bodies = record.bodies();
+        let turn = HOP_TURN.max(SHORT_HOP_SHARE * accuracy / assembly.largest_reach(bodies));
+        2.0 * rate * turning(assembly, record) <= -acceleration * turn
+    };
+    acceleration < 0.0 && (is_within(HOP_SHARE) || (is_within(SHORT_HOP_SHARE) && is_short()))
+}
+
+/// Sum [1/s] of the rates at which the normal and the bodies of a contact turn, and slide relative to their reach.
+pub(crate) fn turning(assembly: &Assembly, record: &Collision) -> f64 {
+    let of_body = |body: BodyId| {
+        if body.is_world() {
+            return 0.0;
+        }
+        let flyer = assembly.flyer(body);
+        let sliding =
+            if flyer.body().is_fixed() { 0.0 } else { record.motion.lateral_velocity / flyer.reach() };
+        sliding.abs() + flyer.moving_at(assembly.now).angular_velocity.abs()
+    };
+    let parties = &record.parties;
+    record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)
+}
+
+/// True if a contact opens faster than at rest.
+pub(crate) fn opens(assembly: &Assembly, record: &Collision) -> bool {
+    !record.parties.bilateral && record.motion.normal_velocity > assembly.rest_speed()
+}
+
+/// True if any held contact opens.
+pub(crate) fn any_held_hops(assembly: &Assembly, work: &EventWork) -> bool {
+    let records = &work.region.records;
+    work.settling.held.iter().any(|&(index, _)| opens(assembly, &records[index]))
+}
+
+/// Gives the bodies of held contacts that open in low hops the velocities that they will have after the landing,
+/// and lets contacts leave that open all the same. False if nothing is changed.
+///
+/// The impulse of each held contact until the landing follows from its force. These impulses are taken away, so
+/// that the hops come down at once, and an impact without elasticity returns as much of them as is needed. So a
+/// contact is stopped by no more than what presses on it: where normals hardly differ, large impulses that cancel
+/// each other would also stop a body that slides over the contacts.
+pub(crate) fn still_hops(
+    assembly: &mut Assembly,
+    connectors: &Connectors,
+    pairs: &Pairs,
+    books: &mut Books,
+    work: &mut EventWork,
+) -> bool {
+    // At the start some contacts may be about to collide; their impacts must not be stopped along with the hops.
+    if work.region.records.iter().any(closes_fast) {
+        return false;
+    }
+    let Some(wait) = time_of_hops(assembly, work) else { return false };
+    let EventWork { region, impact, settling, carried, stop, .. } = &mut *work;
+    carried.clear();
+    carried.resize(region.records.len(), 0.0);
+    for &(index, _) in &settling.held {
+        let record = &region.records[index];
+        carried[index] = if record.parties.bilateral { 0.0 } else { force_of(record) * wait };
+    }
+    set_rows(assembly, connectors, pairs, region, impact);
+    impact.unload(carried);
+    if impact.try_inelastic().is_err() {
+        return false;
+    }
+    conclude_impact(assembly, books, region, impact, stop, assembly.now);
+    remeasure(assembly, connectors, region, assembly.now);
+    book_impact(assembly, books, stop, Booking::Capture);
+    settling.let_leave(|index| {
+        let record = &region.records[index];
+        opens(assembly, record) && !stays_in_corner(connectors, record)
+    });
+    true
+}
+
+/// Time [s] until all held contacts that hop are at rest; `None` if no contact that opens makes a low hop.
+fn time_of_hops(assembly: &Assembly, work: &EventWork) -> Option<f64> {
+    let records = &work.region.records;
+    let held = work.settling.held.iter().map(|&(index, _)| &records[index]);
+    let times = held.filter(|record| opens(assembly, record)).filter_map(|record| {
+        let rate = record.motion.normal_velocity;
+        let row = row_of(assembly, record);
+        // All forces together hold the gap at no acceleration; without the contact's own force it closes at this
+        // one.
+        let closing = force_of(record) * row.coupling(&row);
+        is_low_hop(assembly, record, -closing).then(|| 2.0 * rate / closing)
+    });
+    times.max_by(f64::total_cmp).map(|time| HOPS_IN_TURN * time)
+}
+
+/// Force [N] at which a contact is held.
+fn force_of(record: &Collision) -> f64 {
+    record.response.force.unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::event::life::dissolve;
+    use crate::rigid::held::hops::is_low_hop;
+    use crate::rigid::region::collecting::collect_region;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    #[test]
+    fn bodies_may_move_in_a_hop_by_as_much_as_is_asked_of_where_they_are() {
+        const GRAVITY: f64 = 9.81;
+        let mut rooms = resting_discs(&[0.0]);
+        let mut work = rooms.work.take().expect("the start has made it");
+        dissolve(&mut rooms, BodyId(1));
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        let [record] = &mut work.region.records[..] else { panic!("one disc, one contact") };
+        // The disc lands after 1 ms.
+        record.motion.normal_velocity = 5e-4 * GRAVITY;
+        for (accuracy, slide, is_low) in
+            [(1e-4, 1e-5, true), (1e-4, 1e-4, false), (1e-3, 1e-4, true), (1e-3, 1e-3, false)]
+        {
+            record.motion.lateral_velocity = slide / 1e-3;
+            record.tolerances.accuracy = accuracy;
+            assert_eq!(is_low_hop(&rooms.assembly, record, -GRAVITY), is_low, "{slide} m of {accuracy} m");
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The impulses of an event, and their report.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::squeezed::LARGEST_MASS_RATIO;
+use crate::rigid::books::Books;
+use crate::rigid::books::energy::{book_damping, interrupt};
+use crate::rigid::books::report::{ImpactReport, RowReport};
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::bounces::{bounces_low, closes_fast};
+use crate::rigid::contacts::pairs::{Pairs, is_likely};
+use crate::rigid::contacts::rows::row_of;
+use crate::rigid::error::{AdvanceError, Between};
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::impact::corners::hold_back;
+use crate::rigid::impact::jams::{find_impulses_of_pressed, leave_out_jammed};
+use crate::rigid::region::records::rate_of;
+use crate::rigid::region::region::Region;
+use crate::rigid::region::view::View;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyId, Collision, Detector};
+use halfgap_contact::{CollisionRow, Impact, ImpactError};
+
+/// Manner in which an impact is resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Manner {
+    /// By the impact law of the settings.
+    Lawful,
+    /// Without elasticity.
+    Inelastic,
+    /// Without elasticity, but given up if that takes long.
+    Trial,
+}
+
+/// Resolves the impact of a region's rows and writes the report. The bodies, which must be in flight, go on with
+/// changed velocities, and the records get their impulses.
+pub(crate) fn resolve_impact(
+    rooms: &mut Rooms,
+    region: &mut Region,
+    impact: &mut Impact,
+    report: &mut ImpactReport,
+    time: Time,
+    manner: Manner,
+) -> Result<(), AdvanceError> {
+    let outcome = find_impulses(&rooms.view(), region, impact, manner);
+    outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
+    if leave_out_jammed(&rooms.assembly, region, impact) {
+        let outcome = find_impulses_of_pressed(&rooms.view(), region, impact, manner);
+        outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
+    }
+    while hold_back(&rooms.assembly, &mut rooms.connectors, region, impact.rates()) {
+        let outcome = find_impulses(&rooms.view(), region, impact, manner);
+        outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
+    }
+    conclude_impact(&mut rooms.assembly, &mut rooms.books, region, impact, report, time);
+    Ok(())
+}
+
+/// Finds the impulses of a region's rows.
+pub(crate) fn find_impulses(
+    view: &View<'_>,
+    region: &Region,
+    impact: &mut Impact,
+    manner: Manner,
+) -> Result<(), ImpactError> {
+    set_rows(view.assembly, view.connectors, view.pairs, region, impact);
+    match manner {
+        Manner::Lawful => view.assembly.settings.law.resolve(
+            impact,
+            view.assembly.settings.order,
+            view.books.counts.impacts,
+        ),
+        Manner::Inelastic => impact.resolve_inelastic(),
+        Manner::Trial => impact.try_inelastic(),
+    }
+}
+
+/// True if the contact or unilateral connector of a record was held until now.
+fn was_held(connectors: &Connectors, pairs: &Pairs, record: &Collision) -> bool {
+    match record.parties.detector {
+        Detector::Connector { id, .. } => connectors.is_held_unilaterally(id),
+        _ => is_likely(pairs, record).is_some(),
+    }
+}
+
+/// Sets the rows of an impact to those of a region.
+pub(crate) fn set_rows(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    pairs: &Pairs,
+    region: &Region,
+    impact: &mut Impact,
+) {
+    let dull = assembly.settings.impulse_step.is_none() && bounces_low(assembly, pairs, region);
+    let rows = region.records.iter().map(|record| {
+        let row = row_of(assembly, record);
+        let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
+        CollisionRow { elasticity, held: was_held(connectors, pairs, record), ..row }
+    });
+    impact.set_rows(rows);
+}
+
+/// Gives the bodies of a region, which must be in flight, their velocities after a resolved impact, and writes the
+/// report.
+pub(crate) fn conclude_impact(
+    assembly: &mut Assembly,
+    books: &mut Books,
+    region: &mut Region,
+    impact: &Impact,
+    report: &mut ImpactReport,
+    time: Time,
+) {
+    books.counts.contact_solves += impact.solves();
+    apply_impulses(assembly, books, region, impact, time);
+    write_report(assembly, region, impact, report, time);
+}
+
+fn apply_impulses(
+    assembly: &mut Assembly,
+    books: &mut Books,
+    region: &mut Region,
+    impact: &Impact,
+    time: Time,
+) {
+    region.sum_changes(impact);
+    for (&body, &[x, y, spin]) in region.bodies.iter().zip(&region.changes) {
+        book_damping(assembly, books, body, time);
+        interrupt(assembly, books, body).cut(time, DVec2::new(x, y), spin);
+        if [x, y, spin] != [0.0; 3] {
+            assembly.struck[body.index()] = Some(time);
+        }
+    }
+    for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
+        record.response.impulse = Some(impulse);
+        // Beyond the end of a feature its gap is no distance between bodies.
+        if record.parties.primary.site.is_some() && record.geometry.outside <= 0.0 {
+            books.counts.note_gap(record.geometry.distance);
+        }
+    }
+}
+
+fn write_report(
+    assembly: &Assembly,
+    region: &Region,
+    impact: &Impact,
+    report: &mut ImpactReport,
+    time: Time,
+) {
+    report.time = time;
+    report.energy_change = 0.0;
+    report.rows.clear();
+    for (index, record) in region.records.iter().enumerate() {
+        let impulse = impact.impulses()[index];
+        let (rate_before, rate_after) = (impact.rows()[index].rate, impact.rates()[index]);
+        if impulse != 0.0 {
+            // The rate afterwards is that of the bodies: by long arms the rounding of their velocities moves rows
+            // by more than the rounding of the rows' own rates.
+            report.energy_change += 0.5 * impulse * (rate_before + rate_of(assembly, record, time));
+            report.rows.push(RowReport { collision: *record, rate_before, rate_after, impulse });
+        }
+    }
+    report.states.clear();
+    let struck = region.bodies.iter().zip(&region.struck).filter(|&(_, &is_struck)| is_struck);
+    report.states.extend(struck.map(|(&body, _)| (body, assembly.flyer(body).state_at(time))));
+}
+
+fn impact_error(assembly: &Assembly, region: &Region, time: Time, source: ImpactError) -> AdvanceError {
+    let touching = region.records.iter().map(Collision::bodies);
+    if let Err(squeezed) = assembly.refuse_squeezed(touching, LARGEST_MASS_RATIO, time) {
+        return squeezed;
+    }
+    let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    let record = source.row().and_then(|row| region.records.get(row));
+    AdvanceError::Impact { time: time.seconds(), bodies, between: record.map(Between::of), source }
+}

@@ -1,7 +1,0 @@
-//! The motion of single bodies: a body with its segment (`flyer`), its motion along the segment (`path`), the copy of
-//! it that predictions read (`lane`), and the trait of force laws (`law`).
-
-pub(super) mod flyer;
-pub(super) mod lane;
-pub(super) mod law;
-pub(super) mod path;

@@ -1,0 +1,8 @@
+//! TODO
+
+pub(super) mod cause;
+pub(super) mod collecting;
+pub(super) mod lift;
+pub(super) mod records;
+pub(super) mod region;
+pub(super) mod view;

@@ -1,0 +1,45 @@
+//! TODO
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::region::region::Region;
+use crate::time::Time;
+use halfgap_collision::{BodyId, Collision, Detector, Moving};
+use halfgap_geometry::GapSample;
+
+/// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
+/// measured.
+pub(crate) fn rate_of(assembly: &Assembly, record: &Collision, time: Time) -> f64 {
+    let j = &record.motion.kinematics.jacobian;
+    let sides = record.bodies();
+    let of_side = |(side, body): (usize, BodyId)| {
+        let Moving { velocity, angular_velocity, .. } = assembly.moving_at(body, time);
+        j[3 * side] * velocity.x + j[3 * side + 1] * velocity.y + j[3 * side + 2] * angular_velocity
+    };
+    sides.into_iter().enumerate().map(of_side).sum()
+}
+
+/// Updates a record to the bodies' present motion at a time.
+fn remeasure_record(assembly: &Assembly, connectors: &Connectors, record: &mut Collision, time: Time) {
+    if let Detector::Connector { id, row } = record.parties.detector {
+        return connectors.remeasure_connector(assembly, record, id, row, time);
+    }
+    let sides = [record.parties.primary, record.parties.normal];
+    let (Some(primary), Some(normal)) = (sides[0].feature(), sides[1].feature()) else { return };
+    let moving = sides.map(|side| assembly.moving_at(side.body, time));
+    let shape = |side: usize| &assembly.flyer(sides[side].body).body().shape;
+    let (primary, normal) = (shape(0).feature(primary), shape(1).feature(normal));
+    let sample = GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
+    if let Some(sample) = sample {
+        debug_assert!(sample.primary_is_a, "records have their primary first");
+        let measured = (&sample, [primary.radius(), normal.radius()]);
+        record.update(measured, [&moving[0], &moving[1]], time.seconds());
+    }
+}
+
+/// Updates the records to the bodies' present motion at a time.
+pub(crate) fn remeasure(assembly: &Assembly, connectors: &Connectors, region: &mut Region, time: Time) {
+    for record in &mut region.records {
+        remeasure_record(assembly, connectors, record, time);
+    }
+}

@@ -1,0 +1,208 @@
+//! Copies of the properties of a body that are read most often: its parabola, its size, the time for which it stays in
+//! its box.
+//!
+//! An event reads these for every neighbour of its bodies, and need not load the bodies themselves: memory is slower
+//! than the computation.
+
+use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::path::Path;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{Flight, Motion, Polynomial};
+
+/// Kind of a body's motion, as far as its lane knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LaneKind {
+    /// Not a parabola: only the body itself knows its motion.
+    Other,
+    /// The centre of mass follows the parabola.
+    Parabola,
+    /// The centre of mass follows the parabola, and the body is a disc about it.
+    Disc,
+}
+
+/// A copy of the motion of one body, renewed whenever that changes. It fills two cache lines that are read together.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(128))]
+pub(crate) struct Lane {
+    /// Position [m] at the start; of an integrated motion, the middle of the box that holds its course.
+    position: DVec2,
+    /// Velocity [m/s] at the start; 0 for an integrated motion.
+    velocity: DVec2,
+    /// Time at which the segment started.
+    start: Time,
+    /// Time until which the body surely stays in its box.
+    pub(crate) stay: Time,
+    /// Acceleration [m/s^2].
+    acceleration: DVec2,
+    /// Largest distance [m] of a point of the body from its centre of mass.
+    pub(crate) reach: f64,
+    /// Radius [m] of a disc about the centre of mass; 0 for any other body.
+    pub(crate) radius: f64,
+    /// Gap [m] at which the body fires.
+    pub(crate) halo: f64,
+    /// Without a parabola: largest distance [m] of the centre of mass from `position` during the segment, beyond that
+    /// which `velocity` and `acceleration` make.
+    course: f64,
+    pub(crate) kind: LaneKind,
+    /// The body neither moves nor is about to.
+    pub(crate) is_at_rest: bool,
+}
+
+/// A disc in which a centre of mass stays for some time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course {
+    pub(crate) center: DVec2,
+    /// Radius [m]; infinite where nothing is known.
+    pub(crate) radius: f64,
+}
+
+impl Lane {
+    /// The lane of a body that stays in its box for ever and fires at a gap [m].
+    pub(crate) fn new(flyer: &Flyer, halo: f64) -> Self {
+        let mut lane = Self {
+            position: DVec2::ZERO,
+            velocity: DVec2::ZERO,
+            start: Time::ZERO,
+            stay: Time::NEVER,
+            acceleration: DVec2::ZERO,
+            reach: flyer.reach(),
+            radius: flyer.disc().unwrap_or(0.0),
+            halo,
+            course: f64::INFINITY,
+            kind: LaneKind::Other,
+            is_at_rest: false,
+        };
+        lane.follow(flyer);
+        lane
+    }
+
+    /// Copies the present motion of the body.
+    pub(crate) fn follow(&mut self, flyer: &Flyer) {
+        self.is_at_rest = flyer.is_at_rest();
+        let Some(parabola) = flyer.flight().and_then(Flight::parabola) else {
+            self.kind = LaneKind::Other;
+            self.start = flyer.start();
+            match flyer.path() {
+                Path::Dense(dense) => {
+                    let stay = dense.center_box();
+                    (self.position, self.course) = (stay.center(), 0.5 * stay.size().length());
+                    (self.velocity, self.acceleration) = (DVec2::ZERO, DVec2::ZERO);
+                }
+                Path::Flight(flight) => {
+                    (self.position, self.velocity) = flight.center_at(0.0);
+                    (self.acceleration, self.course) = (flight.acceleration(), 0.0);
+                }
+            }
+            return;
+        };
+        let Polynomial { position, velocity, acceleration } = parabola;
+        (self.position, self.velocity, self.acceleration) = (position, velocity, acceleration);
+        self.start = flyer.start();
+        self.kind = if flyer.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
+    }
+
+    /// A disc in which the centre of mass stays from a time on, for a span [s] within its segment.
+    #[inline]
+    pub(crate) fn course_from(&self, time: Time, span: f64) -> Course {
+        let way =
+            |velocity: DVec2, span: f64| (velocity.length() + 0.5 * self.acceleration.length() * span) * span;
+        if self.kind == LaneKind::Other {
+            // With damping no body goes farther than without.
+            let radius = self.course + way(self.velocity, time.since(self.start) + span);
+            return Course { center: self.position, radius };
+        }
+        let Polynomial { position, velocity, .. } = self.parabola_from(time);
+        Course { center: position, radius: way(velocity, span) }
+    }
+
+    /// Position [m] of the centre of mass at a time, bit for bit that of the body itself; not for `LaneKind::Other`.
+    #[inline]
+    pub(crate) fn position_at(&self, time: Time) -> DVec2 {
+        let t = time.since(self.start);
+        self.position + (self.velocity + self.acceleration * (0.5 * t)) * t
+    }
+
+    /// The parabola from a time on, if the body follows one.
+    #[inline]
+    pub(crate) fn flight_from(&self, time: Time) -> Option<Polynomial> {
+        (self.kind != LaneKind::Other).then(|| self.parabola_from(time))
+    }
+
+    /// The parabola from a time on; not for `LaneKind::Other`.
+    #[inline]
+    pub(crate) fn parabola_from(&self, time: Time) -> Polynomial {
+        let t = time.since(self.start);
+        Polynomial {
+            position: self.position_at(time),
+            velocity: self.velocity + self.acceleration * t,
+            acceleration: self.acceleration,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::contacts::pairs::Pair;
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::{Body, BodyId, BodyState};
+    use halfgap_geometry::Shape;
+
+    fn thrown(linear_rate: f64) -> Flyer {
+        let shape = Shape::disc(0.7).expect("a fine radius");
+        let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
+        let law = FlightLaw { acceleration: DVec2::new(0.1, -9.81), linear_rate, angular_rate: 0.0 };
+        let (position, velocity) = (DVec2::new(1.0 / 3.0, 2.0), DVec2::new(-0.7, 1.1));
+        let state = BodyState { position, velocity, angular_velocity: 3.0, ..BodyState::default() };
+        Flyer::new(body, law, state, Time::from_seconds(1.1))
+    }
+
+    #[test]
+    fn a_lane_says_to_the_bit_what_its_body_says() {
+        let flyer = thrown(0.0);
+        let lane = Lane::new(&flyer, 0.0);
+        assert_eq!(lane.kind, LaneKind::Disc);
+        for time in [1.1, 1.3, 7.9, 0.2].map(Time::from_seconds) {
+            let offset = flyer.offset(time);
+            assert_eq!(lane.position_at(time), flyer.state_at(time).position);
+            let expected = flyer.flight().and_then(|flight| flight.polynomial_from(offset));
+            assert_eq!(Some(lane.parabola_from(time)), expected);
+        }
+    }
+
+    #[test]
+    fn a_damped_body_has_no_parabola() {
+        assert_eq!(Lane::new(&thrown(0.3), 0.0).kind, LaneKind::Other);
+    }
+
+    #[test]
+    fn a_course_holds_the_flight_damped_or_not() {
+        for linear_rate in [0.0, 0.3, 30.0] {
+            let flyer = thrown(linear_rate);
+            let start = Time::from_seconds(1.3);
+            let course = Lane::new(&flyer, 0.0).course_from(start, 0.5);
+            for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let position = flyer.state_at(start.plus(0.5 * part)).position;
+                assert!((position - course.center).length() <= course.radius);
+            }
+            assert!(course.radius < 6.0, "{} m", course.radius);
+        }
+    }
+
+    #[test]
+    fn a_course_holds_what_an_integrator_finds() {
+        let rooms = resting_discs(&[0.0]);
+        let (flyer, lane) = (rooms.assembly.flyer(BodyId(1)), &rooms.search.lanes[1]);
+        assert_eq!(lane.kind, LaneKind::Other);
+        let course = lane.course_from(flyer.start(), 1e-3);
+        let position = flyer.state_at(flyer.start().plus(1e-3)).position;
+        assert!((position - course.center).length() <= course.radius + 1e-15 && course.radius < 1e-3);
+    }
+
+    #[test]
+    fn the_data_that_events_read_fit_into_lines_of_the_cache() {
+        assert_eq!([size_of::<Lane>(), size_of::<Flyer>(), size_of::<Pair>()], [128, 192, 32]);
+    }
+}

@@ -1,0 +1,155 @@
+//! TODO
+
+use crate::rigid::agenda::Source;
+use crate::rigid::bodies::path::Path;
+use crate::rigid::connectors::store::{crossing_time, rope_of, slack_of};
+use crate::rigid::region::region::Region;
+use crate::rigid::search::graze::{grazing_slack, rope_grazes};
+use crate::rigid::search::searching::Searching;
+use crate::time::Time;
+use halfgap_collision::{BodyId, ConnectorId, Flight, Motion, Rope, RopeSearch, rope_contact};
+
+impl Searching<'_> {
+    /// Predicts when the ropes of a region's bodies go taut.
+    pub(crate) fn predict_ropes(&mut self, region: &Region) {
+        let sink = self.assembly.sink();
+        for &body in &region.bodies {
+            for index in 0..self.connectors.of(body).len() {
+                let id = self.connectors.of(body)[index];
+                let Some(rope) = rope_of(self.connectors.connector(id)) else { continue };
+                let [a, b] = self
+                    .connectors
+                    .connector(id)
+                    .bodies()
+                    .map(|body| self.assembly.moving_at(body, self.assembly.now));
+                let sample = self.connectors.connector(id).measure(0, &a, &b);
+                let slack = slack_of(self.assembly, &sample);
+                let state = &mut self.connectors.states[id.index()];
+                state.slack = slack + f64::from(state.repeats_at(self.assembly.now)) * sink;
+                state.clear = self.assembly.now;
+                self.predict_rope(id, &rope);
+            }
+        }
+    }
+}
+
+impl Searching<'_> {
+    /// Continues the search for ropes of some bodies, whose motions are now known for longer.
+    pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
+        for &body in bodies {
+            for index in 0..self.connectors.of(body).len() {
+                let id = self.connectors.of(body)[index];
+                let is_known = self.connectors.states[id.index()].taut.is_some();
+                if let (Some(rope), false) = (rope_of(self.connectors.connector(id)), is_known) {
+                    self.predict_rope(id, &rope);
+                }
+            }
+        }
+    }
+}
+
+impl Searching<'_> {
+    fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
+        let source = Source::Connector(id);
+        self.connectors.states[id.index()].taut = None;
+        if self.connectors.states[id.index()].held || self.connectors.is_rope_watched(id) {
+            self.agenda.clear(source);
+            return;
+        }
+        let [a, b] = self.connectors.connector(id).bodies();
+        let known = [a, b].map(|body| self.assembly.segment_end(body));
+        let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
+        let mut from = self.connectors.states[id.index()].clear.max(self.assembly.now);
+        if until <= from {
+            self.agenda.clear(source);
+            return;
+        }
+        let mut found = self.search_rope(id, rope, from, until);
+        if let Some(slack) = self.slackens(id, from, found) {
+            // Once slack it goes taut at its own length.
+            self.connectors.states[id.index()].slack = 0.0;
+            from = slack;
+            found = self.search_rope(id, rope, from, until);
+        }
+        let (clear, taut) = match found {
+            RopeSearch::Taut(wait) => (from.plus(wait), Some(from.plus(wait))),
+            RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
+        };
+        let searches_on = taut.is_none() && clear < until;
+        let state = &mut self.connectors.states[id.index()];
+        (state.clear, state.taut) = (clear, taut);
+        if taut.is_some() || searches_on { self.agenda.set(source, clear) } else { self.agenda.clear(source) }
+    }
+}
+
+impl Searching<'_> {
+    /// Searches from a time on for the time at which a rope goes taut, with its present excess length.
+    fn search_rope(&self, id: ConnectorId, rope: &Rope, from: Time, until: Time) -> RopeSearch {
+        let [a, b] = self.connectors.connector(id).bodies();
+        let rope = Rope { length: rope.length + self.connectors.states[id.index()].slack, ..*rope };
+        let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
+        let path = |body: BodyId| {
+            if body.is_world() {
+                (Path::Flight(&still), 0.0)
+            } else {
+                (self.assembly.flyer(body).path(), self.assembly.flyer(body).offset(from))
+            }
+        };
+        let ((path_a, offset_a), (path_b, offset_b)) = (path(a), path(b));
+        // Bounds over much more than the time in which the ends move by the rope's length would say little.
+        let wait =
+            crossing_time(&rope, &path_a.bounds(offset_a, offset_a), &path_b.bounds(offset_b, offset_b));
+        let span = until.since(from).min(wait);
+        rope_contact(
+            &rope,
+            (&path_a, offset_a),
+            (&path_b, offset_b),
+            0.0,
+            span,
+            &self.assembly.settings.search,
+        )
+    }
+}
+
+impl Searching<'_> {
+    /// Time at which a rope with an excess length has clearly gone slack, on the way to the time that a search from a
+    /// time on has come to; `None` if it has no excess, or does not slacken.
+    fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
+        let slack = self.connectors.states[id.index()].slack;
+        if slack <= 0.0 {
+            return None;
+        }
+        let (RopeSearch::Taut(wait) | RopeSearch::NoneBefore(wait)) = found;
+        let mut times = (0..LOOKS).map(|look| from.plus(wait * f64::from(look) / f64::from(LOOKS)));
+        times.find(|&time| {
+            let [a, b] =
+                self.connectors.connector(id).bodies().map(|body| self.assembly.moving_at(body, time));
+            self.connectors.connector(id).measure(0, &a, &b).gap > slack + self.assembly.sink()
+        })
+    }
+}
+
+impl Searching<'_> {
+    /// True if the event of a connector is a rope that goes taut; otherwise the search goes on.
+    pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
+        let now = self.assembly.now;
+        let is_taut = self.connectors.states[id.index()].taut.is_some();
+        let slack = grazing_slack(self.assembly);
+        if is_taut
+            && self.connectors.states[id.index()].slack < slack
+            && rope_grazes(self.assembly, self.connectors, id)
+        {
+            self.connectors.states[id.index()].slack = slack;
+        } else if is_taut {
+            self.connectors.states[id.index()].note_taut(now);
+            return true;
+        }
+        if let Some(rope) = rope_of(self.connectors.connector(id)) {
+            self.predict_rope(id, &rope);
+        }
+        false
+    }
+}
+
+/// Number of times at which a rope is tested for having gone slack before it is taut again.
+const LOOKS: u32 = 8;

@@ -1,0 +1,98 @@
+//! How far bodies may sink into each other where contacts carry impulses only, and what waits to be put back.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::contacts::touch::Touch;
+use halfgap_collision::{BodyId, Tolerances};
+
+/// Contacts that wait for the next tick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sinking {
+    /// Touches that have sunk, sorted.
+    pub(crate) waiting: Vec<Touch>,
+    /// Distance [m] by which bodies have been moved in being put back; zero except during a tick.
+    pub(crate) moved: f64,
+    /// Number of ticks that have gone by.
+    pub(crate) count: f64,
+    /// Number of collisions of sunk contacts since the last tick.
+    pub(crate) pressed: u32,
+    /// Buffer: indices of the laws of a region's bodies.
+    pub(crate) laws: Vec<usize>,
+}
+
+impl Sinking {
+    pub(crate) fn wait(&mut self, touch: Touch) {
+        if let Err(place) = self.waiting.binary_search(&touch) {
+            self.waiting.insert(place, touch);
+        }
+    }
+
+    /// Waiting touches of two bodies, the lesser first.
+    pub(crate) fn waiting_of(&self, bodies: [BodyId; 2]) -> &[Touch] {
+        let start = self.waiting.partition_point(|touch| touch.bodies < bodies);
+        let count = self.waiting[start..].partition_point(|touch| touch.bodies == bodies);
+        &self.waiting[start..start + count]
+    }
+}
+
+/// Depth to which a pair may sink, as a fraction of the reach of the smaller body, beside the way that it slowly closes
+/// by in a step.
+const SUNK_SHARE: f64 = 1e-2;
+
+/// Fraction of the room to sink at which a pair fires again.
+pub(crate) const FIRST_SHARE: f64 = 0.6;
+
+/// Fraction of the room beyond which a pair sinks no further, unless others drive it.
+pub(crate) const DEEPEST_SHARE: f64 = 0.9;
+
+/// Fraction of the room by which a pair may sink further whenever it fires again, slowly.
+pub(crate) const FURTHER_SHARE: f64 = 1.0 / 96.0;
+
+/// Multiple of the room: features that are deeper lie on the far side of a body.
+pub(crate) const BEHIND: f64 = 1.25;
+
+/// Fraction of the room beyond which a fast pair has sunk, rather than just been seen.
+pub(crate) const DEEP_SHARE: f64 = 0.3;
+
+/// Depth [m] by which a pair of bodies may sink below the target gap until it is put back; zero where contacts
+/// carry forces.
+///
+/// # Panics
+/// If there is no such body.
+#[must_use]
+#[inline]
+pub(crate) fn room_to_sink(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
+    let Some(step) = assembly.settings.impulse_step else { return 0.0 };
+    let reach = bodies.map(|body| assembly.flyer(body).reach());
+    let Tolerances { accuracy, velocity_tol, .. } = assembly.settings.tolerances;
+    let of_bodies = (SUNK_SHARE * reach[0].min(reach[1])).min(assembly.thinness(bodies));
+    // Contacts may be anywhere in the target zone, and sink from there: a first firing lies no higher than its end.
+    of_bodies.max(accuracy / FIRST_SHARE) + velocity_tol * step
+}
+
+/// Gap [m] at which a contact without force that does not open fires, by its present gap [m]. Forces on its bodies,
+/// or their turning, may press on at once a contact that was stopped below its zone until it is put back: it may go
+/// a fraction of the way that is left to the depth beyond which it sinks no further.
+pub(crate) fn sinks_to(assembly: &Assembly, touch: Touch, gap: f64) -> f64 {
+    let Tolerances { target_gap, accuracy, .. } = assembly.settings.tolerances;
+    if assembly.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
+        return assembly.refire_gap(gap);
+    }
+    let left = gap - target_gap + DEEPEST_SHARE * room_to_sink(assembly, touch.bodies);
+    gap - assembly.sink().max(FURTHER_SHARE * left)
+}
+
+/// Depth [m] to which two bodies, the lesser first, may lie in one another. Where contacts carry impulses only,
+/// they have been left to sink, have been moved, or would sink within a step; where contacts carry forces, held
+/// ones may lie deep.
+pub(crate) fn may_have_sunk_by(assembly: &Assembly, sinking: &Sinking, bodies: [BodyId; 2]) -> f64 {
+    if assembly.settings.impulse_step.is_none() {
+        return assembly.held_depth(bodies);
+    }
+    // Either may have been moved against the other.
+    let moved = 2.0 * sinking.moved;
+    if !sinking.waiting_of(bodies).is_empty() {
+        // A body that is turned as it is put back sinks at other places.
+        return BEHIND * room_to_sink(assembly, bodies) + moved.min(assembly.thinness(bodies));
+    }
+    assembly.settings.search.depth.max(moved).min(assembly.thinness(bodies))
+}

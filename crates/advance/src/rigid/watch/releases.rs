@@ -1,0 +1,252 @@
+//! Releases: contacts that lose their force within a group's segment.
+//!
+//! Each value of a force takes an evaluation of the group, so a release is looked for only when the time comes up to
+//! which none can happen. The segment is searched up to its end or to the event found otherwise, in one part, or in as
+//! many as the forces ask for.
+
+use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::group::brief::Stepping;
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::group::{Group, SegmentEnd};
+use crate::rigid::group::samples::NODES;
+use crate::rigid::watch::crossing::{Part, interpolated};
+use crate::rigid::watch::earliest::Earliest;
+use crate::rigid::watch::watch::{Watch, fill};
+
+/// Force that counts as none, as a fraction of the loads of its bodies: more than the rounding of nearly redundant
+/// contacts.
+const FORCE_SHARE: f64 = 1e-9;
+/// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
+const PULL: f64 = 16.0;
+/// Rate at which a force may begin to fall, as a multiple of its variation along a step.
+const STEEP: f64 = 4.0;
+
+/// Fractions of a part of the segment at which forces are compared with the quartics through their samples: near the
+/// middles of the first and the last interval, where quartics err most, and in an inner one. They have no common divisor
+/// with each other and the nodes, so that a fast oscillation does not look the same at all of them.
+const BETWEEN_NODES: [f64; 3] = [0.118_034, 0.381_966, 0.854_102];
+/// Difference there, as a fraction of the largest sample, up to which quartics show where forces vanish; a difference that
+/// is less than the force that counts as none does not matter.
+const RESOLVED: f64 = 3e-4;
+/// Span of a part, as a fraction of the segment, that is not halved any more: forces jump there.
+const NARROWEST: f64 = 1e-8;
+/// Largest number of times that parts of one segment are halved, in all, where force laws press the contacts.
+const MOST_HALVINGS: usize = 10_000;
+/// The same number without force laws: forces are smooth then, but for poles, each of which takes as many halvings as lead
+/// to the narrowest part. More are needed only where forces are rounding.
+const HALVINGS_AT_POLES: usize = 64;
+
+/// Watch for contact forces that fall to zero.
+const RELEASES: Watch = Watch {
+    place: |dynamics, offset| dynamics.evaluate_at(offset),
+    place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
+    read: |dynamics, row| dynamics.pressure(row),
+    genuine: |_, _, offset| Some(offset),
+    end: SegmentEnd::Release,
+};
+
+impl Dynamics<'_> {
+    /// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
+    /// before the offset of the look.
+    pub(crate) fn look_for_release(&mut self) {
+        let from = self.group.look.take().unwrap_or(0.0);
+        self.find_least_forces();
+        let mut earliest = Earliest { found: self.pull_at_start().or(self.group.event) };
+        let mut forces = std::mem::take(&mut self.stage.samples.forces);
+        let mut pulled = std::mem::take(&mut self.group.pulled);
+        let narrowest = NARROWEST * self.group.span;
+        let end = earliest.limit().unwrap_or(self.group.span);
+        let most = if self.group.laws.is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
+        let (mut part, mut halvings) = (Part::all(end), 0);
+        while earliest.is_after(part.from) {
+            self.sample_forces(&mut forces, part);
+            while halvings < most && part.span() > narrowest && !self.is_resolved_by(&forces, part) {
+                part.to = part.node(NODES / 2);
+                halvings += 1;
+                self.sample_forces(&mut forces, part);
+            }
+            self.find_first(&mut earliest, (&forces, part), &RELEASES);
+            self.find_overdue(&mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
+                PULL * dynamics.stage.least[row]
+            });
+            if part.to >= end {
+                break;
+            }
+            // The next part may be twice as long.
+            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(end) };
+        }
+        self.group.pulled = pulled;
+        self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
+        self.stage.samples.forces = forces;
+    }
+
+    /// True if the quartics through the samples show all that contact forces do on a part of the segment. No error
+    /// estimate tells how forces vary that hold bodies altogether, nor that forces grow without bound where rows become
+    /// singular: two corners that hold a body flush come together as it slides off.
+    fn is_resolved_by(&mut self, forces: &[[f64; NODES]], part: Part) -> bool {
+        BETWEEN_NODES.into_iter().all(|fraction| {
+            self.evaluate_at(part.from + fraction * part.span());
+            forces.iter().enumerate().filter(|(_, values)| values[0].is_finite()).all(|(row, values)| {
+                let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+                let allowed = self.stage.least[row].max(RESOLVED * size);
+                (self.pressure(row) - interpolated(values, fraction)).abs() <= allowed
+            })
+        })
+    }
+
+    /// Release of a contact that pulls by more than rounding as the group is made.
+    fn pull_at_start(&self) -> Option<(f64, SegmentEnd)> {
+        let Group { start, made, .. } = *self.group;
+        if self.group.is_patient || start != made {
+            return None;
+        }
+        let pulls =
+            |((row, force), least): ((&HeldRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
+        let row = self.group.rows.iter().zip(&self.group.forces).zip(&self.stage.least).position(pulls)?;
+        Some((0.0, SegmentEnd::Release(row)))
+    }
+
+    /// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
+    /// is so all along. A force is firm all along if its least value at the stages and both ends exceeds its variation,
+    /// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
+    /// stages to tell; along steps that force laws have left too long, the variation does not tell the rate.
+    pub(super) fn firm_part(&self) -> Option<f64> {
+        let Group { rows, forces, end_forces, laws, .. } = &*self.group;
+        let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
+        let is_known =
+            self.group.stepping() != Stepping::Stiff && self.stage.force_ranges.len() == rows.len();
+        let part = |(index, _): (usize, &HeldRow)| {
+            let (start, end) = (forces[index], end_forces[index]);
+            let [least, largest] = if is_known { self.stage.force_ranges[index] } else { [start, end] };
+            let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
+            let is_firm = is_known && least > largest - least;
+            let is_slow = is_known && laws.is_empty() && start > 0.0;
+            let part = if is_slow { start / (STEEP * (largest - least)) } else { 0.0 };
+            (!is_firm).then_some(part)
+        };
+        contacts.filter_map(part).min_by(f64::total_cmp)
+    }
+
+    /// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
+    /// which is that of the body's acceleration plus the forces of all its rows.
+    fn find_least_forces(&mut self) {
+        let group = &*self.group;
+        let count = group.bodies.len();
+        let mut gross = std::mem::take(&mut self.stage.gross);
+        gross.clear();
+        gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
+            let at = 3 * (count + place);
+            self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
+        }));
+        for (index, sides) in group.sides.iter().enumerate() {
+            let force = group.forces[index].abs().max(group.end_forces[index].abs());
+            sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
+        }
+        self.stage.least.clear();
+        self.stage.least.extend(group.sides.iter().map(|sides| {
+            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
+            FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
+        }));
+        self.stage.gross = gross;
+    }
+
+    /// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.
+    fn sample_forces(&mut self, samples: &mut Vec<[f64; NODES]>, part: Part) {
+        fill(samples, self.group.rows.len());
+        for index in 0..NODES {
+            let offset = part.node(index);
+            let is_inside = offset > 0.0 && offset < self.group.span;
+            if is_inside {
+                self.evaluate_at(offset);
+            }
+            let forces = match offset {
+                _ if is_inside => &self.stage.forces,
+                0.0 => &self.group.forces,
+                _ => &self.group.end_forces,
+            };
+            let rows = self.group.rows.iter().zip(forces).zip(&self.stage.least);
+            for (sample, ((row, force), least)) in samples.iter_mut().zip(rows) {
+                sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
+            }
+        }
+    }
+
+    /// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
+    fn pressure(&self, row: usize) -> f64 {
+        if self.group.rows[row].bilateral {
+            f64::INFINITY
+        } else {
+            self.stage.forces[row] + self.stage.least[row]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rigid::agenda::Source;
+    use crate::rigid::event::life::look_further;
+    use crate::rigid::group::group::SegmentEnd;
+    use crate::rigid::group::groups::{group_of, put_group, with_group};
+    use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
+
+    /// Fraction of the step up to which a contact is firm, if its force [N] goes from `start` to `end`.
+    pub(super) fn firm_part(start: f64, end: f64) -> Option<f64> {
+        let mut rooms = resting_discs(&[0.0]);
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        group.forces[0] = start;
+        group.end_forces[0] = end;
+        with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.firm_part()
+        })
+    }
+
+    #[test]
+    fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
+        assert_eq!(firm_part(10.0, 9.0), None);
+        assert_eq!(firm_part(9.0, 10.0), None);
+        // The force falls by 8 N along the step, and at first no more than four times as fast.
+        assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
+        assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
+        // A contact that starts without force is looked at at once.
+        assert_eq!(firm_part(0.0, 5.0), Some(0.0));
+        assert_eq!(firm_part(0.0, 0.0), Some(0.0));
+    }
+
+    #[test]
+    fn a_contact_that_may_lose_its_force_is_looked_at_when_its_time_comes() {
+        let leader = BodyId(1);
+        let mut rooms = resting_discs(&[0.0]);
+        let mut group = rooms.groups.take(leader).expect("it is held");
+        // As if the disc's force fell from 20 N, twice its weight, to -20 N at the end.
+        group.forces[0] = 20.0;
+        group.end_forces[0] = -20.0;
+        with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
+            dynamics.stage.clear_force_ranges(1);
+            dynamics.find_event();
+        });
+        assert!(group.event.is_none());
+        assert_eq!(group.due(), group.start.plus(group.span / 8.0));
+        put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
+        look_further(
+            &mut rooms.assembly,
+            &mut rooms.connectors,
+            &mut rooms.groups,
+            &mut rooms.agenda,
+            leader,
+        );
+        let group = group_of(&rooms.assembly, &rooms.groups, leader).expect("it goes on");
+        let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
+        assert!(offset > 0.75 * group.span, "{offset} s");
+        assert_eq!(rooms.agenda.time_of(Source::Group(leader)), Some(group.start.plus(offset)));
+        // An event found for a time that has passed happens now.
+        let mut group = rooms.groups.take(leader).expect("it goes on");
+        let late = 2.0 * group.span;
+        (group.event, group.look) = (None, Some(late));
+        with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
+            dynamics.look_for_release()
+        });
+        assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
+    }
+}

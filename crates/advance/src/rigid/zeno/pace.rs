@@ -1,0 +1,167 @@
+//! Pace: the mean length of a group's steps. A group whose steps are so short that the run would take days must be
+//! reported.
+//!
+//! Steps may be tiny for good reasons, and for a while: a light body rattles between heavy ones, two centres pass each
+//! other closely. So only steps without an impact between them count, in long series, and only if the time to be
+//! simulated would take a hopeless number of them. Impacts no faster than `velocity_tol` do not interrupt a series: they may
+//! be of contacts that take turns.
+//!
+//! A group may also be hasty, making short steps because contacts that count as resting take turns: holding one stops
+//! its slow opening, and another, which is moved along, pulls or closes. In a hasty group contacts that open are let
+//! go, even if they open much more slowly than counts as rest elsewhere, or would come back at once in a low hop.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::group::dynamics::body_state;
+use crate::rigid::group::group::Group;
+use crate::rigid::region::region::Region;
+use crate::rigid::zeno::memory::Zeno;
+use crate::rigid::zeno::turns::too_fast;
+use crate::time::Time;
+use halfgap_collision::{BodyId, BodyState};
+use std::f64::consts::TAU;
+
+/// Number of steps in succession over which one mean length is taken.
+const STEPS: u32 = 10_000;
+/// Number of steps that no run may take: a mean length is hopeless if the total time would take more steps of it.
+const HOPELESS: f64 = 1e10;
+/// Number of hopeless means in succession after which the run is given up: steps may be short for a while.
+const PACES: u32 = 10;
+
+/// Number of steps in succession over whose mean length a group is found to be hasty.
+const FEW_STEPS: u32 = 64;
+/// A group is hasty if that mean is less than this fraction of the resolution time.
+const HASTE: f64 = 1e-4;
+
+/// The recent steps of a group, kept for the body that leads it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pace {
+    all: Count<STEPS>,
+    few: Count<FEW_STEPS>,
+    /// Number of hopeless means in succession.
+    hopeless: u32,
+    is_hasty: bool,
+}
+
+/// Takes the mean length of every `STEPS` steps.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count<const STEPS: u32> {
+    /// Time at which counting began; `None` if it has not.
+    since: Option<Time>,
+    steps: u32,
+}
+
+impl<const STEPS: u32> Count<STEPS> {
+    /// Notes a step that begins at a time; after every `STEPS` steps returns their mean length [s].
+    fn note(&mut self, start: Time) -> Option<f64> {
+        let since = *self.since.get_or_insert(start);
+        if self.steps < STEPS {
+            self.steps += 1;
+            return None;
+        }
+        *self = Self { since: Some(start), steps: 1 };
+        Some(start.since(since) / f64::from(STEPS))
+    }
+}
+
+/// Notes the step that a group has begun. If its steps have become hopelessly short, the error is kept in the
+/// memory, to be returned once the event is over.
+pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
+    let pace = &mut zeno.paces[group.leader().index()];
+    if let Some(mean) = pace.few.note(group.start) {
+        pace.is_hasty = mean < HASTE * assembly.settings.resolution_time;
+    }
+    let mean = pace.all.note(group.start);
+    zeno.crawls = None;
+    let Some(step) = mean else { return };
+    let crawls = step * HOPELESS < zeno.duration;
+    let fast = if crawls { None } else { turns_without_end(assembly, zeno, group, step) };
+    let pace = &mut zeno.paces[group.leader().index()];
+    pace.hopeless = if crawls || fast.is_some() { pace.hopeless + 1 } else { 0 };
+    if pace.hopeless < PACES {
+        return;
+    }
+    zeno.crawls = Some(fast.unwrap_or_else(|| AdvanceError::Crawls {
+        time: group.start.seconds(),
+        step,
+        duration: zeno.duration,
+        bodies: group.bodies.clone(),
+        laws: names_of_laws(assembly, group),
+    }));
+}
+
+/// Error of a body of a group that turns too often in the time to be simulated, and is stepped turn by turn.
+fn turns_without_end(assembly: &Assembly, zeno: &Zeno, group: &Group, step: f64) -> Option<AdvanceError> {
+    let elapsed = group.start.since(assembly.start);
+    group.bodies.iter().enumerate().find_map(|(place, &body)| {
+        let BodyState { angle, angular_velocity, .. } = body_state(&group.state, group.bodies.len(), place);
+        // One that swings to and fro does not get anywhere; one that turns more than once in a step is not
+        // followed.
+        let mean = assembly.flyer(body).with_turns(angle).abs() / elapsed;
+        let is_followed = angular_velocity.abs() * step < TAU;
+        let spin = mean.min(angular_velocity.abs()).copysign(angular_velocity);
+        if is_followed { too_fast(zeno, body, spin, group.start) } else { None }
+    })
+}
+
+/// Names of the laws that act on a group.
+pub(crate) fn names_of_laws(assembly: &Assembly, group: &Group) -> Vec<String> {
+    group.laws.iter().map(|&law| assembly.laws.all[law].name().to_owned()).collect()
+}
+
+/// Forgets the steps of bodies that have taken part in an impact: their groups make progress.
+pub(crate) fn forget_paces(zeno: &mut Zeno, bodies: &[BodyId]) {
+    bodies.iter().for_each(|body| zeno.paces[body.index()] = Pace::default());
+}
+
+/// True if a body of a region has led a hasty group; that is then forgotten.
+pub(crate) fn take_haste(zeno: &mut Zeno, region: &Region) -> bool {
+    let mut any = false;
+    for body in &region.bodies {
+        any |= std::mem::take(&mut zeno.paces[body.index()].is_hasty);
+    }
+    any
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::region::collecting::collect_region;
+    use crate::rigid::test_scene::resting_discs;
+
+    /// Hastiness of the group of a disc that makes 64 steps of a length [s] in succession, by a first and by a second
+    /// query.
+    fn haste(step: f64) -> [bool; 2] {
+        let mut rooms = resting_discs(&[0.0]);
+        let mut work = rooms.work.take().expect("the start has made it");
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        for _ in 0..=FEW_STEPS {
+            note_pace(&rooms.assembly, &mut rooms.zeno, &group);
+            group.start = group.start.plus(step);
+        }
+        [take_haste(&mut rooms.zeno, &work.region), take_haste(&mut rooms.zeno, &work.region)]
+    }
+
+    #[test]
+    fn a_group_is_hasty_whose_steps_are_short_beside_the_resolution_time() {
+        let soon = resting_discs(&[0.0]).assembly.settings.resolution_time;
+        assert_eq!(haste(0.5 * HASTE * soon), [true, false]);
+        assert_eq!(haste(2.0 * HASTE * soon), [false, false]);
+    }
+
+    #[test]
+    fn the_mean_is_that_of_the_steps_since_it_was_last_told() {
+        let mut pace = Count::<STEPS>::default();
+        let mut told = Vec::new();
+        for step in 0..=2 * STEPS {
+            // The second half at a tenth of the pace.
+            let tenths = if step < STEPS { 10 * step } else { 9 * STEPS + step };
+            told.extend(pace.note(Time::from_seconds(0.1 * f64::from(tenths))));
+        }
+        assert!(
+            matches!(told[..], [first, second] if (first - 1.0).abs() < 1e-12 && (second - 0.1).abs() < 1e-12),
+            "{told:?}"
+        );
+    }
+}

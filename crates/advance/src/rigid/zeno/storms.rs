@@ -1,0 +1,107 @@
+//! Storms: more events in a short time than forces can resolve. They are ended by an impact without elasticity.
+//!
+//! The resolution time is the time that forces take to make `velocity_tol`, or to move a body through the half-width of
+//! the target zone, whichever is longer; without forces, the time in which the fastest body crosses the target gap. The
+//! events of each body within that time add up to a storm load. Wide events, between which bodies go far beyond the
+//! target gap, are resolved in space all the same, so more of them are allowed. The same number is allowed of costly
+//! ones, in which much energy would be lost, and still more of events that are both. A light body that heavy ones close
+//! on takes up all their energy before it turns them back, and to do so it must hit them about as often as the root of
+//! the masses' ratio; a die that jams in its slot is turned back by blows between which it moves by a gap or two.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::Books;
+use crate::rigid::contacts::rows::row_of;
+use crate::rigid::region::region::Region;
+use crate::rigid::zeno::memory::Zeno;
+use crate::time::Time;
+use halfgap_collision::Tolerances;
+
+/// Number of events of a body within the resolution time that are no storm yet, if they are neither wide nor costly.
+const CALM_EVENTS: usize = 20;
+/// Number of such events that each row of the region allows beyond them.
+const CALM_EVENTS_PER_ROW: usize = 10;
+/// Storm load of an event that is both wide and costly.
+const LOAD_OF_BOTH: usize = 1;
+/// Storm load of an event that is wide or costly, but not both.
+const LOAD_OF_ONE: usize = 100;
+/// Storm load of an event that is neither; a storm is more than this times (20 + 10 x rows).
+const LOAD_OF_NEITHER: usize = 50 * LOAD_OF_ONE;
+/// Storm load of a body up to which no event is examined for its cost: so few events make no storm.
+const LOAD_WITHOUT_COST: usize = 10 * LOAD_OF_ONE;
+/// An event is wide if its bodies came towards each other by more than this multiple of the target gap since the one
+/// before: a light body between heavy ones that close on it rattles ever faster until it has turned them back.
+const WIDE: f64 = 10.0;
+/// An event is costly if stopping its contact would take more than this fraction of the kinetic energy of its bodies.
+const COSTLY: f64 = 1e-3;
+/// An event is still if it follows the one before at once, and its bodies came towards each other in between by less
+/// than this fraction of the half-width of the target zone. Such events are counted on beyond the resolution time,
+/// however long they go on: forces that the start did not show press contacts together, of which now the one, now the
+/// other gives way.
+const STILL: f64 = 1e-6;
+/// An event follows another at once if the time between is less than this fraction of the time in which a body of the
+/// scene's speed crosses the radius of the smallest body.
+const AT_ONCE: f64 = 1e-8;
+
+/// Recent events of one body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Recent {
+    /// Time at which counting began; `None` if it has not.
+    since: Option<Time>,
+    /// Storm load since then [-]: the sum of the loads of its events.
+    load: usize,
+    /// Time of the last event, if there was any.
+    last: Option<Time>,
+}
+
+/// Adds an event to the storm loads of the bodies of a region; true if it makes a storm.
+pub(crate) fn note_events(assembly: &Assembly, zeno: &mut Zeno, books: &mut Books, region: &Region) -> bool {
+    let (now, window) = (assembly.now, assembly.settings.resolution_time);
+    let speed = region.records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
+    let Tolerances { target_gap, accuracy, .. } = assembly.settings.tolerances;
+    let (wide, still) = (WIDE * target_gap, STILL * accuracy);
+    let at_once = AT_ONCE * assembly.settings.steps.length / assembly.settings.steps.speed;
+    let is_often = region.bodies.iter().any(|body| zeno.recent[body.index()].load > LOAD_WITHOUT_COST);
+    let is_costly = is_often && is_costly(assembly, region);
+    let mut most = 0;
+    for &body in &region.bodies {
+        let recent = &mut zeno.recent[body.index()];
+        let wait = recent.last.map(|last| now.since(last));
+        let way = wait.map(|wait| wait * speed);
+        let is_still = way.is_some_and(|way| way < still) && wait.is_some_and(|wait| wait < at_once);
+        if !is_still && recent.since.is_none_or(|since| now.since(since) > window) {
+            *recent = Recent { since: Some(now), load: 0, ..*recent };
+        }
+        let is_wide = way.is_none_or(|way| way > wide);
+        recent.load += match (is_wide, is_costly) {
+            (true, true) => LOAD_OF_BOTH,
+            (true, false) | (false, true) => LOAD_OF_ONE,
+            (false, false) => LOAD_OF_NEITHER,
+        };
+        recent.last = Some(now);
+        most = most.max(recent.load);
+    }
+    let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * region.records.len();
+    let is_storm = most > LOAD_OF_NEITHER * calm;
+    if is_storm {
+        books.counts.storms += 1;
+        for &body in &region.bodies {
+            zeno.recent[body.index()].load = 0;
+        }
+    }
+    is_storm
+}
+
+/// True if stopping one of the contacts that close in a region would take more than [`COSTLY`] of the kinetic
+/// energy of its bodies.
+fn is_costly(assembly: &Assembly, region: &Region) -> bool {
+    let closing = region.records.iter().map(|record| {
+        let row = row_of(assembly, record);
+        let (rate, inverse_mass) = (row.rate.min(0.0), row.coupling(&row));
+        if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
+    });
+    let moving = region.bodies.iter().map(|&body| {
+        let flyer = assembly.flyer(body);
+        flyer.body().kinetic_energy(&flyer.state_at(assembly.now))
+    });
+    closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
+}
